@@ -1,0 +1,47 @@
+# make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/ready
+
+.PHONY: demo test setup lint lock clean
+
+demo: setup
+	@mkdir -p results
+	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc
+	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png
+
+test: setup lint
+	$(BIN)/python -m pytest
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+# A set-up counts only when it was finished from this lock file by a Python that still runs.
+setup:
+	@if ! cmp -s requirements.lock $(READY) || \
+	  ! { $(BIN)/python -m pip check && $(BIN)/roughmdr --version; } >/dev/null 2>&1; then \
+	  $(MAKE) --no-print-directory $(READY); fi
+
+.PHONY: $(READY)
+$(READY):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "roughmdr needs Python 3.11 or newer: make PYTHON=python3.12"; exit 1; }
+	@rm -rf $(VENV)
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
+	  echo "$(PYTHON) cannot make a virtual environment; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
+	@echo "installing the locked packages into $(VENV) (once, about a minute)"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@cp requirements.lock $(READY)
+
+# Renew the lock file: versions and hashes, no addresses. Needs uv.
+lock:
+	uv pip compile --universal --generate-hashes --python-version 3.11 --no-header --no-annotate \
+	  --group dev pyproject.toml -o requirements.lock
+
+clean:
+	rm -rf $(VENV) results .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,72 @@
+"""roughmdr: batch simulation of rough, multi-asperity contact by the method of dimensionality reduction.
+
+Everything listed in ``__all__`` is loaded when it is first used, so that what is not used costs nothing.
+"""
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from roughmdr import theory
+    from roughmdr.aggregate import load_separation
+    from roughmdr.asperity import indent, pull_off
+    from roughmdr.ensemble import generate
+    from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
+    from roughmdr.runner import run
+    from roughmdr.scene import Scene
+    from roughmdr.shapes import Cone, Paraboloid, PowerLaw
+    from roughmdr.units import effective_modulus
+
+_HOME = {
+    "Cone": "shapes",
+    "OutOfRange": "errors",
+    "Paraboloid": "shapes",
+    "PowerLaw": "shapes",
+    "RoughmdrError": "errors",
+    "Scene": "scene",
+    "SceneError": "errors",
+    "ShapeError": "errors",
+    "StoreError": "errors",
+    "effective_modulus": "units",
+    "generate": "ensemble",
+    "indent": "asperity",
+    "load_separation": "aggregate",
+    "pull_off": "asperity",
+    "run": "runner",
+}
+
+__all__ = [
+    "Cone",
+    "OutOfRange",
+    "Paraboloid",
+    "PowerLaw",
+    "RoughmdrError",
+    "Scene",
+    "SceneError",
+    "ShapeError",
+    "StoreError",
+    "effective_modulus",
+    "generate",
+    "indent",
+    "load_separation",
+    "pull_off",
+    "run",
+    "theory",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return version("roughmdr")
+    if name == "theory":
+        return import_module("roughmdr.theory")
+    if name in _HOME:
+        value = getattr(import_module(f"roughmdr.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'roughmdr' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

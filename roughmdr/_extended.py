@@ -1,0 +1,91 @@
+"""Arithmetic with about 31 digits: a number is an unevaluated sum (hi, lo) of two floats.
+
+Where an asperity lets go, an error in the fold is magnified by the inverse square root of the distance to it; and for
+exponents near 1/2 the scale of the contact is a logarithm divided by a small number. Plain floats lose those answers.
+
+Source: T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The Art of Computer Programming 2, 4.2.2 (two_sum).
+"""
+
+import math
+
+from roughmdr._jit import njit
+
+Pair = tuple[float, float]
+
+_SPLITTER = 134217729.0  # 2^27 + 1
+LOG_2 = (0.6931471805599453, 2.3190468138462996e-17)
+LOG_3 = (1.0986122886681098, -9.07129723500153e-17)
+LOG_PI = (1.1447298858494002, 1.0265951162707826e-17)
+PI = (3.141592653589793, 1.2246467991473532e-16)
+
+
+@njit
+def two_sum(a: float, b: float) -> Pair:
+    """a + b exactly."""
+    s = a + b
+    t = s - a
+    return s, (a - (s - t)) + (b - t)
+
+
+@njit
+def two_product(a: float, b: float) -> Pair:
+    """a * b exactly, while neither factor is above 1e300 nor the product below 1e-290."""
+    p = a * b
+    t = _SPLITTER * a
+    a1 = t - (t - a)
+    a2 = a - a1
+    t = _SPLITTER * b
+    b1 = t - (t - b)
+    b2 = b - b1
+    return p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2
+
+
+@njit
+def add(x: Pair, y: Pair) -> Pair:
+    """x + y."""
+    s, e = two_sum(x[0], y[0])
+    t, f = two_sum(x[1], y[1])
+    s, e = two_sum(s, e + t)
+    return two_sum(s, e + f)
+
+
+@njit
+def multiply(x: Pair, y: Pair) -> Pair:
+    """x * y."""
+    p, e = two_product(x[0], y[0])
+    return two_sum(p, e + (x[0] * y[1] + x[1] * y[0]))
+
+
+@njit
+def divide(x: Pair, y: Pair) -> Pair:
+    """x / y."""
+    q = x[0] / y[0]
+    p, e = two_product(q, y[0])
+    return two_sum(q, ((((x[0] - p) - e) + x[1]) - q * y[1]) / y[0])
+
+
+@njit
+def log(x: Pair) -> Pair:
+    """Natural logarithm of x > 0: x = m 2^k with m near 1, ln m = 2 artanh((m - 1)/(m + 1)) as a power series."""
+    m, k = math.frexp(x[0])
+    if m < math.sqrt(0.5):
+        m *= 2.0
+        k -= 1
+    # Two steps, since 2^-k alone overflows when x is the smallest float there is.
+    half = k // 2
+    reduced = (m, x[1] * 2.0**-half * 2.0 ** (half - k))
+    z = divide(add(reduced, (-1.0, 0.0)), add(reduced, (1.0, 0.0)))
+    square = multiply(z, z)
+    series = (0.0, 0.0)
+    for j in range(43, 0, -2):  # |z| < 0.1716: the first term left out is below 1e-34
+        series = add(multiply(series, square), divide((1.0, 0.0), (float(j), 0.0)))
+    series = multiply(multiply(series, z), (2.0, 0.0))
+    return add(series, multiply((float(k), 0.0), LOG_2))
+
+
+@njit
+def exp(x: Pair) -> Pair:
+    """e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, absolute."""
+    y = math.exp(x[0])
+    error = add(x, multiply((-1.0, 0.0), log((y, 0.0))))
+    return two_sum(y, y * (error[0] + error[1]))

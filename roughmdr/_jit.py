@@ -1,0 +1,62 @@
+"""The numba policy, in one place: no fastmath, no GIL, and a disk cache that a changed source file leaves behind.
+
+Kernels are compiled with ``njit`` from here. A loop that is to be handed its kernels is compiled with ``specialise``.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any, TypeVar
+
+import numba
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+@cache
+def _cache_folder() -> str | None:
+    """The folder of this version of the sources; None where no folder can be written.
+
+    numba looks only at the file of the outer function, so a kernel that was inlined from another file would live on
+    in the cache after a change. A name made from all the sources cannot be stale.
+    """
+    import platformdirs
+
+    package = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(package.rglob("*.py")):
+        digest.update(source.read_bytes())
+    folder = Path(platformdirs.user_cache_dir("roughmdr")) / digest.hexdigest()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return str(folder) if os.access(folder, os.W_OK) else None
+
+
+def njit(function: _Function) -> _Function:
+    """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, no reordering), the GIL released, cached on disk."""
+    folder = _cache_folder()
+    before = numba.config.CACHE_DIR
+    if folder is not None:
+        numba.config.CACHE_DIR = folder
+    try:
+        compiled = numba.njit(nogil=True, error_model="numpy", cache=folder is not None)(function)
+    finally:
+        numba.config.CACHE_DIR = before
+    return compiled  # type: ignore[no-any-return]
+
+
+def specialise(loop: FunctionType, name: str, **kernels: object) -> Callable[..., Any]:
+    """A compiled copy of ``loop`` in which the global names in ``kernels`` stand for the given kernels.
+
+    numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own can be.
+    ``name`` must tell the copies of one loop apart: numba finds them in its cache by it.
+    """
+    copy = FunctionType(loop.__code__, {**loop.__globals__, **kernels}, name)
+    copy.__qualname__ = f"{loop.__qualname__}_{name}"
+    copy.__module__ = loop.__module__
+    return njit(copy)

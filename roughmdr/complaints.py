@@ -1,0 +1,104 @@
+"""Faults of a scene or a section in words: the dotted key, its value, and what would do."""
+
+import difflib
+from typing import Any, NamedTuple, get_args
+
+from pydantic import BaseModel, ValidationError
+
+
+class Complaint(NamedTuple):
+    """One fault."""
+
+    key: str
+    value: str
+    """As in the scene; empty where there is none to show."""
+    message: str
+
+    def __str__(self) -> str:
+        shown = f"{self.key} = {self.value}" if self.value else self.key
+        return f"{shown}: {self.message}" if shown else self.message
+
+
+def complaints(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Complaint]:
+    """All faults that pydantic found in ``data``, which was read as ``declared`` (a section, or a union of sections)."""
+    return [_complaint(fault, data, declared) for fault in error.errors(include_url=False)]
+
+
+def _complaint(fault: Any, data: dict[str, Any], declared: Any) -> Complaint:
+    keys, sections = _walk(fault["loc"], data, declared)
+    context = fault.get("ctx", {})
+    value = _shown(fault["input"])
+    match fault["type"]:
+        case "misfit":
+            return Complaint(context["key"], "", context["message"])
+        case "extra_forbidden":
+            allowed = sorted({name for section in sections for name in section.model_fields})
+            return Complaint(".".join(keys), "", f"unknown key{_suggestion(keys[-1], allowed)}")
+        case "missing":
+            return Complaint(".".join(keys), "", "is missing")
+        case "union_tag_not_found" | "union_tag_invalid":
+            key = ".".join([*keys, context["discriminator"].strip("'")])
+            if fault["type"] == "union_tag_not_found":
+                tags = _tags(sections, context["discriminator"].strip("'"))
+                return Complaint(key, "", f"is missing; it can be {', '.join(tags)}")
+            tags = [tag.strip("'") for tag in context["expected_tags"].split(", ")]
+            return Complaint(key, repr(context["tag"]), f"not available{_suggestion(context['tag'], tags)}")
+        case "literal_error":
+            allowed = [name.strip("'") for name in context["expected"].replace(" or ", ", ").split(", ")]
+            return Complaint(".".join(keys), value, f"not available{_suggestion(str(fault['input']), allowed)}")
+        case "value_error":
+            return Complaint(".".join(keys), value, str(context["error"]))
+        case "model_type" | "dict_type" | "model_attributes_type":
+            return Complaint(".".join(keys), value, "must be a table")
+        case _:
+            return Complaint(".".join(keys), value, fault["msg"][0].lower() + fault["msg"][1:])
+
+
+def _walk(loc: tuple[int | str, ...], data: Any, declared: Any) -> tuple[list[str], list[type[BaseModel]]]:
+    """The keys of ``data`` on the way to a fault, and the sections that may hold the last of them.
+
+    pydantic's location also names the choice taken in each union; those are no keys.
+    """
+    keys: list[str] = []
+    sections, inner = _sections(declared), _sections(declared)
+    for position, item in enumerate(loc):
+        last = position == len(loc) - 1
+        if isinstance(data, dict) and (item in data or (last and any(item in s.model_fields for s in inner))):
+            keys.append(str(item))
+            sections = inner
+            inner = [s for holder in inner if item in holder.model_fields for s in _field_sections(holder, str(item))]
+            data = data.get(item)
+        elif isinstance(data, list) and isinstance(item, int) and item < len(data):
+            keys[-1] += f"[{item}]"
+            data = data[item]
+        else:
+            chosen = [s for s in inner if any(item in get_args(f.annotation) for f in s.model_fields.values())]
+            inner = chosen or inner
+    return keys, sections if loc and keys and str(loc[-1]) == keys[-1] else inner
+
+
+def _field_sections(section: type[BaseModel], name: str) -> list[type[BaseModel]]:
+    return _sections(section.model_fields[name].annotation)
+
+
+def _sections(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [section for part in get_args(annotation) for section in _sections(part)]
+
+
+def _tags(sections: list[type[BaseModel]], discriminator: str) -> list[str]:
+    fields = [section.model_fields[discriminator] for section in sections if discriminator in section.model_fields]
+    return sorted({str(tag) for field in fields for tag in get_args(field.annotation)})
+
+
+def _suggestion(given: str, allowed: list[str]) -> str:
+    near = difflib.get_close_matches(given, allowed, n=1, cutoff=0.7)
+    if near:
+        return f"; did you mean {near[0]!r}?"
+    return f"; it can be {', '.join(allowed)}"
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

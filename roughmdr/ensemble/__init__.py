@@ -1,0 +1,39 @@
+"""Where asperities come from: one file a source, each with the section of the scene that asks for it."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from roughmdr.complaints import complaints
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.random import AnyRandomAsperities, RandomAsperities
+from roughmdr.ensemble.surface import SurfaceAsperities
+from roughmdr.errors import SceneError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities, Field(discriminator="source")]
+
+__all__ = ["Asperities", "Ensemble", "RandomAsperities", "SurfaceAsperities", "generate"]
+
+
+def generate(
+    asperities: dict[str, Any] | RandomAsperities | SurfaceAsperities, *, seed: int, realization: int = 0
+) -> "xr.Dataset":
+    """The ensemble that a run with this seed presses on, as a Dataset over ``asperity``, highest summit first.
+
+    asperities is the section of a scene or a dictionary with its keys, quantities as numbers in SI or as strings with
+    a unit. The result holds ``height`` [m] and each shape parameter under its argument's name; attrs ``shape``,
+    ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
+    """
+    for name, value in (("seed", seed), ("realization", realization)):
+        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+            raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
+    if isinstance(asperities, dict):
+        try:
+            asperities = TypeAdapter[RandomAsperities | SurfaceAsperities](Asperities).validate_python(asperities)
+        except ValidationError as error:
+            found = complaints(error, asperities, Asperities)
+            raise SceneError("\n".join(f"asperities.{complaint}" for complaint in found)) from None
+    return asperities.ensemble(seed, realization).to_dataset()

@@ -1,0 +1,156 @@
+"""Distributions by their scipy.stats name, sampled through their inverse, so that draws can be shared and compared."""
+
+import difflib
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.shapes.base import Floats
+from roughmdr.units import DIMENSIONLESS, quantity
+
+_FRIENDLY = {
+    "normal": "norm",
+    "lognormal": "lognorm",
+    "exponential": "expon",
+    "weibull": "weibull_min",
+}
+_BITS = 52
+SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A distribution of a quantity in SI: a scipy.stats name with its parameters, or a constant (``name`` empty)."""
+
+    name: str
+    parameters: tuple[tuple[str, float], ...]
+
+    @cached_property
+    def frozen(self) -> Any:
+        """The scipy.stats distribution with its parameters."""
+        import scipy.stats
+
+        return getattr(scipy.stats, self.name)(**dict(self.parameters))
+
+    @property
+    def constant(self) -> float | None:
+        """The value, where every draw has the same."""
+        return None if self.name else self.parameters[0][1]
+
+    def quantile(self, uniform: Floats) -> Floats:
+        """The values below which the given fractions lie."""
+        if self.constant is not None:
+            return np.full_like(uniform, self.constant)
+        return np.asarray(self.frozen.ppf(uniform), dtype=np.float64)
+
+    @property
+    def std(self) -> float:
+        """Standard deviation; inf or NaN where the distribution has none."""
+        return 0.0 if self.constant is not None else float(self.frozen.std())
+
+    @property
+    def least(self) -> float:
+        """The lowest value that can be drawn."""
+        return float(self.quantile(np.array([SMALLEST_UNIFORM]))[0])
+
+    @property
+    def greatest(self) -> float:
+        """The greatest value that can be drawn."""
+        return float(self.quantile(np.array([1.0 - SMALLEST_UNIFORM]))[0])
+
+
+def uniforms(seed: int, realization: int, quantity_index: int, count: int) -> Floats:
+    """``count`` numbers in (0, 1), never 0 or 1, from the stream of one quantity of one realization.
+
+    The raw bits of Philox are the same in every version of numpy; a longer draw begins with the shorter one.
+    """
+    stream = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(realization, quantity_index)))
+    return ((stream.random_raw(count) >> np.uint64(64 - _BITS)) + 0.5) * 2.0**-_BITS
+
+
+def read_distribution(value: object, dimension: str, *, mean: float | None = None) -> Distribution:
+    """A distribution from a scene: a plain quantity, or a table with ``distribution`` and its parameters.
+
+    The parameters are scipy's own (shape parameters, loc, scale) or mean and std; ``mean`` is their default mean.
+    Raises RoughmdrError, with the names that would do, where it cannot be read.
+    """
+    if not isinstance(value, dict):
+        return Distribution("", (("value", quantity(value, dimension)),))
+    import scipy.stats
+
+    table = dict(value)
+    given = table.pop("distribution", None)
+    if not isinstance(given, str):
+        raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
+    name = _FRIENDLY.get(given, given)
+    family = getattr(scipy.stats, name, None)
+    if not isinstance(family, scipy.stats.rv_continuous):
+        raise RoughmdrError(f"unknown distribution {given!r}{_near(given)}; any continuous one of scipy.stats will do")
+    shapes = [] if family.shapes is None else family.shapes.split(", ")
+    allowed = [*shapes, "loc", "scale", "mean", "std"]
+    for key in table:
+        if key not in allowed:
+            raise RoughmdrError(f"{given} has no parameter {key!r}; it takes {', '.join(allowed)}")
+    numbers = {key: _parameter(key, entry, DIMENSIONLESS if key in shapes else dimension) for key, entry in table.items()}
+    distribution = Distribution(name, tuple(_located(family, given, shapes, numbers, mean).items()))
+    if not (math.isfinite(distribution.least) and math.isfinite(distribution.greatest)):
+        raise RoughmdrError(f"{given} can be infinite with {_listed(numbers)}")
+    return distribution
+
+
+def _parameter(key: str, value: object, dimension: str) -> float:
+    try:
+        return quantity(value, dimension)
+    except RoughmdrError as error:
+        raise RoughmdrError(f"{key} = {value!r}: {error}") from None
+
+
+def _located(
+    family: Any, given: str, shapes: list[str], numbers: dict[str, float], default_mean: float | None
+) -> dict[str, float]:
+    """scipy's own parameters, from mean and std where those are given."""
+    mean, std = numbers.get("mean"), numbers.get("std")
+    for key in ("std", "scale"):
+        if numbers.get(key, 1.0) <= 0.0:
+            raise RoughmdrError(f"{key} is {numbers[key]:g}; it must be above 0")
+    if std is not None and "scale" in numbers:
+        raise RoughmdrError(f"{given} takes std or scale, not both")
+    if mean is not None and "loc" in numbers:
+        raise RoughmdrError(f"{given} takes mean or loc, not both")
+    if given == "lognormal" and "s" not in numbers:
+        if mean is None or std is None or not mean > 0.0:
+            raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
+        variance = math.log1p((std / mean) ** 2)
+        return {"s": math.sqrt(variance), "scale": mean * math.exp(-0.5 * variance)}
+    missing = [shape for shape in shapes if shape not in numbers]
+    if missing:
+        raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {', '.join([*shapes, 'loc', 'scale', 'mean', 'std'])}")
+    if std is None and "scale" not in numbers:
+        raise RoughmdrError(f"{given} needs a std or a scale")
+    own = {shape: numbers[shape] for shape in shapes}
+    if not family._argcheck(*own.values()):
+        raise RoughmdrError(f"{given} is not defined for {_listed(own)}")
+    unit_mean, unit_variance = (float(moment) for moment in family.stats(**own, moments="mv"))
+    if mean is None and "loc" not in numbers and math.isfinite(unit_mean):
+        mean = default_mean
+    scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
+    loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean
+    if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
+        raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
+    return {**own, "loc": loc, "scale": scale}
+
+
+def _listed(numbers: dict[str, float]) -> str:
+    return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
+
+
+def _near(name: str) -> str:
+    import scipy.stats
+
+    known = [*_FRIENDLY, *(n for n in dir(scipy.stats) if isinstance(getattr(scipy.stats, n), scipy.stats.rv_continuous))]
+    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+    return f"; did you mean {' or '.join(repr(other) for other in near)}?" if near else ""

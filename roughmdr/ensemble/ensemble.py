@@ -1,0 +1,116 @@
+"""An ensemble of asperities: plain arrays inside, an xarray dataset outside."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError, SceneError, ShapeError
+from roughmdr.shapes import SHAPES
+from roughmdr.shapes.base import Floats, check_positive
+from roughmdr.units import unit_factor
+from roughmdr.variables import COORDINATES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Asperities of one shape, from the highest to the lowest summit; all arrays are equally long, in SI units."""
+
+    shape: str
+    height: Floats
+    parameters: dict[str, Floats]
+    nominal_area: float | None = None
+    positions: dict[str, Floats] = field(default_factory=dict)
+    attrs: dict[str, float | int | str] = field(default_factory=dict)
+
+    @classmethod
+    def sorted(
+        cls,
+        shape: str,
+        height: Floats,
+        parameters: dict[str, Floats],
+        nominal_area: float | None = None,
+        positions: dict[str, Floats] | None = None,
+        attrs: dict[str, float | int | str] | None = None,
+    ) -> "Ensemble":
+        """The ensemble in its one order: descending height, equal heights by their parameters."""
+        order = np.argsort(-height, kind="stable")
+        descending = height[order]
+        if (descending[1:] == descending[:-1]).any():
+            order = np.lexsort((*parameters.values(), -height))
+        pick = {name: np.ascontiguousarray(column[order]) for name, column in parameters.items()}
+        places = {name: np.ascontiguousarray(column[order]) for name, column in (positions or {}).items()}
+        return cls(shape, np.ascontiguousarray(height[order]), pick, nominal_area, places, attrs or {})
+
+    def columns(self) -> tuple[Floats, Floats, Floats]:
+        """Width [m], rise [m] and form [1] of each asperity."""
+        return SHAPES[self.shape].stretch(self.parameters)
+
+    def to_dataset(self) -> "xr.Dataset":
+        """The dataset over ``asperity``."""
+        import xarray as xr
+
+        units = SHAPES[self.shape].units
+        variables = {"height": ("asperity", self.height, COORDINATES["height"].attrs)}
+        for name, column in self.parameters.items():
+            variables[name] = ("asperity", column, {"units": units[name], "long_name": f"{name} of the {self.shape}"})
+        for name, column in self.positions.items():
+            variables[name] = ("asperity", column, COORDINATES[name].attrs)
+        attrs: dict[str, float | int | str] = {"shape": self.shape, **self.attrs}
+        if self.nominal_area is not None:
+            attrs["nominal_area"] = self.nominal_area
+        return xr.Dataset(variables, attrs=attrs)
+
+    @classmethod
+    def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
+        """An ensemble from a dataset over ``asperity`` in any order; missing units mean SI.
+
+        SceneError, naming the variable or attribute, where something is missing, not finite or out of range.
+        """
+        shape = dataset.attrs.get("shape")
+        if shape not in SHAPES:
+            raise SceneError(f"ensemble: attribute shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
+        kind = SHAPES[shape]
+        given = {name for name in kind.units if name in dataset}
+        try:
+            spelling = kind.spelling(given)
+        except ShapeError as error:
+            raise SceneError(f"ensemble: {error}") from None
+        height = _column(dataset, "height", "m")
+        parameters = {name: _column(dataset, name, kind.units[name]) for name in spelling}
+        for name, column in parameters.items():
+            try:
+                check_positive(shape, name, column)
+            except ShapeError as error:
+                raise SceneError(f"ensemble: {error}") from None
+        positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
+        area = dataset.attrs.get("nominal_area")
+        if area is None and "patch" in dataset.attrs:
+            area = float(dataset.attrs["patch"]) ** 2
+        if area is not None and not (np.isfinite(area) and area > 0.0):
+            raise SceneError(f"ensemble: attribute nominal_area is {area!r}; it must be an area above 0 m2")
+        return cls.sorted(shape, height, parameters, None if area is None else float(area), positions)
+
+
+def _column(dataset: "xr.Dataset", name: str, unit: str) -> Floats:
+    if name not in dataset:
+        raise SceneError(f"ensemble: variable {name!r} is missing")
+    variable = dataset[name]
+    if variable.dims != ("asperity",):
+        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over ('asperity',)")
+    if variable.size == 0:
+        raise SceneError("ensemble: it has no asperity; at least one is needed")
+    if variable.dtype.kind not in "iuf":
+        raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
+    try:
+        factor = 1.0 if unit.startswith("m^(") else float(unit_factor(str(variable.attrs.get("units", "")), unit))
+    except RoughmdrError as error:
+        raise SceneError(f"ensemble: units of {name}: {error}") from None
+    column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
+    if not np.isfinite(column).all():
+        where = int(np.argmin(np.isfinite(column)))
+        raise SceneError(f"ensemble: {name} is {column[where]} at asperity {where}; it must be finite")
+    return column

@@ -1,0 +1,95 @@
+"""source = "random": heights and shape parameters drawn from distributions, independent of each other."""
+
+from typing import Annotated, Any, Literal, Union
+
+from pydantic import Field, ValidationInfo, create_model, field_validator, model_validator
+
+from roughmdr.ensemble.distributions import Distribution, read_distribution, uniforms
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import RoughmdrError
+from roughmdr.fields import Length, Section, read_by, whole_number
+from roughmdr.shapes import SHAPES, Shape
+
+# Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
+_HEIGHT_STREAM = 0
+_FIRST_PARAMETER_STREAM = 2  # 1 is kept for positions
+
+_Height = read_by(lambda value: read_distribution(value, "m", mean=0.0), Distribution)
+
+
+class RandomAsperities(Section):
+    """[asperities] with source = "random": ``count`` asperities on a square of side ``patch``."""
+
+    source: Literal["random"]
+    shape: str
+    count: whole_number(1, 1_000_000_000)
+    patch: Length
+    placement: Literal["random", "hard_core", "hexagonal"] = "random"
+    min_distance: Length | None = None
+    height: _Height
+
+    @field_validator("min_distance")
+    @classmethod
+    def _only_with_hard_core(cls, value: float | None, info: ValidationInfo) -> float | None:
+        if value is not None and info.data.get("placement", "hard_core") != "hard_core":
+            raise RoughmdrError('goes with placement = "hard_core" only')
+        return value
+
+    @model_validator(mode="after")
+    def _parameters_describe_the_shape(self) -> "RandomAsperities":
+        SHAPES[self.shape].spelling(set(self.distributions))
+        if self.placement == "hard_core" and self.min_distance is None:
+            raise RoughmdrError('placement = "hard_core" needs min_distance')
+        return self
+
+    @property
+    def distributions(self) -> dict[str, Distribution]:
+        """The distribution of each shape parameter that was given."""
+        entries = {name: getattr(self, name) for name in SHAPES[self.shape].units}
+        return {name: entry for name, entry in entries.items() if entry is not None}
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the heights [m]."""
+        return self.height.std
+
+    def ensemble(self, seed: int, realization: int) -> Ensemble:
+        """The asperities of one realization."""
+        height = self.height.quantile(uniforms(seed, realization, _HEIGHT_STREAM, self.count))
+        order = list(SHAPES[self.shape].units)
+        parameters = {
+            name: entry.quantile(uniforms(seed, realization, _FIRST_PARAMETER_STREAM + order.index(name), self.count))
+            for name, entry in self.distributions.items()
+        }
+        attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
+        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs)
+
+
+def _parameter(unit: str) -> Any:
+    def read(value: object) -> Distribution:
+        distribution = read_distribution(value, "1" if unit.startswith("m^(") else unit)
+        if not distribution.least > 0.0:
+            raise RoughmdrError(
+                f"can be as low as {distribution.least:.3g}; it must be above 0 (lognormal, for one, always is)"
+            )
+        return distribution
+
+    return read_by(read, Distribution)
+
+
+def _section(shape: type[Shape]) -> type[RandomAsperities]:
+    """The section of one shape, with a key for each of its parameters."""
+    always = set.intersection(*(set(spelling) for spelling in shape.spellings))
+    keys: dict[str, Any] = {}
+    for name, unit in shape.units.items():
+        kind = _parameter(unit)
+        keys[name] = (kind, ...) if name in always else (kind | None, None)
+    return create_model(
+        f"Random{shape.__name__}", __base__=RandomAsperities, shape=(Literal[shape.name], ...), **keys
+    )
+
+
+AnyRandomAsperities = Annotated[
+    Union[tuple(_section(shape) for shape in SHAPES.values())],  # noqa: UP007 - made at run time
+    Field(discriminator="shape"),
+]

@@ -1,0 +1,90 @@
+"""One power-law asperity without adhesion: delta = g(a), P = 2 E* [a g(a) - G(a)], k = 2 E* a (H 10, 16, 25).
+
+Reduced: x = delta/depth with depth = kappa rise, and the state t = a/width, so that x = t^n.
+"""
+
+import math
+
+from roughmdr._extended import Pair
+from roughmdr._jit import njit
+from roughmdr.shapes.power import kappa
+
+
+@njit
+def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+    """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured."""
+    depth = kappa(n) * rise
+    return (depth, 0.0), width, 2.0 * modulus * width * depth, 2.0 * modulus * width
+
+
+@njit
+def state_paraboloid(x: float, n: float) -> float:
+    """t at the reduced indentation x >= 0, n = 2."""
+    return math.sqrt(x)
+
+
+@njit
+def state_cone(x: float, n: float) -> float:
+    """t at the reduced indentation x >= 0, n = 1."""
+    return x
+
+
+@njit
+def state_power(x: float, n: float) -> float:
+    """t at the reduced indentation x >= 0. The second line removes the rounding of 1/n."""
+    t = x ** (1.0 / n)
+    return t + t * (x / t**n - 1.0) / n if 0.0 < t < 1e300 and t**n > 0.0 else t
+
+
+@njit
+def state_of_radius(ratio: float, n: float) -> float:
+    """t at a given a/width."""
+    return ratio
+
+
+@njit
+def distance(t: float, n: float) -> float:
+    """x(t)."""
+    return t**n
+
+
+@njit
+def radius(t: float, n: float) -> float:
+    """a/width."""
+    return t
+
+
+@njit
+def force_paraboloid(t: float, n: float) -> float:
+    """P over 2 E* width depth, n = 2."""
+    return 2.0 / 3.0 * (t * t * t)
+
+
+@njit
+def force_cone(t: float, n: float) -> float:
+    """P over 2 E* width depth, n = 1."""
+    return 0.5 * (t * t)
+
+
+@njit
+def force_power(t: float, n: float) -> float:
+    """P over 2 E* width depth."""
+    return n / (n + 1.0) * (t * t**n)
+
+
+@njit
+def stiffness(t: float, n: float) -> float:
+    """k over 2 E* width."""
+    return t
+
+
+@njit
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
+    """The force [N] at t = 1."""
+    return 2.0 * modulus * width * (kappa(n) * rise) * (n / (n + 1.0)), 0.0
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
+    """t at x >= 0, the force over that at t = 1."""
+    return state_power(x, n + 1.0)

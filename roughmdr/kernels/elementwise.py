@@ -1,0 +1,31 @@
+"""A scalar kernel over an array."""
+
+from collections.abc import Callable
+from functools import cache
+from types import FunctionType
+from typing import Any, cast
+
+import numpy as np
+
+from roughmdr._jit import specialise
+from roughmdr.shapes.base import Floats
+
+_kernel: Callable[..., float]  # the name that ``specialise`` fills
+
+
+def _loop(values: Floats, form: float, out: Floats) -> None:
+    for i in range(values.size):
+        out[i] = _kernel(values[i], form)
+
+
+@cache
+def _compiled(kernel: Callable[..., float]) -> Callable[..., Any]:
+    owner = kernel.__module__.rpartition(".")[2]
+    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__name__}", _kernel=kernel)
+
+
+def apply(kernel: Callable[..., float], values: Floats, form: float) -> Floats:
+    """``kernel(value, form)`` for each of a one-dimensional array of values."""
+    out = np.empty_like(values)
+    _compiled(kernel)(values, form, out)
+    return out

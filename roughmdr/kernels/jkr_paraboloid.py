@@ -1,0 +1,108 @@
+"""One paraboloid with JKR adhesion: the power law with n = 2, where 3 X = v^2 (6 + 4 v + v^2) with v = tau - 1.
+
+Notation of ``jkr_power``. Nothing here branches and nothing is called, so that a loop over asperities becomes vector code.
+"""
+
+import math
+
+import numpy as np
+
+from roughmdr import _extended as extended
+from roughmdr._extended import Pair
+from roughmdr._jit import njit
+
+# v = s r with s = sqrt(X/2); r = y (C0 + C1 y + ... + C5 y^5), y = 1/sqrt(1 + B s), within 2.3e-6 for all s >= 0.
+# Least-maximum fit to the root itself over 0 < y <= 1.
+_B = 2.577472688647387
+_C0, _C1, _C2 = 2.5126716141883847, -2.5782406660482913, 1.2749000231451322
+_C3, _C4, _C5 = -0.04324516500758297, -0.24742443101061207, 0.08133881774388521
+
+
+_SMALLEST = 1e-270
+
+
+@njit
+def _reduced_work(modulus: float, work: float, radius: float) -> Pair:
+    """pi w/(E* R)."""
+    strain = extended.divide((work, 0.0), extended.two_product(modulus, radius))
+    return extended.multiply(extended.PI, strain)
+
+
+@njit
+def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+    """|delta_c| = 3/4 (pi^2 w^2 R/E*^2)^(1/3) [m], a_c = (pi w R^2/(8 E*))^(1/3) [m], pi w R [N], 2 E* a_c [N/m].
+
+    All 0 where pi w/(E* R) is too small or large to be cubed.
+    """
+    curvature_radius = width * (width / (2.0 * rise))
+    reduced = _reduced_work(modulus, work, curvature_radius)
+    if not _SMALLEST < reduced[0] < 1.0 / _SMALLEST:
+        return (0.0, 0.0), 0.0, 0.0, 0.0
+    root = float(np.cbrt(reduced[0]))
+    cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
+    rest = extended.add(reduced, (-cube[0], -cube[1]))
+    root_exact = extended.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
+    depth = extended.multiply(
+        extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius)
+    )
+    a_c = 0.5 * curvature_radius * root_exact[0]
+    return depth, a_c, math.pi * work * curvature_radius, 2.0 * modulus * a_c
+
+
+@njit
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
+    """|P_c| = 3/2 pi w R [N] under dead load."""
+    curvature_radius = width * (width / (2.0 * rise))
+    return extended.multiply(extended.PI, extended.two_product(1.5 * work, curvature_radius))
+
+
+@njit
+def state(x: float, n: float) -> float:
+    """v at the distance x >= 0 to the fold: the fit, then one Halley step on r^2 (6 + 4 v + v^2) = 6, v = s r."""
+    s = math.sqrt(0.5 * x)
+    y = 1.0 / math.sqrt(1.0 + _B * s)
+    r = y * (_C0 + y * (_C1 + y * (_C2 + y * (_C3 + y * (_C4 + y * _C5)))))
+    v = s * r
+    residual = r * r * (6.0 + v * (4.0 + v)) - 6.0
+    slope = 4.0 * r * (3.0 + v * (3.0 + v))
+    curve = 12.0 * (1.0 + v) * (1.0 + v)
+    r -= 2.0 * residual * slope / (2.0 * slope * slope - residual * curve)
+    return s * r
+
+
+@njit
+def state_of_radius(ratio: float, n: float) -> float:
+    """v at a given a/a_c > 0, stable (v > 0) or not."""
+    return (ratio - 1.0) / (math.sqrt(ratio) + 1.0)
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
+    """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load: tau^3 = 3 (1 + sqrt x)."""
+    return float(np.cbrt(3.0 * (1.0 + math.sqrt(x)))) - 1.0
+
+
+@njit
+def distance(v: float, n: float) -> float:
+    """X(v)."""
+    return v * v * (6.0 + v * (4.0 + v)) / 3.0
+
+
+@njit
+def radius(v: float, n: float) -> float:
+    """a/a_c."""
+    return (1.0 + v) * (1.0 + v)
+
+
+@njit
+def force(v: float, n: float) -> float:
+    """P over pi w R."""
+    cube = (1.0 + v) * (1.0 + v) * (1.0 + v)
+    return cube * (cube / 6.0 - 1.0)
+
+
+@njit
+def stiffness(v: float, n: float) -> float:
+    """k over 2 E* a_c."""
+    excess = v * (3.0 + v * (3.0 + v))
+    return (1.0 + v) * (1.0 + v) * (excess - 2.0) / excess

@@ -1,0 +1,72 @@
+"""[path]: where the flat goes."""
+
+import re
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.fields import Section, whole_number
+from roughmdr.shapes.base import Floats
+from roughmdr.units import quantity
+
+_SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
+
+
+class Separation(NamedTuple):
+    """A separation in metres, or in standard deviations of the heights."""
+
+    value: float
+    in_sigma: bool
+
+    def metres(self, sigma: float) -> float:
+        """In metres."""
+        return self.value * sigma if self.in_sigma else self.value
+
+
+def _read(value: object) -> Separation:
+    if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
+        return Separation(float(match[1]), in_sigma=True)
+    try:
+        return Separation(quantity(value, "m"), in_sigma=False)
+    except RoughmdrError as error:
+        raise RoughmdrError(f'{error}, or in standard deviations of the heights, like "4 sigma"') from None
+
+
+_Separation = Annotated[Separation, BeforeValidator(_read)]
+
+
+class Range(Section):
+    """``steps`` separations from ``start`` to ``stop``, both included."""
+
+    start: _Separation
+    stop: _Separation
+    steps: whole_number(2, 10_000_000)
+
+
+class Path(Section):
+    """[path]: a range or a list of separations; ``unload`` appends the way back."""
+
+    separation: Annotated[
+        Annotated[Range, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
+        Discriminator(
+            lambda value: {dict: "range", Range: "range", list: "list"}.get(type(value)),
+            custom_error_type="neither",
+            custom_error_message="must be a table with start, stop and steps, or a list",
+        ),
+    ]
+    unload: bool = False
+
+    @property
+    def uses_sigma(self) -> bool:
+        """Whether a separation is given in standard deviations of the heights."""
+        ends = [self.separation.start, self.separation.stop] if isinstance(self.separation, Range) else self.separation
+        return any(end.in_sigma for end in ends)
+
+    def separations(self, sigma: float) -> Floats:
+        """The way in, without the way back [m]; sigma is the standard deviation of the heights [m]."""
+        if isinstance(self.separation, Range):
+            start, stop = self.separation.start.metres(sigma), self.separation.stop.metres(sigma)
+            return np.linspace(start, stop, self.separation.steps)
+        return np.array([separation.metres(sigma) for separation in self.separation])

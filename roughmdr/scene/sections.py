@@ -1,0 +1,150 @@
+"""What a scene may ask for: its sections, their keys and defaults."""
+
+import math
+from typing import Annotated, Any, Literal
+
+import tomli_w
+from pydantic import BeforeValidator, Field, ModelWrapValidatorHandler, PrivateAttr, field_validator, model_validator
+from pydantic_core import PydanticCustomError
+
+from roughmdr.ensemble import Asperities, RandomAsperities, SurfaceAsperities
+from roughmdr.errors import RoughmdrError
+from roughmdr.fields import Section, reading, whole_number
+from roughmdr.scene.path import Path
+from roughmdr.units import effective_modulus
+from roughmdr.variables import DEFAULT, LAW
+
+_Modulus = reading("Pa", above=0.0)
+_Poisson = reading("1", above=-1.0, most=0.5)
+
+
+class Body(Section):
+    """[counter]: an elastic body."""
+
+    modulus: _Modulus
+    poisson: _Poisson
+
+
+class Material(Section):
+    """[material]: effective_modulus alone, or modulus and poisson."""
+
+    effective_modulus: _Modulus | None = None
+    modulus: _Modulus | None = None
+    poisson: _Poisson | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "Material":
+        if self.effective_modulus is not None:
+            if self.modulus is not None or self.poisson is not None:
+                raise RoughmdrError("takes effective_modulus alone, or modulus and poisson")
+        elif self.modulus is None or self.poisson is None:
+            raise RoughmdrError("needs effective_modulus, or modulus and poisson")
+        return self
+
+
+class Adhesion(Section):
+    """[adhesion]: work is the work of adhesion, not the surface energy of one side."""
+
+    model: Literal["jkr"]
+    work: reading("J/m^2", least=0.0)
+
+
+def _known_variable(value: object) -> object:
+    if value not in LAW:
+        raise RoughmdrError(f"no such variable; there are {', '.join(LAW)}")
+    return value
+
+
+class Output(Section):
+    """[output]: what the result holds."""
+
+    variables: Annotated[list[Annotated[str, BeforeValidator(_known_variable)]], Field(min_length=1)] = list(DEFAULT)
+    keep: Literal["curves"] = "curves"
+
+    @field_validator("variables")
+    @classmethod
+    def _no_variable_twice(cls, value: list[str]) -> list[str]:
+        return list(dict.fromkeys(value))
+
+
+class Batch(Section):
+    """[batch]: how many realisations."""
+
+    realizations: whole_number(1, 1_000_000_000) = 1
+
+
+def _misfit(key: str, message: str) -> PydanticCustomError:
+    return PydanticCustomError("misfit", "{message}", {"key": key, "message": message})
+
+
+class Scene(Section):
+    """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
+
+    title: str
+    seed: whole_number(0, 2**63 - 1) = 0
+    material: Material
+    counter: Body | None = None
+    adhesion: Adhesion | None = None
+    asperities: Asperities
+    path: Path
+    output: Output = Output()
+    batch: Batch = Batch()
+
+    _table: dict[str, Any] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _keep_the_table(cls, data: Any, handler: ModelWrapValidatorHandler["Scene"]) -> "Scene":
+        scene = handler(data)
+        if isinstance(data, dict):
+            scene._table = data
+        return scene
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> "Scene":
+        if self.counter is not None and self.material.effective_modulus is not None:
+            raise _misfit("counter", "does not go with material.effective_modulus, which holds both bodies already")
+        if isinstance(self.asperities, SurfaceAsperities):
+            if self.batch.realizations > 1:
+                raise _misfit("batch.realizations", "must be 1 with a measured surface: there is only one")
+            return self
+        sigma = self.asperities.sigma
+        if self.path.uses_sigma and not 0.0 < sigma < math.inf:
+            raise _misfit("path.separation", f"cannot be given in sigma: the standard deviation of the heights is {sigma:g}")
+        exponent = self.asperities.distributions.get("exponent")
+        if self.work > 0.0 and exponent is not None and not exponent.least > 0.5:
+            raise _misfit("asperities.exponent", f"can be as low as {exponent.least:g}; with adhesion it must be above 0.5")
+        return self
+
+    @property
+    def modulus(self) -> float:
+        """E* [Pa] (H 43)."""
+        material = self.material
+        if material.effective_modulus is not None:
+            return material.effective_modulus
+        if material.modulus is None or material.poisson is None:
+            raise AssertionError("validated above")
+        if self.counter is None:
+            return effective_modulus(material.modulus, material.poisson)
+        return effective_modulus(material.modulus, material.poisson, self.counter.modulus, self.counter.poisson)
+
+    @property
+    def work(self) -> float:
+        """Work of adhesion [J/m^2]; 0 without adhesion."""
+        return 0.0 if self.adhesion is None else self.adhesion.work
+
+    @property
+    def toml(self) -> str:
+        """The scene as it was asked for, in TOML."""
+        return tomli_w.dumps(_without_none(self._table))
+
+    @property
+    def source(self) -> RandomAsperities | SurfaceAsperities:
+        """The section that makes the ensembles."""
+        return self.asperities
+
+
+def _without_none(table: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: _without_none(value) if isinstance(value, dict) else value for key, value in table.items() if value is not None
+    }

@@ -1,0 +1,97 @@
+"""SI units: reading "50 mJ/m^2" as 0.05 J/m^2, and the effective modulus."""
+
+import math
+import re
+from decimal import Decimal
+
+from roughmdr.errors import OutOfRange, RoughmdrError
+
+_PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
+_ALONE = {"m": {"angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")}, "J/m^2": {"erg/cm^2": Decimal("1e-3")}}
+
+# Each dimension is spelled as in ``variables``; its units are the scalable one and the exponent that the prefix takes.
+_BASES: dict[str, tuple[tuple[str, int], ...]] = {
+    "m": (("m", 1),),
+    "m2": (("m^2", 2), ("m2", 2)),
+    "m-2": (("/m^2", -2), ("m^-2", -2)),
+    "Pa": (("Pa", 1), ("N/m^2", 1)),
+    "J/m^2": (("J/m^2", 1), ("N/m", 1)),
+    "N": (("N", 1),),
+}
+DIMENSIONLESS = "1"
+
+
+def _table(dimension: str) -> dict[str, Decimal]:
+    """Units of a dimension in SI, as decimals, so that "10 um" is the float 1e-5 and not its neighbour."""
+    table = dict(_ALONE.get(dimension, {}))
+    for base, power in _BASES[dimension]:
+        table[base] = Decimal(1)
+        slash = "/" if base.startswith("/") else ""
+        for prefix, exponent in _PREFIX.items():
+            table[slash + prefix + base.removeprefix("/")] = Decimal(10) ** (exponent * power)
+    return table
+
+
+def example(dimension: str) -> str:
+    """Some units of a dimension, for messages."""
+    examples = {
+        "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"', "m-2": '"1e9 /m^2"',
+        "N": '"3 mN"',
+    }  # fmt: skip
+    return examples.get(dimension, "a plain number")
+
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+
+
+def quantity(value: object, dimension: str) -> float:
+    """A number in SI, or a string with a unit of the dimension, as a float in SI; RoughmdrError where it is neither."""
+    wanted = "a plain number" if dimension == DIMENSIONLESS else f"a number in {dimension} or a string like {example(dimension)}"
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise RoughmdrError(f"expected {wanted}")
+    if isinstance(value, str):
+        match = _QUANTITY.fullmatch(value)
+        if match is None:
+            raise RoughmdrError(f"expected {wanted}")
+        number = float(Decimal(match[1]) * unit_factor(match[2], dimension))
+    else:
+        try:
+            number = float(value)
+        except OverflowError:
+            raise RoughmdrError(f"expected {wanted}; this is too large for a float") from None
+    if not math.isfinite(number):
+        raise RoughmdrError("expected a finite number")
+    return number
+
+
+def unit_factor(unit: str, dimension: str) -> Decimal:
+    """What one ``unit`` is in SI; no unit means SI. RoughmdrError where it is no unit of the dimension."""
+    if unit in ("", dimension):
+        return Decimal(1)
+    if dimension == DIMENSIONLESS:
+        raise RoughmdrError(f"has the unit {unit!r}, but is a plain number")
+    spelled = unit.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")
+    table = _table(dimension)
+    if spelled in table:
+        return table[spelled]
+    for other in _BASES:
+        if spelled in _table(other):
+            raise RoughmdrError(f"{unit!r} is a unit of {other}; expected a unit of {dimension}, like {example(dimension)}")
+    raise RoughmdrError(f"unknown unit {unit!r}; expected a unit of {dimension}, like {example(dimension)}")
+
+
+def effective_modulus(E1: float, nu1: float, E2: float = math.inf, nu2: float = 0.0) -> float:
+    """E* [Pa] of two elastic bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (H 43).
+
+    E1, E2 are Young's moduli [Pa], inf is rigid; nu1, nu2 Poisson's ratios. OutOfRange unless E > 0 and
+    -1 < nu <= 1/2, and where both bodies are rigid.
+    """
+    for name, modulus in (("E1", E1), ("E2", E2)):
+        if not modulus > 0.0:
+            raise OutOfRange(f"{name} is {modulus:g} Pa; it must be above 0")
+    for name, poisson in (("nu1", nu1), ("nu2", nu2)):
+        if not -1.0 < poisson <= 0.5:
+            raise OutOfRange(f"{name} is {poisson:g}; it must be above -1 and at most 0.5")
+    if math.isinf(E1) and math.isinf(E2):
+        raise OutOfRange("E1 and E2 are both inf; at least one body must be elastic")
+    return 1.0 / ((1.0 - nu1 * nu1) / E1 + (1.0 - nu2 * nu2) / E2)

@@ -1,0 +1,58 @@
+"""Every variable that roughmdr hands out, declared once: its name, unit and description."""
+
+from typing import NamedTuple
+
+
+class Variable(NamedTuple):
+    """A named quantity in SI units."""
+
+    name: str
+    units: str
+    long_name: str
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """The attributes that an xarray variable of it carries."""
+        return {"units": self.units, "long_name": self.long_name}
+
+
+def _table(*rows: tuple[str, str, str]) -> dict[str, Variable]:
+    return {row[0]: Variable(*row) for row in rows}
+
+
+LAW = _table(
+    ("force", "N", "normal force of all asperities, compression positive"),
+    ("contact_area", "m2", "sum of the contact areas"),
+    ("contact_count", "1", "number of asperities in contact"),
+    ("stiffness", "N m-1", "sum of the slopes dP/d(delta) of the branches, jumps not included"),
+    ("pressure", "Pa", "force over nominal area"),
+    ("contact_fraction", "1", "contact area over nominal area"),
+    ("contact_radius_sum", "m", "sum of the contact radii"),
+)
+"""Variables of a load-separation law that can be asked for."""
+
+DEFAULT = ("force", "contact_area", "contact_count", "stiffness")
+
+ASPERITY = _table(
+    ("indentation", "m", "approach past first touch, positive pressed in"),
+    ("force", "N", "normal force, compression positive"),
+    ("contact_radius", "m", "radius of the contact"),
+    ("contact_area", "m2", "area of the contact"),
+    ("stiffness", "N m-1", "slope dP/d(delta) of the branch"),
+)
+"""Variables of a single asperity."""
+
+COORDINATES = _table(
+    ("separation", "m", "rigid flat above the datum plane"),
+    ("branch", "", "direction in which the flat moved"),
+    ("height", "m", "summit height above the datum plane"),
+    ("x", "m", "position of the summit"),
+    ("y", "m", "position of the summit"),
+)
+
+RUN = _table(
+    ("run_time", "s", "time spent on the realization"),
+    ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
+    ("status", "1", "what became of the realization"),
+)
+"""Variables that stand in every result."""
