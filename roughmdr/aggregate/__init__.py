@@ -1,5 +1,5 @@
 """The sum over asperities along the path of the flat."""
 
-from roughmdr.aggregate.law import LoadSeparation, compute, load_separation, path_coordinates, whole_path
+from roughmdr.aggregate.law import LoadSeparation, Route, compute, load_separation
 
-__all__ = ["LoadSeparation", "compute", "load_separation", "path_coordinates", "whole_path"]
+__all__ = ["LoadSeparation", "Route", "compute", "load_separation"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop
-from roughmdr.aggregate.staircase import branches, staircase
+from roughmdr.aggregate.staircase import Staircase, branches, no_memory, staircase
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.kernels.laws import choose
@@ -34,6 +34,33 @@ _KERNEL_ERROR = 1e-13
 _SEPARATION_ERROR = 4.0 * np.finfo(float).eps
 
 
+class Route(NamedTuple):
+    """A path of the flat, with what the contacts remember of it."""
+
+    separation: Floats
+    memory: Staircase
+
+    @classmethod
+    def along(cls, way_in: Floats, *, unload: bool, adhesive: bool) -> "Route":
+        """The way in [m] and, with ``unload``, the way back with the turning point repeated."""
+        separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
+        return cls(separation, staircase(separation) if adhesive else no_memory(separation))
+
+    @property
+    def closest(self) -> "Route":
+        """The closest approach alone, on the way in."""
+        lowest = self.separation[[int(np.argmin(self.separation))]]
+        return Route(lowest, no_memory(lowest))
+
+    def coordinates(self) -> dict[str, tuple[str, object, dict[str, str]]]:
+        """The coordinates over ``step``."""
+        branch = {"long_name": COORDINATES["branch"].long_name}
+        return {
+            "separation": ("step", self.separation, COORDINATES["separation"].attrs),
+            "branch": ("step", np.array(branches(self.separation)), branch),
+        }
+
+
 class LoadSeparation(NamedTuple):
     """The law of one ensemble along one path."""
 
@@ -46,34 +73,37 @@ class LoadSeparation(NamedTuple):
 
 
 def compute(
-    ensemble: Ensemble, *, separation: Floats, modulus: float, work: float, variables: Iterable[str]
+    ensemble: Ensemble, route: Route, *, modulus: float, work: float, variables: Iterable[str]
 ) -> LoadSeparation:
-    """The law of ``ensemble`` along the path ``separation`` [m], way back included; E* [Pa], work [J/m^2].
+    """The law of ``ensemble`` along a route; E* [Pa], work [J/m^2].
 
-    OutOfRange where the scales of an asperity are not representable.
+    SceneError where a variable needs a nominal area and there is none, OutOfRange where the contact of an asperity is
+    not representable.
     """
     names = list(variables)
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
         raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
     columns = ensemble.columns()
     law = choose(ensemble.shape, work, columns[2])
-    rows = {_ROW[name] for name in names}
-    totals, visits = loop.add_asperities(
-        law, ensemble.height, columns, modulus, work, separation, staircase(separation), rows
-    )
-    if not np.isfinite(totals).all():
-        raise OutOfRange(
-            f"the contact of an asperity is not representable: {ensemble.shape} with modulus {modulus:g} Pa, "
-            f"work {work:g} J/m^2, separations from {separation.min():g} to {separation.max():g} m"
+
+    def add_up(along: Route, rows: set[int]) -> tuple[Floats, int]:
+        totals, visits = loop.add_asperities(
+            law, ensemble.height, columns, modulus, work, along.separation, along.memory, rows
         )
+        if not np.isfinite(totals).all():
+            raise OutOfRange(
+                f"the contact of an asperity is not representable: {ensemble.shape} with modulus {modulus:g} Pa, "
+                f"work {work:g} J/m^2, separation down to {along.separation.min():g} m"
+            )
+        return totals, visits
+
+    totals, visits = add_up(route, {_ROW[name] for name in names})
     results = {name: totals[_ROW[name]] for name in names}
     for name in _PER_AREA.intersection(names):
         results[name] = results[name] / ensemble.nominal_area
-    closest = separation[[int(np.argmin(separation))]]
-    checks, _ = loop.add_asperities(
-        law, ensemble.height, columns, modulus, work, closest, staircase(closest), {loop.FORCE, loop.STIFFNESS, loop.MAGNITUDE}
-    )
-    return LoadSeparation(results, _numerical_error(ensemble.height, closest[0], checks), visits)
+    closest = route.closest
+    checks, _ = add_up(closest, {loop.FORCE, loop.STIFFNESS, loop.MAGNITUDE})
+    return LoadSeparation(results, _numerical_error(ensemble.height, closest.separation[0], checks), visits)
 
 
 def _numerical_error(height: Floats, closest: float, checks: Floats) -> float:
@@ -119,25 +149,8 @@ def load_separation(
     for name in names:
         if name not in LAW:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(LAW)}")
-    path = whole_path(path, unload)
-    result = compute(
-        Ensemble.from_dataset(ensemble), separation=path, modulus=modulus, work=work, variables=names
-    )
+    route = Route.along(path, unload=unload, adhesive=work > 0.0)
+    result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, work=work, variables=names)
     data = {name: ("step", result.variables[name], LAW[name].attrs) for name in names}
-    return xr.Dataset(
-        {**data, "numerical_error": ((), result.numerical_error, RUN["numerical_error"].attrs)}, coords=path_coordinates(path)
-    )
-
-
-def whole_path(way_in: Floats, unload: bool) -> Floats:
-    """The way in and, with ``unload``, the way back with the turning point repeated."""
-    return np.concatenate([way_in, way_in[::-1]]) if unload else way_in
-
-
-def path_coordinates(path: Floats) -> dict[str, tuple[str, object, dict[str, str]]]:
-    """The coordinates over ``step``."""
-    branch = {"long_name": COORDINATES["branch"].long_name}
-    return {
-        "separation": ("step", path, COORDINATES["separation"].attrs),
-        "branch": ("step", np.array(branches(path)), branch),
-    }
+    error = ((), result.numerical_error, RUN["numerical_error"].attrs)
+    return xr.Dataset({**data, "numerical_error": error}, coords=route.coordinates())

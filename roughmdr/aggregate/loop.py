@@ -111,14 +111,17 @@ def _loop(
             lowest = math.inf
             for j in range(first[step], first[step + 1]):
                 lowest = min(lowest, max(bottom[j], top[j] - deepest))
+            if not _adhesive:
+                lowest = np.nextafter(h, math.inf)  # at z = h nothing is in contact
             count = _within_reach(z, lowest)
             if count == 0:
                 continue
             visited += count
             if _adhesive:
+                low, high = bottom[first[step]], top[first[step]]
                 for i in range(count):
-                    held[i] = 0.0
-                for j in range(first[step], first[step + 1]):
+                    held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
+                for j in range(first[step] + 1, first[step + 1]):
                     low, high = bottom[j], top[j]
                     for i in range(count):
                         held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
@@ -126,11 +129,10 @@ def _loop(
                     state[i] = _state(max(((z[i] - h) + depth[i]) * per_depth[i], 0.0), n[i])
             else:
                 for i in range(count):
-                    held[i] = 1.0 if z[i] > h else 0.0
                     state[i] = _state(max((z[i] - h) * per_depth[i], 0.0), n[i])
             if wanted[FORCE] or wanted[MAGNITUDE]:
                 for i in range(count):
-                    terms[i] = load[i] * _force(state[i], n[i]) if held[i] > 0.0 else 0.0
+                    terms[i] = load[i] * _force(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
                 if wanted[MAGNITUDE]:
                     magnitude = 0.0
                     for i in range(count):
@@ -140,21 +142,22 @@ def _loop(
                     _accumulate(total[FORCE], carried[FORCE], step, _add_up(terms, count))
             if wanted[RADIUS]:
                 for i in range(count):
-                    terms[i] = size[i] * _radius(state[i], n[i]) if held[i] > 0.0 else 0.0
+                    terms[i] = size[i] * _radius(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
                 _accumulate(total[RADIUS], carried[RADIUS], step, _add_up(terms, count))
             if wanted[AREA]:
                 for i in range(count):
                     a = size[i] * _radius(state[i], n[i])
-                    terms[i] = math.pi * (a * a) if held[i] > 0.0 else 0.0
+                    terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
                 _accumulate(total[AREA], carried[AREA], step, _add_up(terms, count))
             if wanted[STIFFNESS]:
                 for i in range(count):
-                    terms[i] = rigidity[i] * _stiffness(state[i], n[i]) if held[i] > 0.0 else 0.0
+                    terms[i] = rigidity[i] * _stiffness(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
                 _accumulate(total[STIFFNESS], carried[STIFFNESS], step, _add_up(terms, count))
             if wanted[COUNT]:
-                for i in range(count):
-                    terms[i] = held[i]
-                _accumulate(total[COUNT], carried[COUNT], step, _add_up(terms, count))
+                contacts = float(count)
+                if _adhesive:
+                    contacts = _add_up(held, count)  # the last use of held: it is spoilt
+                _accumulate(total[COUNT], carried[COUNT], step, contacts)
     for row in range(ROWS):
         for step in range(separation.size):
             total[row, step] += carried[row, step]

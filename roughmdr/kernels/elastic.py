@@ -11,10 +11,33 @@ from roughmdr.shapes.power import kappa
 
 
 @njit
-def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def _natural(modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
     """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured."""
-    depth = kappa(n) * rise
     return (depth, 0.0), width, 2.0 * modulus * width * depth, 2.0 * modulus * width
+
+
+@njit
+def natural_paraboloid(
+    modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
+    """The natural scales with kappa(2) = 2."""
+    return _natural(modulus, width, 2.0 * rise)
+
+
+@njit
+def natural_cone(
+    modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
+    """The natural scales with kappa(1) = pi/2."""
+    return _natural(modulus, width, 0.5 * math.pi * rise)
+
+
+@njit
+def natural_power(
+    modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
+    """The natural scales with any kappa(n)."""
+    return _natural(modulus, width, kappa(n) * rise)
 
 
 @njit

@@ -1,7 +1,7 @@
 """Which kernels compute which shape, with and without adhesion. A new shape or adhesion joins by one line here."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,11 +41,11 @@ class Law(NamedTuple):
     """(state, form) -> k over natural stiffness."""
 
 
-def _elastic(name: str, state: Kernel, force: Kernel) -> Law:
+def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kernel) -> Law:
     return Law(
         name=f"elastic_{name}",
         adhesive=False,
-        natural=elastic.natural,
+        natural=natural,
         natural_force=elastic.natural_force,
         state=state,
         state_of_force=elastic.state_of_force,
@@ -58,9 +58,9 @@ def _elastic(name: str, state: Kernel, force: Kernel) -> Law:
 
 
 _ELASTIC = {
-    "paraboloid": _elastic("paraboloid", elastic.state_paraboloid, elastic.force_paraboloid),
-    "cone": _elastic("cone", elastic.state_cone, elastic.force_cone),
-    "power_law": _elastic("power_law", elastic.state_power, elastic.force_power),
+    "paraboloid": _elastic("paraboloid", elastic.natural_paraboloid, elastic.state_paraboloid, elastic.force_paraboloid),
+    "cone": _elastic("cone", elastic.natural_cone, elastic.state_cone, elastic.force_cone),
+    "power_law": _elastic("power_law", elastic.natural_power, elastic.state_power, elastic.force_power),
 }
 _JKR = {
     name: Law(

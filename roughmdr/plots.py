@@ -1,0 +1,94 @@
+"""Pictures of a result."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.analysis import standard_error
+from roughmdr.errors import StoreError
+from roughmdr.store import replacing
+from roughmdr.variables import DEFAULT
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+_INK = {"loading": "#1b6ca8", "unloading": "#c8553d"}
+_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+
+
+def plot(result: "xr.Dataset", path: Path, variables: list[str] | None = None) -> None:
+    """Draw variables of a result against separation into ``path``; StoreError for a name that the result lacks.
+
+    Every realisation is a thin line, the mean a thick one, twice its standard error a band. Without ``variables``,
+    those of the four default ones that the result has.
+    """
+    from matplotlib.figure import Figure
+
+    held = [str(name) for name in result.data_vars if result[name].dims == ("realization", "step")]
+    names = variables or [name for name in DEFAULT if name in held] or held
+    for name in names:
+        if name not in held:
+            raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(held)}")
+    columns = min(2, len(names))
+    rows = -(-len(names) // columns)
+    figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for ax, name in zip(axes.flat, names, strict=False):
+        _draw(ax, result, name)
+    for ax in axes.flat[len(names) :]:
+        ax.set_visible(False)
+    axes.flat[0].legend(frameon=False)
+    count = result.sizes["realization"]
+    note = f"{count} realisations, mean ± 2 standard errors" if count > 1 else "one realisation"
+    figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11)
+    suffix = path.suffix.lstrip(".").lower() or "png"
+    if suffix not in figure.canvas.get_supported_filetypes():
+        raise StoreError(f"{path}: cannot draw a .{suffix}; try .png, .pdf or .svg")
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=160, format=suffix)
+
+
+def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
+    values = result[name]
+    h_scale, h_prefix = _scale(result["separation"].to_numpy())
+    scale, prefix = _scale(_shown(values).to_numpy(), power=2 if values.units == "m2" else 1)
+    for branch, colour in _INK.items():
+        steps = np.flatnonzero(result["branch"].to_numpy() == branch)
+        if steps.size == 0:
+            continue
+        part = values.isel(step=steps)
+        h = result["separation"].isel(step=steps).to_numpy() / h_scale
+        mean, error = part.mean("realization").to_numpy() / scale, standard_error(part).to_numpy() / scale
+        ax.plot(h, part.to_numpy().T / scale, color=colour, lw=0.3, alpha=0.25)
+        ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
+        ax.plot(h, mean, color=colour, lw=1.8, label=branch)
+    if name in ("force", "pressure", "stiffness"):
+        ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
+    shown = _shown(values).to_numpy() / scale
+    low, high = float(shown.min()), float(shown.max())
+    if high > low:
+        ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+    unit = values.units.replace(" m-1", "/m").replace("m2", "m²")
+    ax.set_ylabel(f"{name.replace('_', ' ')}" + (f" [{prefix}{unit}]" if unit != "1" else ""))
+    ax.set_xlabel(f"separation [{h_prefix}m]")
+
+
+def _shown(values: "xr.DataArray") -> "xr.DataArray":
+    """The mean curve. The slopes of single realisations run off to minus infinity where contacts snap; it does less so."""
+    mean = values.mean("realization")
+    if values.name != "stiffness":
+        return values
+    low, high = np.quantile(mean, [0.01, 1.0])
+    return mean.clip(low, high)
+
+
+def _scale(values: np.ndarray, power: int = 1) -> tuple[float, str]:
+    """The SI prefix under which the largest magnitude reads between 1 and 1000 (or 1e6 for areas)."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    if largest == 0.0:
+        return 1.0, ""
+    exponent = 3 * int(np.floor(np.log10(largest) / (3 * power)))
+    exponent = min(max(exponent, -12), 12)
+    return 10.0 ** (exponent * power), _PREFIXES[exponent]

@@ -1,0 +1,95 @@
+"""The batch: a plan's tasks over dask's threads, the results into one dataset. The only file that knows dask."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import compute
+from roughmdr.errors import RoughmdrError
+from roughmdr.plan import Plan, make_plan
+from roughmdr.progress import Advance, progress
+from roughmdr.scene import Scene, read
+from roughmdr.shapes.base import Floats
+from roughmdr.store import assemble, check_writable, write
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Shard(NamedTuple):
+    """The results of one task: each array begins with the task's realisations."""
+
+    variables: dict[str, Floats]
+    run_time: Floats
+    numerical_error: Floats
+
+
+def run(
+    scene: str | Path | dict[str, Any] | Scene, out: str | Path | None = None, *, workers: int = 2, quiet: bool = True
+) -> "xr.Dataset":
+    """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
+
+    scene is the path of a TOML file, a dictionary of the same form, or a Scene; ``workers`` is the number of threads.
+    The result lies over realization and step and does not depend on ``workers``, to the last bit. ``quiet`` leaves out
+    the progress display. SceneError, OutOfRange or StoreError say what is wrong before anything is written.
+    """
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
+    target = None if out is None else Path(out)
+    if target is not None:
+        check_writable(target)
+    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet)
+
+
+def execute(
+    plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run"
+) -> "xr.Dataset":
+    """Do what a plan says; ``command`` goes into the file's history."""
+    with progress(plan.scene.title, plan.scene.batch.realizations, quiet=quiet) as advance:
+        shards = _over_threads(plan, workers, advance)
+    variables = {
+        name: np.concatenate([shard.variables[name] for shard in shards]) for name in plan.scene.output.variables
+    }
+    run_time = np.concatenate([shard.run_time for shard in shards])
+    numerical_error = np.concatenate([shard.numerical_error for shard in shards])
+    result = assemble(plan, variables, run_time, numerical_error, command)
+    if target is not None:
+        write(result, target)
+    return result
+
+
+def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
+    import dask
+    from dask.callbacks import Callback
+
+    tasks = [dask.delayed(compute_shard, pure=False)(plan, chunk) for chunk in plan.chunks]
+
+    def done(key: object, result: object, *_: object) -> None:
+        if isinstance(result, Shard):
+            advance(len(result.run_time))
+
+    with Callback(posttask=done):
+        shards = dask.compute(*tasks, scheduler="threads", num_workers=workers)
+    return list(shards)
+
+
+def compute_shard(plan: Plan, realizations: tuple[int, ...]) -> Shard:
+    """The law of each of the given realisations."""
+    scene = plan.scene
+    names, steps = scene.output.variables, plan.route.separation.size
+    shard = Shard(
+        {name: np.empty((len(realizations), steps)) for name in names},
+        np.empty(len(realizations)),
+        np.empty(len(realizations)),
+    )
+    for row, realization in enumerate(realizations):
+        started = time.perf_counter()
+        ensemble = scene.asperities.ensemble(scene.seed, realization)
+        result = compute(ensemble, plan.route, modulus=scene.modulus, work=scene.work, variables=names)
+        for name in names:
+            shard.variables[name][row] = result.variables[name]
+        shard.numerical_error[row] = result.numerical_error
+        shard.run_time[row] = time.perf_counter() - started
+    return shard

@@ -1,0 +1,127 @@
+"""The result file: assembled in memory, written by one thread, whole or not at all."""
+
+import contextlib
+import os
+import platform
+import tempfile
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.errors import StoreError
+from roughmdr.plan import Plan
+from roughmdr.shapes.base import Floats
+from roughmdr.variables import LAW, RUN
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
+_REFERENCES = (
+    "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
+    "with and without adhesion (2012)"
+)
+DONE, FAILED, NOT_RUN = 0, 1, 2
+
+
+def assemble(
+    plan: Plan, variables: dict[str, Floats], run_time: Floats, numerical_error: Floats, command: str
+) -> "xr.Dataset":
+    """The result: ``variables`` over realization and step [SI], the others over realization."""
+    import xarray as xr
+
+    scene = plan.scene
+    data: dict[str, tuple[object, object, dict[str, object]]] = {
+        name: (("realization", "step"), values, dict(LAW[name].attrs)) for name, values in variables.items()
+    }
+    status = np.full(run_time.shape, DONE, dtype=np.int8)
+    flags = {"flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8), "flag_meanings": "done failed not_run"}
+    data["run_time"] = ("realization", run_time, dict(RUN["run_time"].attrs))
+    data["numerical_error"] = ("realization", numerical_error, dict(RUN["numerical_error"].attrs))
+    data["status"] = ("realization", status, {"long_name": RUN["status"].long_name, **flags})
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
+    attrs = {
+        "Conventions": "CF-1.11",
+        "title": scene.title,
+        "source": f"roughmdr {version('roughmdr')}",
+        "history": f"{now}: {command}",
+        "references": _REFERENCES,
+        "seed": scene.seed,
+        "scene": scene.toml,
+        "packages": ", ".join(versions),
+        "left_out": "\n".join(plan.left_out),
+    }
+    return xr.Dataset(data, coords=plan.route.coordinates(), attrs=attrs)
+
+
+def check_writable(path: Path) -> None:
+    """StoreError where a file cannot be put at ``path``; leaves nothing behind."""
+    if path.is_dir():
+        raise StoreError(f"{path}: is a folder; the output must be a file")
+    if not path.parent.is_dir():
+        raise StoreError(f"{path}: the folder {path.parent} does not exist")
+    try:
+        descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written: {error.strerror}") from None
+    os.close(descriptor)
+    Path(name).unlink()
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A temporary name beside ``path`` to write to; it takes the place of ``path`` when all is written and on disk."""
+    check_writable(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        yield temporary
+        with temporary.open("rb") as written:
+            os.fsync(written.fileno())
+        temporary.replace(path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the new name last through a power cut, on systems that let a folder be opened."""
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def write(dataset: "xr.Dataset", path: Path) -> None:
+    """Put ``dataset`` at ``path`` as netCDF-4, atomically; StoreError where that fails."""
+    encoding = {
+        str(name): {"_FillValue": np.nan if variable.dtype.kind == "f" else None}
+        for name, variable in dataset.data_vars.items()
+    }
+    encoding |= {str(name): {"_FillValue": None} for name in dataset.coords if dataset[name].dtype.kind == "f"}
+    with replacing(path) as temporary:
+        dataset.to_netcdf(temporary, format="NETCDF4", engine="netcdf4", encoding=encoding)
+
+
+def read(path: Path) -> "xr.Dataset":
+    """A result file, loaded; StoreError where it is none."""
+    import xarray as xr
+
+    if not path.is_file():
+        raise StoreError(f"{path}: no such file")
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            dataset.load()
+    except Exception as error:
+        raise StoreError(f"{path}: not a netCDF file that can be read ({type(error).__name__})") from error
+    if "step" not in dataset.dims or "scene" not in dataset.attrs:
+        raise StoreError(f"{path}: not a result of roughmdr: it has no dimension step, or no attribute scene")
+    return dataset
