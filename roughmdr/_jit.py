@@ -9,10 +9,11 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
+_config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
@@ -37,26 +38,31 @@ def _cache_folder() -> str | None:
     return str(folder) if os.access(folder, os.W_OK) else None
 
 
-def njit(function: _Function) -> _Function:
-    """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, no reordering), the GIL released, cached on disk."""
+def njit(function: _Function, *, inline: bool = False) -> _Function:
+    """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, no reordering), GIL released, cached on disk.
+
+    ``inline`` puts its text into every caller: for parts of a loop that are called too often for a call.
+    """
     folder = _cache_folder()
-    before = numba.config.CACHE_DIR
+    before = _config.CACHE_DIR
     if folder is not None:
-        numba.config.CACHE_DIR = folder
+        _config.CACHE_DIR = folder
     try:
-        compiled = numba.njit(nogil=True, error_model="numpy", cache=folder is not None)(function)
+        compiled = numba.njit(
+            nogil=True, error_model="numpy", cache=folder is not None, inline="always" if inline else "never"
+        )(function)
     finally:
-        numba.config.CACHE_DIR = before
-    return compiled  # type: ignore[no-any-return]
+        _config.CACHE_DIR = before
+    return cast(_Function, compiled)
 
 
-def specialise(loop: FunctionType, name: str, **kernels: object) -> Callable[..., Any]:
+def specialise(loop: FunctionType, name: str, *, inline: bool = False, **kernels: object) -> Callable[..., Any]:
     """A compiled copy of ``loop`` in which the global names in ``kernels`` stand for the given kernels.
 
-    numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own can be.
-    ``name`` must tell the copies of one loop apart: numba finds them in its cache by it.
+    numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own
+    can be. ``name`` must tell the copies of one loop apart: numba finds them in its cache by it.
     """
     copy = FunctionType(loop.__code__, {**loop.__globals__, **kernels}, name)
     copy.__qualname__ = f"{loop.__qualname__}_{name}"
     copy.__module__ = loop.__module__
-    return njit(copy)
+    return njit(copy, inline=inline)

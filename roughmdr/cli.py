@@ -66,7 +66,7 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
 @main.command()
 @click.argument("result", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The picture to write: .png, .pdf or .svg.")
-@click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: the main four.")
+@click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: all.")
 def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     """Draw the load-separation law in RESULT."""
     from roughmdr.plots import plot
@@ -81,9 +81,8 @@ def _summary(result: "xr.Dataset") -> str:
 
     count, steps = result.sizes["realization"], result.sizes["step"]
     held = [str(name) for name in result.data_vars if result[name].dims == ("realization", "step")]
-    lines = [
-        f"computed     {result.attrs['title']}: {count} realisation{'s' * (count > 1)} x {steps} steps; {', '.join(held)}",
-    ]
+    size = f"{count} realisation{'s' * (count > 1)} x {steps} steps"
+    lines = [f"computed     {result.attrs['title']}: {size}; {', '.join(held)}"]
     if "force" in held:
         pull_off = pull_off_force(result)
         if pull_off.mean == 0.0:
@@ -91,7 +90,8 @@ def _summary(result: "xr.Dataset") -> str:
         elif count == 1:
             text = f"{pull_off.mean:.4g} N (one realisation: no standard error)"
         else:
-            text = f"{pull_off.mean:.4g} N ± {pull_off.standard_error:.2g} N (mean and standard error over {count} realisations)"
+            error = f"{pull_off.standard_error:.2g}"
+            text = f"{pull_off.mean:.4g} N ± {error} N (mean and standard error over {count} realisations)"
         lines.append(f"pull-off     {text}")
     lines.append(
         f"run time     {float(result['run_time'].sum()):.3g} s of computing; "

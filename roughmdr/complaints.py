@@ -20,7 +20,7 @@ class Complaint(NamedTuple):
 
 
 def complaints(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Complaint]:
-    """All faults that pydantic found in ``data``, which was read as ``declared`` (a section, or a union of sections)."""
+    """All faults that pydantic found in ``data``, which was read as ``declared``, a section or a union of sections."""
     return [_complaint(fault, data, declared) for fault in error.errors(include_url=False)]
 
 

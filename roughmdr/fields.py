@@ -1,9 +1,8 @@
-"""The types that sections of a scene are declared with: a section refuses what it does not know, a quantity reads units."""
+"""What sections of a scene are declared with: a section refuses keys that it does not know, a quantity reads units."""
 
-from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.units import quantity
@@ -15,8 +14,10 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
-def reading(dimension: str, *, above: float | None = None, least: float | None = None, most: float | None = None) -> Any:
-    """A float in SI, read from a number or a string with a unit, within the given bounds."""
+def reading(
+    dimension: str, *, above: float | None = None, least: float | None = None, most: float | None = None
+) -> BeforeValidator:
+    """For a float in SI, read from a number or a string with a unit, within the given bounds."""
 
     def read(value: object) -> float:
         number = quantity(value, dimension)
@@ -28,11 +29,11 @@ def reading(dimension: str, *, above: float | None = None, least: float | None =
             raise RoughmdrError(f"must be at most {most:g}")
         return number
 
-    return Annotated[float, BeforeValidator(read)]
+    return BeforeValidator(read)
 
 
-def whole_number(least: int, most: int) -> Any:
-    """An integer within the given bounds."""
+def whole_number(least: int, most: int) -> BeforeValidator:
+    """For an integer within the given bounds."""
 
     def read(value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int):
@@ -41,13 +42,7 @@ def whole_number(least: int, most: int) -> Any:
             raise RoughmdrError(f"must be from {least} to {most}")
         return value
 
-    return Annotated[int, BeforeValidator(read)]
+    return BeforeValidator(read)
 
 
-def read_by(read: Callable[[object], Any], result: type) -> Any:
-    """A value of type ``result``, read by a function that raises RoughmdrError where it cannot."""
-    return Annotated[result, BeforeValidator(read), PlainSerializer(str)]
-
-
-Length = reading("m", above=0.0)
-Area = reading("m2", above=0.0)
+Length = Annotated[float, reading("m", above=0.0)]

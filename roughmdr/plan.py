@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from roughmdr.aggregate import Route
+from roughmdr.ensemble import RandomAsperities
 from roughmdr.scene import Scene
-from roughmdr.scene.sections import RandomAsperities
 from roughmdr.variables import LAW
 
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the

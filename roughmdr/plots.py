@@ -8,7 +8,6 @@ import numpy as np
 from roughmdr.analysis import standard_error
 from roughmdr.errors import StoreError
 from roughmdr.store import replacing
-from roughmdr.variables import DEFAULT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,13 +20,13 @@ _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"
 def plot(result: "xr.Dataset", path: Path, variables: list[str] | None = None) -> None:
     """Draw variables of a result against separation into ``path``; StoreError for a name that the result lacks.
 
-    Every realisation is a thin line, the mean a thick one, twice its standard error a band. Without ``variables``,
-    those of the four default ones that the result has.
+    Every realisation is a thin line, the mean a thick one, twice its standard error a band. Without ``variables``
+    all that the result holds.
     """
     from matplotlib.figure import Figure
 
     held = [str(name) for name in result.data_vars if result[name].dims == ("realization", "step")]
-    names = variables or [name for name in DEFAULT if name in held] or held
+    names = variables or held
     for name in names:
         if name not in held:
             raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(held)}")
@@ -53,7 +52,9 @@ def plot(result: "xr.Dataset", path: Path, variables: list[str] | None = None) -
 def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
     values = result[name]
     h_scale, h_prefix = _scale(result["separation"].to_numpy())
-    scale, prefix = _scale(_shown(values).to_numpy(), power=2 if values.units == "m2" else 1)
+    scale, prefix = 1.0, ""
+    if values.units != "1":
+        scale, prefix = _scale(_shown(values).to_numpy(), power=2 if values.units == "m2" else 1)
     for branch, colour in _INK.items():
         steps = np.flatnonzero(result["branch"].to_numpy() == branch)
         if steps.size == 0:
@@ -76,7 +77,7 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
 
 
 def _shown(values: "xr.DataArray") -> "xr.DataArray":
-    """The mean curve. The slopes of single realisations run off to minus infinity where contacts snap; it does less so."""
+    """What the axis must show: of stiffness, which runs off to minus infinity where a contact snaps, the mean curve."""
     mean = values.mean("realization")
     if values.name != "stiffness":
         return values
@@ -85,10 +86,10 @@ def _shown(values: "xr.DataArray") -> "xr.DataArray":
 
 
 def _scale(values: np.ndarray, power: int = 1) -> tuple[float, str]:
-    """The SI prefix under which the largest magnitude reads between 1 and 1000 (or 1e6 for areas)."""
+    """The SI prefix under which the largest magnitude reads from 1 to 1000; from 0.1 to 1e5 for areas (``power`` 2)."""
     largest = float(np.max(np.abs(values), initial=0.0))
     if largest == 0.0:
         return 1.0, ""
-    exponent = 3 * int(np.floor(np.log10(largest) / (3 * power)))
+    exponent = 3 * int(np.floor((np.log10(largest) + power - 1) / (3 * power)))
     exponent = min(max(exponent, -12), 12)
     return 10.0 ** (exponent * power), _PREFIXES[exponent]

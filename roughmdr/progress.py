@@ -12,7 +12,8 @@ _SECONDS_BETWEEN_LINES = 10.0
 class Advance(Protocol):
     """Tells that ``count`` more realisations are done."""
 
-    def __call__(self, count: int) -> None: ...
+    def __call__(self, count: int) -> None:
+        """Count on."""
 
 
 @contextmanager

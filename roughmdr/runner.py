@@ -27,7 +27,11 @@ class Shard(NamedTuple):
 
 
 def run(
-    scene: str | Path | dict[str, Any] | Scene, out: str | Path | None = None, *, workers: int = 2, quiet: bool = True
+    scene: str | Path | dict[str, Any] | Scene,
+    out: str | Path | None = None,
+    *,
+    workers: int = 2,
+    quiet: bool = True,
 ) -> "xr.Dataset":
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
 
@@ -61,17 +65,18 @@ def execute(
 
 
 def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
-    import dask
+    from dask.base import compute as dask_compute
     from dask.callbacks import Callback
+    from dask.delayed import delayed
 
-    tasks = [dask.delayed(compute_shard, pure=False)(plan, chunk) for chunk in plan.chunks]
+    tasks = [delayed(compute_shard, pure=False)(plan, chunk) for chunk in plan.chunks]
 
     def done(key: object, result: object, *_: object) -> None:
         if isinstance(result, Shard):
             advance(len(result.run_time))
 
     with Callback(posttask=done):
-        shards = dask.compute(*tasks, scheduler="threads", num_workers=workers)
+        shards = dask_compute(*tasks, scheduler="threads", num_workers=workers)
     return list(shards)
 
 

@@ -39,7 +39,10 @@ def assemble(
         name: (("realization", "step"), values, dict(LAW[name].attrs)) for name, values in variables.items()
     }
     status = np.full(run_time.shape, DONE, dtype=np.int8)
-    flags = {"flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8), "flag_meanings": "done failed not_run"}
+    flags = {
+        "flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8),
+        "flag_meanings": "done failed not_run",
+    }
     data["run_time"] = ("realization", run_time, dict(RUN["run_time"].attrs))
     data["numerical_error"] = ("realization", numerical_error, dict(RUN["numerical_error"].attrs))
     data["status"] = ("realization", status, {"long_name": RUN["status"].long_name, **flags})

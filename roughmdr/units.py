@@ -35,8 +35,8 @@ def _table(dimension: str) -> dict[str, Decimal]:
 def example(dimension: str) -> str:
     """Some units of a dimension, for messages."""
     examples = {
-        "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"', "m-2": '"1e9 /m^2"',
-        "N": '"3 mN"',
+        "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
+        "m-2": '"1e9 /m^2"', "N": '"3 mN"',
     }  # fmt: skip
     return examples.get(dimension, "a plain number")
 
@@ -46,7 +46,11 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\
 
 def quantity(value: object, dimension: str) -> float:
     """A number in SI, or a string with a unit of the dimension, as a float in SI; RoughmdrError where it is neither."""
-    wanted = "a plain number" if dimension == DIMENSIONLESS else f"a number in {dimension} or a string like {example(dimension)}"
+    wanted = (
+        "a plain number"
+        if dimension == DIMENSIONLESS
+        else f"a number in {dimension} or a string like {example(dimension)}"
+    )
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise RoughmdrError(f"expected {wanted}")
     if isinstance(value, str):
@@ -76,7 +80,9 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
         return table[spelled]
     for other in _BASES:
         if spelled in _table(other):
-            raise RoughmdrError(f"{unit!r} is a unit of {other}; expected a unit of {dimension}, like {example(dimension)}")
+            raise RoughmdrError(
+                f"{unit!r} is a unit of {other}; expected a unit of {dimension}, like {example(dimension)}"
+            )
     raise RoughmdrError(f"unknown unit {unit!r}; expected a unit of {dimension}, like {example(dimension)}")
 
 

@@ -26,7 +26,10 @@ BLOCK = 256
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, MAGNITUDE = range(6)
 ROWS = 6
 
-# Names that ``specialise`` fills.
+# Rows of a block's natural scales.
+_DEPTH, _PER_DEPTH, _SIZE, _LOAD, _RIGIDITY = range(5)
+
+# Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
 _natural: Callable[..., Any]
 _state: Callable[..., float]
@@ -73,6 +76,106 @@ def _within_reach(height: Floats, lowest: float) -> int:
     return low
 
 
+def _measure(width: Floats, rise: Floats, form: Floats, modulus: float, work: float, scales: Floats) -> float:
+    """Fill the natural scales of a block; returns how far its deepest fold lies below the onset of contact [m]."""
+    deepest = 0.0
+    for i in range(width.size):
+        depth, size, load, rigidity = _natural(modulus, work, width[i], rise[i], form[i])
+        scales[_DEPTH, i] = depth[0]
+        scales[_PER_DEPTH, i] = 1.0 / depth[0]
+        scales[_SIZE, i] = size
+        scales[_LOAD, i] = load
+        scales[_RIGIDITY, i] = rigidity
+        if _adhesive:
+            deepest = max(deepest, depth[0])
+    return deepest
+
+
+def _lowest(h: float, begin: int, end: int, bottom: Floats, top: Floats, deepest: float) -> float:
+    """The height from which on an asperity can be in contact: within its fold of a step of the staircase."""
+    if not _adhesive:
+        return float(np.nextafter(h, math.inf))  # at z = h there is no contact
+    lowest = math.inf
+    for j in range(begin, end):
+        lowest = min(lowest, max(bottom[j], top[j] - deepest))
+    return lowest
+
+
+def _settle(
+    count: int,
+    z: Floats,
+    form: Floats,
+    h: float,
+    begin: int,
+    end: int,
+    bottom: Floats,
+    top: Floats,
+    scales: Floats,
+    held: Floats,
+    state: Floats,
+) -> None:
+    """The state of the first ``count`` contacts with the flat at h, and whether each holds on (1) or not (0).
+
+    Without adhesion all of them do, and ``held`` is left alone.
+    """
+    depth, per_depth = scales[_DEPTH], scales[_PER_DEPTH]
+    if _adhesive:
+        low, high = bottom[begin], top[begin]
+        for i in range(count):
+            held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
+        for j in range(begin + 1, end):
+            low, high = bottom[j], top[j]
+            for i in range(count):
+                held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
+        for i in range(count):
+            state[i] = _state(max(((z[i] - h) + depth[i]) * per_depth[i], 0.0), form[i])
+    else:
+        for i in range(count):
+            state[i] = _state(max((z[i] - h) * per_depth[i], 0.0), form[i])
+
+
+def _tally(
+    count: int,
+    form: Floats,
+    scales: Floats,
+    held: Floats,
+    state: Floats,
+    terms: Floats,
+    wanted: NDArray[np.bool_],
+    step: int,
+    total: Floats,
+    carried: Floats,
+) -> None:
+    """Add the first ``count`` asperities of a block to the wanted totals of a step."""
+    size, load, rigidity = scales[_SIZE], scales[_LOAD], scales[_RIGIDITY]
+    if wanted[FORCE]:
+        for i in range(count):
+            terms[i] = load[i] * _force(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+        _accumulate(total[FORCE], carried[FORCE], step, _add_up(terms, count))
+    if wanted[MAGNITUDE]:
+        for i in range(count):
+            terms[i] = abs(load[i] * _force(state[i], form[i])) if not _adhesive or held[i] > 0.0 else 0.0
+        _accumulate(total[MAGNITUDE], carried[MAGNITUDE], step, _add_up(terms, count))
+    if wanted[RADIUS]:
+        for i in range(count):
+            terms[i] = size[i] * _radius(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+        _accumulate(total[RADIUS], carried[RADIUS], step, _add_up(terms, count))
+    if wanted[AREA]:
+        for i in range(count):
+            a = size[i] * _radius(state[i], form[i])
+            terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
+        _accumulate(total[AREA], carried[AREA], step, _add_up(terms, count))
+    if wanted[STIFFNESS]:
+        for i in range(count):
+            terms[i] = rigidity[i] * _stiffness(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+        _accumulate(total[STIFFNESS], carried[STIFFNESS], step, _add_up(terms, count))
+    if wanted[COUNT]:
+        contacts = float(count)
+        if _adhesive:
+            contacts = _add_up(held, count)  # the last use of held: it is spoilt
+        _accumulate(total[COUNT], carried[COUNT], step, contacts)
+
+
 def _loop(
     height: Floats,
     width: Floats,
@@ -88,94 +191,46 @@ def _loop(
     total: Floats,
     carried: Floats,
 ) -> int:
-    """Fill total[row, step] (zeros before) for the rows wanted; returns how often an asperity was visited."""
-    visited = 0
+    """Add all asperities to total[row, step] (zeros before) for the rows wanted; returns the number of visits."""
+    visits = 0
     closest = np.min(separation)
-    depth, per_depth = np.empty(BLOCK), np.empty(BLOCK)
-    size, load, rigidity = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    state, held, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    scales = np.empty((5, BLOCK))
+    held, state, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     for start in range(0, height.size, BLOCK):
-        z = height[start : start + BLOCK]
-        n = form[start : start + BLOCK]
+        block = slice(start, min(start + BLOCK, height.size))
+        z, n = height[block], form[block]
         if z[0] < closest:
             break
-        deepest = 0.0
-        for i in range(z.size):
-            fold, size[i], load[i], rigidity[i] = _natural(modulus, work, width[start + i], rise[start + i], n[i])
-            depth[i] = fold[0]
-            per_depth[i] = 1.0 / fold[0]
-            if _adhesive:
-                deepest = max(deepest, fold[0])
+        deepest = _measure(width[block], rise[block], n, modulus, work, scales)
         for step in range(separation.size):
             h = separation[step]
-            lowest = math.inf
-            for j in range(first[step], first[step + 1]):
-                lowest = min(lowest, max(bottom[j], top[j] - deepest))
-            if not _adhesive:
-                lowest = np.nextafter(h, math.inf)  # at z = h nothing is in contact
-            count = _within_reach(z, lowest)
-            if count == 0:
-                continue
-            visited += count
-            if _adhesive:
-                low, high = bottom[first[step]], top[first[step]]
-                for i in range(count):
-                    held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
-                for j in range(first[step] + 1, first[step + 1]):
-                    low, high = bottom[j], top[j]
-                    for i in range(count):
-                        held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
-                for i in range(count):
-                    state[i] = _state(max(((z[i] - h) + depth[i]) * per_depth[i], 0.0), n[i])
-            else:
-                for i in range(count):
-                    state[i] = _state(max((z[i] - h) * per_depth[i], 0.0), n[i])
-            if wanted[FORCE] or wanted[MAGNITUDE]:
-                for i in range(count):
-                    terms[i] = load[i] * _force(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
-                if wanted[MAGNITUDE]:
-                    magnitude = 0.0
-                    for i in range(count):
-                        magnitude += abs(terms[i])
-                    _accumulate(total[MAGNITUDE], carried[MAGNITUDE], step, magnitude)
-                if wanted[FORCE]:
-                    _accumulate(total[FORCE], carried[FORCE], step, _add_up(terms, count))
-            if wanted[RADIUS]:
-                for i in range(count):
-                    terms[i] = size[i] * _radius(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
-                _accumulate(total[RADIUS], carried[RADIUS], step, _add_up(terms, count))
-            if wanted[AREA]:
-                for i in range(count):
-                    a = size[i] * _radius(state[i], n[i])
-                    terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
-                _accumulate(total[AREA], carried[AREA], step, _add_up(terms, count))
-            if wanted[STIFFNESS]:
-                for i in range(count):
-                    terms[i] = rigidity[i] * _stiffness(state[i], n[i]) if not _adhesive or held[i] > 0.0 else 0.0
-                _accumulate(total[STIFFNESS], carried[STIFFNESS], step, _add_up(terms, count))
-            if wanted[COUNT]:
-                contacts = float(count)
-                if _adhesive:
-                    contacts = _add_up(held, count)  # the last use of held: it is spoilt
-                _accumulate(total[COUNT], carried[COUNT], step, contacts)
+            begin, end = first[step], first[step + 1]
+            count = _within_reach(z, _lowest(h, begin, end, bottom, top, deepest))
+            if count > 0:
+                visits += count
+                _settle(count, z, n, h, begin, end, bottom, top, scales, held, state)
+                _tally(count, n, scales, held, state, terms, wanted, step, total, carried)
     for row in range(ROWS):
         for step in range(separation.size):
             total[row, step] += carried[row, step]
-    return visited
+    return visits
 
 
 @cache
 def _compiled(law: Law) -> Callable[..., int]:
-    return specialise(
-        cast(FunctionType, _loop),
-        law.name,
-        _adhesive=law.adhesive,
-        _natural=law.natural,
-        _state=law.state,
-        _radius=law.radius,
-        _force=law.force,
-        _stiffness=law.stiffness,
-    )
+    kernels = {
+        "_adhesive": law.adhesive,
+        "_natural": law.natural,
+        "_state": law.state,
+        "_radius": law.radius,
+        "_force": law.force,
+        "_stiffness": law.stiffness,
+    }
+    parts = {
+        part.__name__: specialise(cast(FunctionType, part), law.name, inline=True, **kernels)
+        for part in (_measure, _lowest, _settle, _tally)
+    }
+    return specialise(cast(FunctionType, _loop), law.name, _adhesive=law.adhesive, **parts)
 
 
 def add_asperities(

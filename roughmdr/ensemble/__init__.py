@@ -30,10 +30,13 @@ def generate(
     for name, value in (("seed", seed), ("realization", realization)):
         if isinstance(value, bool) or not isinstance(value, int) or value < 0:
             raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
-    if isinstance(asperities, dict):
-        try:
-            asperities = TypeAdapter[RandomAsperities | SurfaceAsperities](Asperities).validate_python(asperities)
-        except ValidationError as error:
-            found = complaints(error, asperities, Asperities)
-            raise SceneError("\n".join(f"asperities.{complaint}" for complaint in found)) from None
-    return asperities.ensemble(seed, realization).to_dataset()
+    section = _validated(asperities) if isinstance(asperities, dict) else asperities
+    return section.ensemble(seed, realization).to_dataset()
+
+
+def _validated(table: dict[str, Any]) -> RandomAsperities | SurfaceAsperities:
+    try:
+        return TypeAdapter[RandomAsperities | SurfaceAsperities](Asperities).validate_python(table)
+    except ValidationError as error:
+        found = complaints(error, table, Asperities)
+        raise SceneError("\n".join(f"asperities.{complaint}" for complaint in found)) from None

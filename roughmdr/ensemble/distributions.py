@@ -45,7 +45,8 @@ class Distribution:
         """The values below which the given fractions lie."""
         if self.constant is not None:
             return np.full_like(uniform, self.constant)
-        return np.asarray(self.frozen.ppf(uniform), dtype=np.float64)
+        values: Floats = np.asarray(self.frozen.ppf(uniform), dtype=np.float64)
+        return values
 
     @property
     def std(self) -> float:
@@ -69,7 +70,8 @@ def uniforms(seed: int, realization: int, quantity_index: int, count: int) -> Fl
     The raw bits of Philox are the same in every version of numpy; a longer draw begins with the shorter one.
     """
     stream = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(realization, quantity_index)))
-    return ((stream.random_raw(count) >> np.uint64(64 - _BITS)) + 0.5) * 2.0**-_BITS
+    leading: Floats = (stream.random_raw(count) >> np.uint64(64 - _BITS)).astype(np.float64)
+    return (leading + 0.5) * 2.0**-_BITS
 
 
 def read_distribution(value: object, dimension: str, *, mean: float | None = None) -> Distribution:
@@ -95,7 +97,9 @@ def read_distribution(value: object, dimension: str, *, mean: float | None = Non
     for key in table:
         if key not in allowed:
             raise RoughmdrError(f"{given} has no parameter {key!r}; it takes {', '.join(allowed)}")
-    numbers = {key: _parameter(key, entry, DIMENSIONLESS if key in shapes else dimension) for key, entry in table.items()}
+    numbers = {
+        key: _parameter(key, entry, DIMENSIONLESS if key in shapes else dimension) for key, entry in table.items()
+    }
     distribution = Distribution(name, tuple(_located(family, given, shapes, numbers, mean).items()))
     if not (math.isfinite(distribution.least) and math.isfinite(distribution.greatest)):
         raise RoughmdrError(f"{given} can be infinite with {_listed(numbers)}")
@@ -128,7 +132,9 @@ def _located(
         return {"s": math.sqrt(variance), "scale": mean * math.exp(-0.5 * variance)}
     missing = [shape for shape in shapes if shape not in numbers]
     if missing:
-        raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {', '.join([*shapes, 'loc', 'scale', 'mean', 'std'])}")
+        raise RoughmdrError(
+            f"{given} needs {' and '.join(missing)}; it takes {', '.join([*shapes, 'loc', 'scale', 'mean', 'std'])}"
+        )
     if std is None and "scale" not in numbers:
         raise RoughmdrError(f"{given} needs a std or a scale")
     own = {shape: numbers[shape] for shape in shapes}
@@ -151,6 +157,9 @@ def _listed(numbers: dict[str, float]) -> str:
 def _near(name: str) -> str:
     import scipy.stats
 
-    known = [*_FRIENDLY, *(n for n in dir(scipy.stats) if isinstance(getattr(scipy.stats, n), scipy.stats.rv_continuous))]
+    known = [
+        *_FRIENDLY,
+        *(n for n in dir(scipy.stats) if isinstance(getattr(scipy.stats, n), scipy.stats.rv_continuous)),
+    ]
     near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
     return f"; did you mean {' or '.join(repr(other) for other in near)}?" if near else ""

@@ -56,7 +56,11 @@ class Ensemble:
         units = SHAPES[self.shape].units
         variables = {"height": ("asperity", self.height, COORDINATES["height"].attrs)}
         for name, column in self.parameters.items():
-            variables[name] = ("asperity", column, {"units": units[name], "long_name": f"{name} of the {self.shape}"})
+            variables[name] = (
+                "asperity",
+                column,
+                {"units": units[name], "long_name": f"{name} of the {self.shape}"},
+            )
         for name, column in self.positions.items():
             variables[name] = ("asperity", column, COORDINATES[name].attrs)
         attrs: dict[str, float | int | str] = {"shape": self.shape, **self.attrs}

@@ -1,20 +1,18 @@
 """source = "random": heights and shape parameters drawn from distributions, independent of each other."""
 
-from typing import Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import Field, ValidationInfo, create_model, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
 from roughmdr.ensemble.distributions import Distribution, read_distribution, uniforms
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
-from roughmdr.fields import Length, Section, read_by, whole_number
+from roughmdr.fields import Length, Section, whole_number
 from roughmdr.shapes import SHAPES, Shape
 
 # Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
 _HEIGHT_STREAM = 0
 _FIRST_PARAMETER_STREAM = 2  # 1 is kept for positions
-
-_Height = read_by(lambda value: read_distribution(value, "m", mean=0.0), Distribution)
 
 
 class RandomAsperities(Section):
@@ -22,11 +20,11 @@ class RandomAsperities(Section):
 
     source: Literal["random"]
     shape: str
-    count: whole_number(1, 1_000_000_000)
+    count: Annotated[int, whole_number(1, 1_000_000_000)]
     patch: Length
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
-    height: _Height
+    height: Annotated[Distribution, BeforeValidator(lambda value: read_distribution(value, "m", mean=0.0))]
 
     @field_validator("min_distance")
     @classmethod
@@ -74,7 +72,7 @@ def _parameter(unit: str) -> Any:
             )
         return distribution
 
-    return read_by(read, Distribution)
+    return Annotated[Distribution, BeforeValidator(read)]
 
 
 def _section(shape: type[Shape]) -> type[RandomAsperities]:
@@ -84,12 +82,14 @@ def _section(shape: type[Shape]) -> type[RandomAsperities]:
     for name, unit in shape.units.items():
         kind = _parameter(unit)
         keys[name] = (kind, ...) if name in always else (kind | None, None)
-    return create_model(
-        f"Random{shape.__name__}", __base__=RandomAsperities, shape=(Literal[shape.name], ...), **keys
-    )
+    keys["shape"] = (Literal[shape.name], ...)
+    return create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys)
 
 
-AnyRandomAsperities = Annotated[
-    Union[tuple(_section(shape) for shape in SHAPES.values())],  # noqa: UP007 - made at run time
-    Field(discriminator="shape"),
-]
+if TYPE_CHECKING:
+    AnyRandomAsperities = RandomAsperities
+else:
+    AnyRandomAsperities = Annotated[
+        Union[tuple(_section(shape) for shape in SHAPES.values())],  # noqa: UP007 - made at run time
+        Field(discriminator="shape"),
+    ]

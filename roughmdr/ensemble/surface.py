@@ -42,7 +42,7 @@ class SurfaceAsperities(Section):
 
 
 def read_map(path: Path) -> tuple[Floats, float, float]:
-    """Heights [m] over x and y, and the two spacings [m], from a netCDF file with height(x, y); SceneError if not so."""
+    """Heights [m] over x and y, and both spacings [m], from a netCDF file with height(x, y); SceneError if not so."""
     import xarray as xr
 
     if not path.is_file():
@@ -53,7 +53,9 @@ def read_map(path: Path) -> tuple[Floats, float, float]:
     except Exception as error:
         raise SceneError(f"{path}: not a netCDF file that can be read ({type(error).__name__})") from error
     if "height" not in dataset or dataset["height"].ndim != 2:
-        raise SceneError(f"{path}: it must hold a variable height over two dimensions; it has {list(dataset.data_vars)}")
+        raise SceneError(
+            f"{path}: it must hold a variable height over two dimensions; it has {list(dataset.data_vars)}"
+        )
     height = dataset["height"].transpose("x", "y") if set(dataset["height"].dims) == {"x", "y"} else dataset["height"]
     if min(height.shape) < 3:
         raise SceneError(f"{path}: the map has {height.shape[0]} x {height.shape[1]} points; it needs at least 3 x 3")
@@ -94,39 +96,53 @@ def remove_quadratic(height: Floats) -> Floats:
 
 
 def find_summits(height: Floats, dx: float, dy: float) -> Ensemble:
-    """The points above all their eight neighbours; through each nine a least-squares paraboloid, whose top is the summit.
+    """The points above all eight neighbours, each with a paraboloid through it that fits the eight by least squares.
 
-    The radius is 1/sqrt(k1 k2), from the geometric mean of the principal curvatures: the radius of the sphere that
-    an elliptic contact is best replaced by (J. A. Greenwood, Wear 261 (2006) 191). SceneError where no summit is found.
+    Its top is the summit; the radius is 1/sqrt(k1 k2), from the geometric mean of the principal curvatures: that of
+    the sphere which an elliptic contact is best replaced by (J. A. Greenwood, Wear 261 (2006) 191). A point whose paraboloid
+    is a saddle is no summit; the attribute ``saddles`` counts them. heights and spacings are [m]; SceneError where no
+    summit is found.
     """
-    inner = height[1:-1, 1:-1]
-    shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
     nx, ny = height.shape
-    around = [height[1 + i : nx - 1 + i, 1 + j : ny - 1 + j] for i, j in shifts]
-    rows, columns = np.nonzero(np.logical_and.reduce([inner > neighbour for neighbour in around]))
-    nine = np.stack([[height[rows + 1 + i, columns + 1 + j] for j in (-1, 0, 1)] for i in (-1, 0, 1)])
-    along_x, along_y = nine.sum(axis=1), nine.sum(axis=0)
-    slope_x, slope_y = (along_x[2] - along_x[0]) / (6.0 * dx), (along_y[2] - along_y[0]) / (6.0 * dy)
-    xx = (along_x[0] - 2.0 * along_x[1] + along_x[2]) / (3.0 * dx * dx)
-    yy = (along_y[0] - 2.0 * along_y[1] + along_y[2]) / (3.0 * dy * dy)
-    xy = (nine[2, 2] - nine[2, 0] - nine[0, 2] + nine[0, 0]) / (4.0 * dx * dy)
-    level = nine.mean(axis=(0, 1)) - (xx * dx * dx + yy * dy * dy) / 3.0
+    inner = height[1:-1, 1:-1]
 
-    determinant = xx * yy - xy * xy
-    domed = (determinant > 0.0) & (xx < 0.0)
-    safe = np.where(domed, determinant, 1.0)
-    offset_x, offset_y = (xy * slope_y - yy * slope_x) / safe, (xy * slope_x - xx * slope_y) / safe
-    # A top outside the nine points is an extrapolation: such a point is kept as no summit.
-    kept = domed & (np.abs(offset_x) <= dx) & (np.abs(offset_y) <= dy)
-    if not kept.any():
-        raise SceneError("the map has no summit: no point stands above its eight neighbours with a domed fit")
-    top = level + 0.5 * (slope_x * offset_x + slope_y * offset_y)
-    patch_x, patch_y = nx * dx, ny * dy
+    def neighbours(i: int, j: int) -> Floats:
+        return height[1 + i : nx - 1 + i, 1 + j : ny - 1 + j]
+
+    around = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    rows, columns = np.nonzero(np.logical_and.reduce([inner > neighbours(i, j) for i, j in around]))
+    drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in around}
+
+    def moment(m: int, n: int) -> Floats:
+        total: Floats = np.sum([i**m * j**n * drop[i, j] for i, j in around], axis=0)
+        return total
+
+    # The normal equations of drop = p i + q j + (A i^2 + 2 B i j + C j^2)/2 over the eight neighbours (i, j).
+    p, q = moment(1, 0) / 6.0, moment(0, 1) / 6.0
+    A = 0.6 * moment(2, 0) - 0.4 * moment(0, 2)
+    C = 0.6 * moment(0, 2) - 0.4 * moment(2, 0)
+    B = moment(1, 1) / 4.0
+
+    determinant = A * C - B * B
+    domed = (determinant > 0.0) & (A < 0.0)
+    if not domed.any():
+        raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")
+    p, q, A, B, C, determinant = (values[domed] for values in (p, q, A, B, C, determinant))
+    i_top, j_top = (B * q - C * p) / determinant, (B * p - A * q) / determinant
+    # A top beyond the neighbours is an extrapolation: there the point itself is the better summit.
+    trusted = np.maximum(np.abs(i_top), np.abs(j_top)) <= 1.0
+    i_top, j_top = np.where(trusted, i_top, 0.0), np.where(trusted, j_top, 0.0)
+    rows, columns = rows[domed], columns[domed]
     return Ensemble.sorted(
         "paraboloid",
-        top[kept],
-        {"radius": 1.0 / np.sqrt(determinant[kept])},
-        patch_x * patch_y,
-        {"x": ((rows + 1) * dx + offset_x)[kept], "y": ((columns + 1) * dy + offset_y)[kept]},
-        {"patch_x": patch_x, "patch_y": patch_y, "points_per_summit": height.size / int(kept.sum())},
+        inner[rows, columns] + 0.5 * (p * i_top + q * j_top),
+        {"radius": dx * dy / np.sqrt(determinant)},
+        nx * dx * ny * dy,
+        {"x": (rows + 1.5 + i_top) * dx, "y": (columns + 1.5 + j_top) * dy},
+        {
+            "patch_x": nx * dx,
+            "patch_y": ny * dy,
+            "points_per_summit": height.size / rows.size,
+            "saddles": int((~domed).sum()),
+        },
     )

@@ -1,0 +1,1 @@
+"""One asperity: jitted scalars, floats in and floats out, and the laws that bundle them."""

@@ -25,17 +25,13 @@ def natural_paraboloid(
 
 
 @njit
-def natural_cone(
-    modulus: float, work: float, width: float, rise: float, n: float
-) -> tuple[Pair, float, float, float]:
+def natural_cone(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """The natural scales with kappa(1) = pi/2."""
     return _natural(modulus, width, 0.5 * math.pi * rise)
 
 
 @njit
-def natural_power(
-    modulus: float, work: float, width: float, rise: float, n: float
-) -> tuple[Pair, float, float, float]:
+def natural_power(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """The natural scales with any kappa(n)."""
     return _natural(modulus, width, kappa(n) * rise)
 
@@ -55,8 +51,9 @@ def state_cone(x: float, n: float) -> float:
 @njit
 def state_power(x: float, n: float) -> float:
     """t at the reduced indentation x >= 0. The second line removes the rounding of 1/n."""
-    t = x ** (1.0 / n)
-    return t + t * (x / t**n - 1.0) / n if 0.0 < t < 1e300 and t**n > 0.0 else t
+    t = math.pow(x, 1.0 / n)
+    back = math.pow(t, n)
+    return t + t * (x / back - 1.0) / n if 0.0 < back < math.inf else t
 
 
 @njit
@@ -68,7 +65,7 @@ def state_of_radius(ratio: float, n: float) -> float:
 @njit
 def distance(t: float, n: float) -> float:
     """x(t)."""
-    return t**n
+    return math.pow(t, n)
 
 
 @njit
@@ -92,7 +89,7 @@ def force_cone(t: float, n: float) -> float:
 @njit
 def force_power(t: float, n: float) -> float:
     """P over 2 E* width depth."""
-    return n / (n + 1.0) * (t * t**n)
+    return n / (n + 1.0) * (t * math.pow(t, n))
 
 
 @njit

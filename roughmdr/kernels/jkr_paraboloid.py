@@ -1,6 +1,6 @@
 """One paraboloid with JKR adhesion: the power law with n = 2, where 3 X = v^2 (6 + 4 v + v^2) with v = tau - 1.
 
-Notation of ``jkr_power``. Nothing here branches and nothing is called, so that a loop over asperities becomes vector code.
+Notation of ``jkr_power``. ``state`` and what follows from it neither branch nor call, so that a loop over asperities becomes vector code.
 """
 
 import math
@@ -42,9 +42,7 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
     cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
     rest = extended.add(reduced, (-cube[0], -cube[1]))
     root_exact = extended.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
-    depth = extended.multiply(
-        extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius)
-    )
+    depth = extended.multiply(extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius))
     a_c = 0.5 * curvature_radius * root_exact[0]
     return depth, a_c, math.pi * work * curvature_radius, 2.0 * modulus * a_c
 

@@ -1,6 +1,7 @@
 """One power-law asperity with JKR adhesion, any exponent n > 1/2 (H 32-33, 40-41, 44).
 
-All is measured from the fold under fixed grips, where the contact lets go: there a_c g'(a_c) = dl(a_c)/2. With tau = sqrt(a/a_c), e = 2 n - 1 and the distance to the fold X = 1 - delta/delta_c,
+All is measured from the fold under fixed grips, where the contact lets go: there
+a_c g'(a_c) = dl(a_c)/2. With tau = sqrt(a/a_c), e = 2 n - 1 and the distance to the fold X = 1 - delta/delta_c,
 
     X = tau (tau^e - 1)/e - (tau - 1),   delta_c = -e/(2 n) dl(a_c),
     P = 2 E* a_c dl(a_c) tau^3 [tau^e/(2 n + 2) - 1],   k = 2 E* a (tau^e - 3)/(tau^e - 1).

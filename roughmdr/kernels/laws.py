@@ -58,7 +58,9 @@ def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kerne
 
 
 _ELASTIC = {
-    "paraboloid": _elastic("paraboloid", elastic.natural_paraboloid, elastic.state_paraboloid, elastic.force_paraboloid),
+    "paraboloid": _elastic(
+        "paraboloid", elastic.natural_paraboloid, elastic.state_paraboloid, elastic.force_paraboloid
+    ),
     "cone": _elastic("cone", elastic.natural_cone, elastic.state_cone, elastic.force_cone),
     "power_law": _elastic("power_law", elastic.natural_power, elastic.state_power, elastic.force_power),
 }

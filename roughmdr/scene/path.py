@@ -42,7 +42,7 @@ class Range(Section):
 
     start: _Separation
     stop: _Separation
-    steps: whole_number(2, 10_000_000)
+    steps: Annotated[int, whole_number(2, 10_000_000)]
 
 
 class Path(Section):

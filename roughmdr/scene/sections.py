@@ -4,18 +4,25 @@ import math
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import BeforeValidator, Field, ModelWrapValidatorHandler, PrivateAttr, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    field_validator,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
-from roughmdr.ensemble import Asperities, RandomAsperities, SurfaceAsperities
+from roughmdr.ensemble import Asperities, SurfaceAsperities
 from roughmdr.errors import RoughmdrError
 from roughmdr.fields import Section, reading, whole_number
 from roughmdr.scene.path import Path
 from roughmdr.units import effective_modulus
 from roughmdr.variables import DEFAULT, LAW
 
-_Modulus = reading("Pa", above=0.0)
-_Poisson = reading("1", above=-1.0, most=0.5)
+_Modulus = Annotated[float, reading("Pa", above=0.0)]
+_Poisson = Annotated[float, reading("1", above=-1.0, most=0.5)]
 
 
 class Body(Section):
@@ -46,7 +53,7 @@ class Adhesion(Section):
     """[adhesion]: work is the work of adhesion, not the surface energy of one side."""
 
     model: Literal["jkr"]
-    work: reading("J/m^2", least=0.0)
+    work: Annotated[float, reading("J/m^2", least=0.0)]
 
 
 def _known_variable(value: object) -> object:
@@ -58,7 +65,9 @@ def _known_variable(value: object) -> object:
 class Output(Section):
     """[output]: what the result holds."""
 
-    variables: Annotated[list[Annotated[str, BeforeValidator(_known_variable)]], Field(min_length=1)] = list(DEFAULT)
+    variables: Annotated[list[Annotated[str, BeforeValidator(_known_variable)]], Field(min_length=1)] = Field(
+        default=list(DEFAULT)
+    )
     keep: Literal["curves"] = "curves"
 
     @field_validator("variables")
@@ -70,7 +79,7 @@ class Output(Section):
 class Batch(Section):
     """[batch]: how many realisations."""
 
-    realizations: whole_number(1, 1_000_000_000) = 1
+    realizations: Annotated[int, whole_number(1, 1_000_000_000)] = 1
 
 
 def _misfit(key: str, message: str) -> PydanticCustomError:
@@ -81,7 +90,7 @@ class Scene(Section):
     """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
 
     title: str
-    seed: whole_number(0, 2**63 - 1) = 0
+    seed: Annotated[int, whole_number(0, 2**63 - 1)] = 0
     material: Material
     counter: Body | None = None
     adhesion: Adhesion | None = None
@@ -110,10 +119,16 @@ class Scene(Section):
             return self
         sigma = self.asperities.sigma
         if self.path.uses_sigma and not 0.0 < sigma < math.inf:
-            raise _misfit("path.separation", f"cannot be given in sigma: the standard deviation of the heights is {sigma:g}")
+            raise _misfit(
+                "path.separation",
+                f"cannot be given in sigma: the standard deviation of the heights is {sigma:g}",
+            )
         exponent = self.asperities.distributions.get("exponent")
         if self.work > 0.0 and exponent is not None and not exponent.least > 0.5:
-            raise _misfit("asperities.exponent", f"can be as low as {exponent.least:g}; with adhesion it must be above 0.5")
+            raise _misfit(
+                "asperities.exponent",
+                f"can be as low as {exponent.least:g}; with adhesion it must be above 0.5",
+            )
         return self
 
     @property
@@ -138,13 +153,10 @@ class Scene(Section):
         """The scene as it was asked for, in TOML."""
         return tomli_w.dumps(_without_none(self._table))
 
-    @property
-    def source(self) -> RandomAsperities | SurfaceAsperities:
-        """The section that makes the ensembles."""
-        return self.asperities
-
 
 def _without_none(table: dict[str, Any]) -> dict[str, Any]:
     return {
-        key: _without_none(value) if isinstance(value, dict) else value for key, value in table.items() if value is not None
+        key: _without_none(value) if isinstance(value, dict) else value
+        for key, value in table.items()
+        if value is not None
     }

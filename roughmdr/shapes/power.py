@@ -53,7 +53,7 @@ def kappa(exponent: float) -> float:
 
 
 class _Power(Shape):
-    """f, g and G of a power law, from its width, rise and exponent."""
+    """The power laws' f, g and G, from width, rise and exponent."""
 
     def _stretched(self) -> tuple[float, float, float]:
         columns = self.stretch({name: np.array([value]) for name, value in self.parameters.items()})
@@ -83,6 +83,7 @@ class Paraboloid(_Power):
 
     @classmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """R, R/2 and 2."""
         radius = parameters["radius"]
         return radius, 0.5 * radius, np.full_like(radius, 2.0)
 
@@ -99,6 +100,7 @@ class Cone(_Power):
 
     @classmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """One metre, S and 1."""
         slope = parameters["slope"]
         return np.ones_like(slope), slope, np.ones_like(slope)
 
@@ -124,6 +126,7 @@ class PowerLaw(_Power):
 
     @classmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """l, H and n; with a coefficient, l is one metre."""
         exponent = parameters["exponent"]
         if "coefficient" in parameters:
             return np.ones_like(exponent), parameters["coefficient"], exponent
