@@ -39,7 +39,7 @@ def _cache_folder() -> str | None:
 
 
 def njit(function: _Function, *, inline: bool = False) -> _Function:
-    """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, no reordering), GIL released, cached on disk.
+    """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, nothing reordered), no GIL, cached on disk.
 
     ``inline`` puts its text into every caller: for parts of a loop that are called too often for a call.
     """
@@ -56,7 +56,9 @@ def njit(function: _Function, *, inline: bool = False) -> _Function:
     return cast(_Function, compiled)
 
 
-def specialise(loop: FunctionType, name: str, *, inline: bool = False, **kernels: object) -> Callable[..., Any]:
+def specialise(
+    loop: FunctionType, name: str, kernels: dict[str, object], *, inline: bool = False
+) -> Callable[..., Any]:
     """A compiled copy of ``loop`` in which the global names in ``kernels`` stand for the given kernels.
 
     numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import compute
+from roughmdr.aggregate import compute, prepare
 from roughmdr.errors import RoughmdrError
 from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Advance, progress
@@ -51,6 +51,7 @@ def execute(
     plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run"
 ) -> "xr.Dataset":
     """Do what a plan says; ``command`` goes into the file's history."""
+    prepare(plan.scene.asperities.shape, plan.scene.work)
     with progress(plan.scene.title, plan.scene.batch.realizations, quiet=quiet) as advance:
         shards = _over_threads(plan, workers, advance)
     variables = {

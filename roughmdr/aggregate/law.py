@@ -11,6 +11,7 @@ from roughmdr.aggregate.staircase import Staircase, branches, no_memory, stairca
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.kernels.laws import choose
+from roughmdr.shapes import SHAPES
 from roughmdr.shapes.base import Floats
 from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 
@@ -103,16 +104,22 @@ def compute(
         results[name] = results[name] / ensemble.nominal_area
     closest = route.closest
     checks, _ = add_up(closest, {loop.FORCE, loop.STIFFNESS, loop.MAGNITUDE})
-    return LoadSeparation(results, _numerical_error(ensemble.height, closest.separation[0], checks), visits)
+    largest = float(np.max(np.abs(np.append(totals[loop.FORCE], checks[loop.FORCE]))))
+    error = _force_error(ensemble.height, closest.separation[0], checks)
+    return LoadSeparation(results, error / largest if largest > 0.0 else 0.0, visits)
 
 
-def _numerical_error(height: Floats, closest: float, checks: Floats) -> float:
-    """The rounding of z - h through the stiffness, and that of the kernels, at the closest approach."""
-    force, slope, magnitude = (float(checks[row, 0]) for row in (loop.FORCE, loop.STIFFNESS, loop.MAGNITUDE))
-    if magnitude == 0.0:
-        return 0.0
+def prepare(shape: str, work: float) -> None:
+    """Compile the sum for a shape with or without adhesion, once, before several threads or a clock need it."""
+    columns = SHAPES[shape].stretch({name: np.ones(1) for name in SHAPES[shape].spellings[0]})
+    law = choose(shape, work, columns[2])
+    loop.add_asperities(law, np.zeros(1), columns, 1.0, 1.0, np.zeros(1), no_memory(np.zeros(1)), set())
+
+
+def _force_error(height: Floats, closest: float, checks: Floats) -> float:
+    """Error of the force [N] at the closest approach: the rounding of z - h through the stiffness, and the kernels'."""
     rounding = _SEPARATION_ERROR * (float(np.max(np.abs(height))) + abs(closest))
-    return (abs(slope) * rounding + _KERNEL_ERROR * magnitude) / max(abs(force), np.finfo(float).tiny)
+    return abs(float(checks[loop.STIFFNESS, 0])) * rounding + _KERNEL_ERROR * float(checks[loop.MAGNITUDE, 0])
 
 
 def load_separation(

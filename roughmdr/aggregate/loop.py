@@ -218,7 +218,7 @@ def _loop(
 
 @cache
 def _compiled(law: Law) -> Callable[..., int]:
-    kernels = {
+    kernels: dict[str, object] = {
         "_adhesive": law.adhesive,
         "_natural": law.natural,
         "_state": law.state,
@@ -227,10 +227,10 @@ def _compiled(law: Law) -> Callable[..., int]:
         "_stiffness": law.stiffness,
     }
     parts = {
-        part.__name__: specialise(cast(FunctionType, part), law.name, inline=True, **kernels)
+        part.__name__: specialise(cast(FunctionType, part), law.name, kernels, inline=True)
         for part in (_measure, _lowest, _settle, _tally)
     }
-    return specialise(cast(FunctionType, _loop), law.name, _adhesive=law.adhesive, **parts)
+    return specialise(cast(FunctionType, _loop), law.name, {**parts})
 
 
 def add_asperities(

@@ -99,9 +99,9 @@ def find_summits(height: Floats, dx: float, dy: float) -> Ensemble:
     """The points above all eight neighbours, each with a paraboloid through it that fits the eight by least squares.
 
     Its top is the summit; the radius is 1/sqrt(k1 k2), from the geometric mean of the principal curvatures: that of
-    the sphere which an elliptic contact is best replaced by (J. A. Greenwood, Wear 261 (2006) 191). A point whose paraboloid
-    is a saddle is no summit; the attribute ``saddles`` counts them. heights and spacings are [m]; SceneError where no
-    summit is found.
+    the sphere which an elliptic contact is best replaced by (J. A. Greenwood, Wear 261 (2006) 191). A point whose
+    paraboloid is a saddle is no summit; the attribute ``saddles`` counts them. Heights and spacings are [m]; SceneError
+    where no summit is found.
     """
     nx, ny = height.shape
     inner = height[1:-1, 1:-1]

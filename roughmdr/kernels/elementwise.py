@@ -21,7 +21,7 @@ def _loop(values: Floats, form: float, out: Floats) -> None:
 @cache
 def _compiled(kernel: Callable[..., float]) -> Callable[..., Any]:
     owner = kernel.__module__.rpartition(".")[2]
-    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__name__}", _kernel=kernel)
+    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__name__}", {"_kernel": kernel})
 
 
 def apply(kernel: Callable[..., float], values: Floats, form: float) -> Floats:

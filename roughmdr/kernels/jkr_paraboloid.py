@@ -1,6 +1,7 @@
 """One paraboloid with JKR adhesion: the power law with n = 2, where 3 X = v^2 (6 + 4 v + v^2) with v = tau - 1.
 
-Notation of ``jkr_power``. ``state`` and what follows from it neither branch nor call, so that a loop over asperities becomes vector code.
+Notation of ``jkr_power``. ``state`` and what follows from it neither branch nor call, so that a loop over asperities
+becomes vector code.
 """
 
 import math

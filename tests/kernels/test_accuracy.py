@@ -25,8 +25,8 @@ class Case(NamedTuple):
 
 
 def draw(rng: np.random.Generator, kind: str, adhesive: bool) -> Case:
-    width, rise = 10.0 ** rng.uniform(-10.0, 0.0, 2)
-    exponent = 0.5 + 10.0 ** rng.uniform(-2.0, np.log10(199.5))
+    width, rise = (10.0 ** rng.uniform(-10.0, 0.0, 2)).tolist()
+    exponent = 0.5 + 10.0 ** rng.uniform(-2.0, 2.2999)
     coefficient = Twin(rm.PowerLaw(exponent=exponent, width=width, rise=rise), 1.0, 0.0).g_at_1
     if kind == "paraboloid":
         shape = rm.Paraboloid(radius=width)

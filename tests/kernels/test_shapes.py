@@ -1,0 +1,107 @@
+"""f, g and G against integrals of the slope f' alone, and what a shape refuses."""
+
+import sys
+
+import numpy as np
+import pytest
+from twins import Real, kappa, mp
+
+import roughmdr as rm
+from roughmdr.shapes.power import kappa as kappa_of_package
+
+SHAPES = [
+    rm.Paraboloid(radius=3.7e-9),
+    rm.Paraboloid(radius=2.0),
+    rm.Cone(slope=1e-3),
+    rm.Cone(slope=47.0),
+    rm.PowerLaw(exponent=0.51, coefficient=3e-4),
+    rm.PowerLaw(exponent=1.5, coefficient=80.0),
+    rm.PowerLaw(exponent=4.0, coefficient=2e5),
+    rm.PowerLaw(exponent=0.75, width=2e-6, rise=5e-8),
+    rm.PowerLaw(exponent=13.3, width=1e-9, rise=3e-9),
+    rm.PowerLaw(exponent=200.0, width=1e-4, rise=1e-5),
+]
+
+
+def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Real) -> Real:
+    given = {name: mp.mpf(value) for name, value in shape.parameters.items()}
+    if "radius" in given:
+        return r / given["radius"]
+    if "slope" in given:
+        return given["slope"]
+    n = given["exponent"]
+    if "coefficient" in given:
+        return n * given["coefficient"] * r ** (n - 1)
+    return n * given["rise"] / given["width"] * (r / given["width"]) ** (n - 1)
+
+
+def radii(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw) -> np.ndarray:
+    return np.array([0.03, 0.9, 1.7]) * shape.parameters.get("width", 1e-6)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw) -> None:
+    got = {"f": shape.f(radii(shape)), "g": shape.g(radii(shape)), "G": shape.G(radii(shape))}
+    exponent = shape.parameters.get("exponent", 1.0)
+    with mp.workdps(30):
+        for i, x in enumerate(mp.mpf(x) for x in radii(shape)):
+            # r = x sin(angle) takes the root out of both integrands; the slope of a sharp tip stays singular at 0.
+            exact = {
+                "f": mp.quad(lambda r: slope(shape, r), [0, x / 2, x]),
+                "g": x * mp.quad(lambda t: slope(shape, x * mp.sin(t)), [0, 1, 1.5, mp.pi / 2]),
+                "G": x * x * mp.quad(lambda t: slope(shape, x * mp.sin(t)) * mp.cos(t) ** 2, [0, 1, 1.5, mp.pi / 2]),
+            }
+            for name, numbers in got.items():
+                error = abs(numbers[i] - exact[name]) / exact[name]
+                assert error <= (exponent + 8.0) * sys.float_info.epsilon, name
+
+
+def test_known_kappa() -> None:
+    assert kappa_of_package(1.0) == pytest.approx(np.pi / 2, rel=4e-16)
+    assert kappa_of_package(2.0) == pytest.approx(2.0, rel=4e-16)
+
+
+@pytest.mark.parametrize("exponent", [1e-6, 0.3, 0.51, 1.0, 7.7, 47.9, 48.1, 200.0, 1e5])
+def test_kappa(exponent: float) -> None:
+    assert abs(kappa_of_package(exponent) / kappa(exponent) - 1) <= 1e-15
+
+
+def test_profiles_keep_the_form_of_their_argument() -> None:
+    shape = rm.PowerLaw(exponent=1.5, coefficient=80.0)
+    for profile in (shape.f, shape.g, shape.G):
+        assert profile(2.0).shape == ()
+        assert profile(np.ones((2, 3))).shape == (2, 3)
+        assert profile([0.0, 1.0])[0] == 0.0
+
+
+@pytest.mark.parametrize("value", [-1.5, 0.0, float("nan"), float("inf"), "blunt"])
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda v: rm.Paraboloid(radius=v), "radius"),
+        (lambda v: rm.Cone(slope=v), "slope"),
+        (lambda v: rm.PowerLaw(exponent=v, coefficient=1.0), "exponent"),
+        (lambda v: rm.PowerLaw(exponent=2.0, coefficient=v), "coefficient"),
+        (lambda v: rm.PowerLaw(exponent=2.0, width=v, rise=1.0), "width"),
+        (lambda v: rm.PowerLaw(exponent=2.0, width=1.0, rise=v), "rise"),
+    ],
+)
+def test_a_bad_parameter_is_refused_by_name_and_value(make: object, name: str, value: object) -> None:
+    shown = "blunt" if value == "blunt" else f"{value:g}"
+    with pytest.raises(rm.ShapeError, match=rf"\b{name} is \W?{shown}"):
+        make(value)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"exponent": 2.0},
+        {"exponent": 2.0, "width": 1.0},
+        {"exponent": 2.0, "rise": 1.0},
+        {"exponent": 2.0, "coefficient": 1.0, "width": 1.0},
+        {"exponent": 2.0, "coefficient": 1.0, "width": 1.0, "rise": 1.0},
+    ],
+)
+def test_a_spelling_that_does_not_exist_is_refused_by_its_names(given: dict[str, float]) -> None:
+    with pytest.raises(rm.ShapeError, match=" and ".join(given) + ";"):
+        rm.PowerLaw(**given)
