@@ -25,21 +25,21 @@ def complaints(error: ValidationError, data: dict[str, Any], declared: Any) -> l
 
 
 def _complaint(fault: Any, data: dict[str, Any], declared: Any) -> Complaint:
-    keys, sections = _walk(fault["loc"], data, declared)
+    keys, holders, choices = _walk(fault["loc"], data, declared)
     context = fault.get("ctx", {})
     value = _shown(fault["input"])
     match fault["type"]:
         case "misfit":
             return Complaint(context["key"], "", context["message"])
         case "extra_forbidden":
-            allowed = sorted({name for section in sections for name in section.model_fields})
+            allowed = sorted({name for section in holders for name in section.model_fields})
             return Complaint(".".join(keys), "", f"unknown key{_suggestion(keys[-1], allowed)}")
         case "missing":
             return Complaint(".".join(keys), "", "is missing")
         case "union_tag_not_found" | "union_tag_invalid":
             key = ".".join([*keys, context["discriminator"].strip("'")])
             if fault["type"] == "union_tag_not_found":
-                tags = _tags(sections, context["discriminator"].strip("'"))
+                tags = _tags(choices, context["discriminator"].strip("'"))
                 return Complaint(key, "", f"is missing; it can be {', '.join(tags)}")
             tags = [tag.strip("'") for tag in context["expected_tags"].split(", ")]
             return Complaint(key, repr(context["tag"]), f"not available{_suggestion(context['tag'], tags)}")
@@ -54,19 +54,21 @@ def _complaint(fault: Any, data: dict[str, Any], declared: Any) -> Complaint:
             return Complaint(".".join(keys), value, fault["msg"][0].lower() + fault["msg"][1:])
 
 
-def _walk(loc: tuple[int | str, ...], data: Any, declared: Any) -> tuple[list[str], list[type[BaseModel]]]:
-    """The keys of ``data`` on the way to a fault, and the sections that may hold the last of them.
+def _walk(
+    loc: tuple[int | str, ...], data: Any, declared: Any
+) -> tuple[list[str], list[type[BaseModel]], list[type[BaseModel]]]:
+    """The keys of ``data`` on the way to a fault, the sections that may hold the last of them, and those it may be.
 
     pydantic's location also names the choice taken in each union; those are no keys.
     """
     keys: list[str] = []
-    sections, inner = _sections(declared), _sections(declared)
+    holders = inner = _sections(declared)
     for position, item in enumerate(loc):
         last = position == len(loc) - 1
         if isinstance(data, dict) and (item in data or (last and any(item in s.model_fields for s in inner))):
             keys.append(str(item))
-            sections = inner
-            inner = [s for holder in inner if item in holder.model_fields for s in _field_sections(holder, str(item))]
+            holders = inner
+            inner = [s for holder in holders if item in holder.model_fields for s in _field_sections(holder, str(item))]
             data = data.get(item)
         elif isinstance(data, list) and isinstance(item, int) and item < len(data):
             keys[-1] += f"[{item}]"
@@ -74,7 +76,7 @@ def _walk(loc: tuple[int | str, ...], data: Any, declared: Any) -> tuple[list[st
         else:
             chosen = [s for s in inner if any(item in get_args(f.annotation) for f in s.model_fields.values())]
             inner = chosen or inner
-    return keys, sections if loc and keys and str(loc[-1]) == keys[-1] else inner
+    return keys, holders, inner
 
 
 def _field_sections(section: type[BaseModel], name: str) -> list[type[BaseModel]]:

@@ -1,4 +1,4 @@
-"""A slow reference: the formulas of one power-law asperity as they are printed, in the contact radius, with 60 digits."""
+"""A slow reference: one power-law asperity by the formulas as printed, in the contact radius a, with 60 digits."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,0 +1,105 @@
+"""Whatever numbers come in: finite answers, or an error of roughmdr's own."""
+
+import numba
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import roughmdr as rm
+
+KINDS = {
+    "paraboloid": lambda p: rm.Paraboloid(radius=p[0]),
+    "cone": lambda p: rm.Cone(slope=p[0]),
+    "coefficient": lambda p: rm.PowerLaw(exponent=p[0], coefficient=p[1]),
+    "rise": lambda p: rm.PowerLaw(exponent=p[0], width=p[1], rise=p[2]),
+}
+compiled = pytest.mark.skipif(
+    numba.config.DISABLE_JIT, reason="Python floats raise where compiled ones overflow to inf"
+)
+decades = st.floats(-320.0, 308.0).map(lambda d: 10.0**d)
+moderate = st.floats(-12.0, 12.0).map(lambda d: 10.0**d)
+exponents = st.floats(0.3, 300.0)
+sizes = st.one_of(exponents, moderate, decades, st.floats(allow_nan=False, allow_infinity=False))
+works = st.one_of(st.just(0.0), sizes)
+controls = st.builds(
+    lambda size, sign: sign * size, st.one_of(st.just(0.0), sizes), st.sampled_from([1.0, -1.0])
+)
+
+
+@compiled
+@pytest.mark.parametrize("control", ["indentation", "force", "contact_radius"])
+@pytest.mark.parametrize("kind", KINDS)
+@given(
+    parameters=st.tuples(sizes, sizes, sizes),
+    modulus=sizes,
+    work=works,
+    values=st.lists(controls, max_size=3),
+)
+@settings(deadline=None, max_examples=150)
+def test_indent(
+    kind: str,
+    control: str,
+    parameters: tuple[float, float, float],
+    modulus: float,
+    work: float,
+    values: list[float],
+) -> None:
+    try:
+        with np.errstate(all="ignore"):
+            contact = rm.indent(KINDS[kind](parameters), modulus=modulus, work=work, **{control: values})
+    except rm.RoughmdrError:
+        return
+    for name in contact.variables:
+        assert np.isfinite(contact[name]).all(), name
+    assert (contact.contact_radius >= 0.0).all()
+
+
+@compiled
+@pytest.mark.parametrize("control", ["displacement", "force"])
+@pytest.mark.parametrize("kind", KINDS)
+@given(parameters=st.tuples(sizes, sizes, sizes), modulus=sizes, work=works)
+@settings(deadline=None, max_examples=150)
+def test_pull_off(
+    kind: str, control: str, parameters: tuple[float, float, float], modulus: float, work: float
+) -> None:
+    try:
+        with np.errstate(all="ignore"):
+            off = rm.pull_off(KINDS[kind](parameters), modulus=modulus, work=work, control=control)
+    except rm.RoughmdrError:
+        return
+    for name in ("force", "indentation", "contact_radius"):
+        assert np.isfinite(off[name]), name
+    assert off.force <= 0.0
+    assert (off.contact_radius > 0.0) == (work > 0.0)
+
+
+@given(values=st.lists(st.floats(-1.0, 1000.0), min_size=1, max_size=5), kind=st.sampled_from(sorted(KINDS)))
+@settings(deadline=None, max_examples=100)
+def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> None:
+    shape = KINDS[kind]((1.5, 0.1, 0.2))
+    off = rm.pull_off(shape, modulus=1e6, work=0.05)
+    contact = rm.indent(shape, modulus=1e6, work=0.05, indentation=np.array(values) * -float(off.indentation))
+    assert ((contact.contact_radius > 0.0) == (np.array(values) >= -1.0)).all()
+
+
+@compiled
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"work": 0.0, "indentation": 1e307},
+        {"work": 0.0, "contact_radius": 1e160},
+        {"work": 1.0, "indentation": 1e300},
+        {"work": 1.0, "contact_radius": 1e160},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_overflow_is_refused_without_a_warning(kind: str, given: dict[str, float]) -> None:
+    with pytest.raises(rm.OutOfRange, match="representable"):
+        rm.indent(KINDS[kind]((1.5, 1e-6, 1e-6)), modulus=1e13, **given)
+
+
+def test_a_contact_has_an_area() -> None:
+    with pytest.raises(rm.OutOfRange, match=r"contact_area .* is not representable"):
+        rm.indent(rm.Cone(slope=1.0), modulus=1e6, contact_radius=1e-163)

@@ -1,0 +1,41 @@
+"""Small scenes and ensembles for the tests."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+ASPERITIES: dict[str, Any] = {
+    "source": "random",
+    "shape": "paraboloid",
+    "count": 1000,
+    "patch": "1 mm",
+    "height": {"distribution": "normal", "std": "1 um"},
+    "radius": {"distribution": "lognormal", "mean": "50 um", "std": "5 um"},
+}
+SCENE: dict[str, Any] = {
+    "title": "A small scene",
+    "seed": 7,
+    "material": {"modulus": "3 MPa", "poisson": 0.49},
+    "adhesion": {"model": "jkr", "work": "50 mJ/m^2"},
+    "asperities": ASPERITIES,
+    "path": {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 40}, "unload": True},
+    "batch": {"realizations": 7},
+}
+
+
+def scene(**changes: Any) -> dict[str, Any]:
+    """The small scene with sections replaced; None leaves one out."""
+    table = copy.deepcopy(SCENE) | copy.deepcopy(changes)
+    return {key: value for key, value in table.items() if value is not None}
+
+
+def ensemble(height: Any, area: float | None = 1e-6, shape: str = "paraboloid", **parameters: Any) -> xr.Dataset:
+    """An ensemble made by hand."""
+    z = np.atleast_1d(np.asarray(height, dtype=float))
+    columns = {
+        name: ("asperity", np.broadcast_to(np.asarray(value, float), z.shape)) for name, value in parameters.items()
+    }
+    attrs: dict[str, Any] = {"shape": shape} | ({} if area is None else {"nominal_area": area})
+    return xr.Dataset({"height": ("asperity", z), **columns}, attrs=attrs)

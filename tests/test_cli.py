@@ -1,0 +1,121 @@
+"""The command line in processes of its own: exit status, messages, files."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import tomli_w
+import xarray as xr
+from scenes import scene
+
+SCENES = Path(__file__).parents[1] / "pipelines" / "scenes"
+ROUGHMDR = [sys.executable, "-c", "from roughmdr.cli import main; main()"]
+
+
+def roughmdr(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [*ROUGHMDR, *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    (tmp_path / "small.toml").write_text(tomli_w.dumps(scene()))
+    return tmp_path
+
+
+def test_run_and_plot(small: Path) -> None:
+    done = roughmdr("run", "small.toml", "-o", "out.nc", "--set", "batch.realizations=3", cwd=small)
+    assert done.returncode == 0, done.stderr
+    for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "left out", "out.nc"):
+        assert text in done.stdout
+    assert done.stderr.strip() == "A small scene: 3 of 3 realisations"
+    with xr.open_dataset(small / "out.nc") as result:
+        assert result.sizes["realization"] == 3
+        assert "--set batch.realizations=3" in result.attrs["history"]
+    for extra, name in ([], "a.png"), (["--variable", "force"], "b.pdf"):
+        drawn = roughmdr("plot", "out.nc", "-o", name, *extra, cwd=small)
+        assert drawn.returncode == 0, drawn.stderr
+        assert (small / name).stat().st_size > 5000
+    assert (small / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_quiet_says_nothing(small: Path) -> None:
+    done = roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", "--workers", 1, cwd=small)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["run", "none.toml", "-o", "out.nc"], "none.toml: cannot be read"),
+        (["run", "small.toml", "-o", "none/out.nc"], "none/out.nc: the folder none does not exist"),
+        (["run", "small.toml", "-o", "out.nc", "--set", "asperities.hieght=1"], "did you mean 'height'"),
+        (["run", "small.toml", "-o", "out.nc", "--set", "asperities.source=surface"], "asperities.file: is missing"),
+        (["run", "small.toml"], "Missing option"),
+        (["run", "small.toml", "-o", "out.nc", "--workers", "0"], "--workers"),
+        (["plot", "none.nc", "-o", "a.png"], "none.nc: no such file"),
+        (["plot", "small.toml", "-o", "a.png"], "not a netCDF file"),
+        (["nothing"], "No such command"),
+    ],
+)
+def test_wrong_input_is_exit_status_2_with_a_message_and_no_file(small: Path, arguments: list[str], says: str) -> None:
+    done = roughmdr(*arguments, cwd=small)
+    assert done.returncode == 2
+    assert says in done.stderr
+    assert "Traceback" not in done.stderr
+    assert [path.name for path in small.iterdir()] == ["small.toml"]
+
+
+def test_a_picture_of_what_is_not_there(small: Path) -> None:
+    assert roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", cwd=small).returncode == 0
+    for arguments, says in (
+        (["-o", "a.png", "--variable", "energy"], "it holds force"),
+        (["-o", "a.xyz"], "cannot draw a .xyz"),
+    ):
+        done = roughmdr("plot", "out.nc", *arguments, cwd=small)
+        assert done.returncode == 2
+        assert says in done.stderr
+    assert sorted(path.name for path in small.iterdir()) == ["out.nc", "small.toml"]
+
+
+def test_an_interrupt_is_exit_status_130_and_leaves_nothing(small: Path) -> None:
+    large = ["--set", "asperities.count=300000", "--set", "batch.realizations=200"]
+    command = [*ROUGHMDR, "run", "small.toml", "-o", "out.nc", *large]
+    with subprocess.Popen(command, cwd=small, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(6.0)
+        os.kill(process.pid, signal.SIGINT)
+        _, message = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted; nothing was written" in message
+    assert "Traceback" not in message
+    assert [path.name for path in small.iterdir()] == ["small.toml"]
+
+
+def test_a_synthetic_surface_end_to_end(tmp_path: Path) -> None:
+    script = SCENES.parents[1] / "data_gen" / "surface.py"
+    made = subprocess.run(
+        [sys.executable, script, "map.nc", "--points", "96"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert made.returncode == 0, made.stderr
+    done = roughmdr(
+        "run", SCENES / "measured_surface.toml", "--set", "asperities.file=map.nc", "-o", "out.nc", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(tmp_path / "out.nc") as result:
+        assert float(result.force.max()) > 0.0
+        assert float(result.force.min()) < 0.0
+        assert float(result.contact_count.max()) > 10.0
+
+
+def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
+    script = SCENES.parent / "scaling.py"
+    done = subprocess.run([sys.executable, script, "-o", tmp_path, "--quick"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(tmp_path / "scaling.nc") as result:
+        assert result.cost.sizes == {"contact": 2, "method": 3}
+        assert (result.cost > 0.0).all()
+    assert (tmp_path / "scaling.png").stat().st_size > 5000
