@@ -1,4 +1,4 @@
-"""What the sum costs: time per visited asperity and step, beside plain NumPy and SciPy; two workers; a million asperities.
+"""What the sum costs: time a visited asperity and step, beside NumPy and SciPy; two workers; a million asperities.
 
     python pipelines/scaling.py -o results/studies
 
@@ -189,7 +189,7 @@ def study(quick: bool) -> xr.Dataset:
     workers = over_workers(count // 10, 16, repeats)
     seconds, size = million(count)
     ns = {"units": "ns", "long_name": "time per visited asperity and step"}
-    dataset = xr.Dataset(
+    return xr.Dataset(
         {
             "cost": (("contact", "method"), cost, ns),
             "batch_time": ("workers", list(workers.values()), {"units": "s", "long_name": "time of a batch"}),
@@ -199,7 +199,6 @@ def study(quick: bool) -> xr.Dataset:
         coords={"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"], "workers": list(workers)},
         attrs={"title": "What the sum costs", "asperities": count},
     )
-    return dataset
 
 
 def draw(result: xr.Dataset, path: Path) -> None:
@@ -233,7 +232,8 @@ def main(output: Path, quick: bool) -> None:
     one, two = result["batch_time"].to_numpy()
     click.echo(f"a batch: {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times")
     size = float(result["large_memory"]) / 2**20
-    click.echo(f"{result.attrs['asperities']} asperities: {float(result['large_time']):.2f} s, {size:.0f} MB above them")
+    count, seconds = result.attrs["asperities"], float(result["large_time"])
+    click.echo(f"{count} asperities, in and out: {seconds:.2f} s, {size:.0f} MB above them")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.analysis import standard_error
 from roughmdr.errors import StoreError
+from roughmdr.shapes.base import Floats
 from roughmdr.store import replacing
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
     scale, prefix = 1.0, ""
     if values.units != "1":
         scale, prefix = _scale(_shown(values).to_numpy(), power=2 if values.units == "m2" else 1)
+    means: dict[str, tuple[Floats, Floats]] = {}
     for branch, colour in _INK.items():
         steps = np.flatnonzero(result["branch"].to_numpy() == branch)
         if steps.size == 0:
@@ -63,10 +65,14 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
         h = result["separation"].isel(step=steps).to_numpy() / h_scale
         mean, error = part.mean("realization").to_numpy() / scale, standard_error(part).to_numpy() / scale
         ax.plot(h, part.to_numpy().T / scale, color=colour, lw=0.3, alpha=0.25)
-        ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
+        means[branch] = h, mean
+        if name != "stiffness" or branch == "loading":  # where contacts snap its variance is infinite
+            ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
         ax.plot(h, mean, color=colour, lw=1.8, label=branch)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
+    if name in ("force", "pressure"):
+        _zoom_on_tension(ax, means)
     shown = _shown(values).to_numpy() / scale
     low, high = float(shown.min()), float(shown.max())
     if high > low:
@@ -74,6 +80,21 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
     unit = values.units.replace(" m-1", "/m").replace("m2", "m²")
     ax.set_ylabel(f"{name.replace('_', ' ')}" + (f" [{prefix}{unit}]" if unit != "1" else ""))
     ax.set_xlabel(f"separation [{h_prefix}m]")
+
+
+def _zoom_on_tension(ax: "Axes", means: dict[str, tuple[Floats, Floats]]) -> None:
+    """An inset where the tension is too small beside the compression to be seen."""
+    h, values = (np.concatenate([curve[i] for curve in means.values()]) for i in (0, 1))
+    lowest = float(values.min())
+    if not -0.2 * values.max() < lowest < 0.0:
+        return
+    inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
+    for branch, curve in means.items():
+        inset.plot(*curve, color=_INK[branch], lw=1.2)
+    inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
+    tense = h[values < 0.02 * lowest]
+    inset.set(xlim=(tense.min(), tense.max()), ylim=(1.3 * lowest, -1.3 * lowest))
+    inset.tick_params(labelsize=7)
 
 
 def _shown(values: "xr.DataArray") -> "xr.DataArray":

@@ -171,7 +171,7 @@ def test_only_the_asked_totals_are_computed() -> None:
 
 
 def test_a_loop_of_the_path_dissipates_and_its_memory_fades() -> None:
-    """Two paths that differ only in an inner loop, later wiped out by a closer approach, end alike (the model's return)."""
+    """Paths that differ only in an inner loop, later wiped out by a closer approach, end alike."""
     rng = np.random.default_rng(19)
     data = ensemble(rng.normal(0.0, 1e-6, 300), radius=5e-5)
     straight = np.array([3.0, 0.0, 2.0]) * 1e-6

@@ -51,7 +51,7 @@ def test_a_paraboloid_is_found_exactly(
 
 
 def test_the_radius_converges_with_the_grid_on_an_egg_box() -> None:
-    """Heights cos(qx x) cos(qy y): curvatures qx^2 and qy^2 at every summit; the error falls as the square of the spacing."""
+    """Heights cos(qx x) cos(qy y): curvatures qx^2 and qy^2 at every summit; the error goes as the spacing squared."""
     errors = []
     for points in (64, 128, 256):
         x = np.arange(points) / points + 0.003

@@ -59,9 +59,7 @@ def scales(twin: Twin, answers: list[Real]) -> list[Real]:
         natural = [held, twin.indentation(held), twin.force(held), 2 * twin.modulus * held, twin.force(dead)]
         natural.append(2 * twin.modulus * held * twin.stretch(held))
     return natural + [
-        answer
-        for a in answers
-        for answer in (a, a * a, twin.indentation(a), twin.force(a), twin.stiffness(a))
+        answer for a in answers for answer in (a, a * a, twin.indentation(a), twin.force(a), twin.stiffness(a))
     ]
 
 
@@ -79,10 +77,7 @@ def excesses(twin: Twin, control: str, got: dict[str, float]) -> dict[str, float
     scale = {name: max(abs(mp.mpf(got[name])), abs(law[name](fold))) for name in law}
     bound = {"indentation": mp.mpf("1e-13"), "force": mp.mpf("1e-13")}
     bound["indentation" if control == "contact_radius" else control] = mp.mpf("1e-14")
-    errors = {
-        f"backward {name}": abs(law[name](a) - got[name]) / (scale[name] * bound[name] * steep)
-        for name in law
-    }
+    errors = {f"backward {name}": abs(law[name](a) - got[name]) / (scale[name] * bound[name] * steep) for name in law}
     own = "force" if control == "force" else "indentation"
     exact = a if control == "contact_radius" else twin.radius(control, got[control])
     X = 1 - law[own](exact) / law[own](fold) if twin.work else mp.mpf(1)
@@ -92,9 +87,7 @@ def excesses(twin: Twin, control: str, got: dict[str, float]) -> dict[str, float
     errors["contact_area"] = abs(got["contact_area"] - mp.pi * exact**2) / (2 * forward * exact**2 * mp.pi)
     for name, formula in law.items():
         errors[name] = abs(formula(exact) - got[name]) / (forward * scale[name])
-    errors["stiffness"] = abs(got["stiffness"] - k) / (
-        (mp.mpf("1e-12") + mp.mpf("1e-15") / X) * max(abs(k), plain)
-    )
+    errors["stiffness"] = abs(got["stiffness"] - k) / ((mp.mpf("1e-12") + mp.mpf("1e-15") / X) * max(abs(k), plain))
     size = {"contact_radius": exact, "contact_area": exact**2, "stiffness": k, **scale}
     held = {name for name, number in size.items() if representable([number])}
     return {name: float(error) for name, error in errors.items() if name.removeprefix("backward ") in held}

@@ -22,9 +22,7 @@ moderate = st.floats(-12.0, 12.0).map(lambda d: 10.0**d)
 exponents = st.floats(0.3, 300.0)
 sizes = st.one_of(exponents, moderate, decades, st.floats(allow_nan=False, allow_infinity=False))
 works = st.one_of(st.just(0.0), sizes)
-controls = st.builds(
-    lambda size, sign: sign * size, st.one_of(st.just(0.0), sizes), st.sampled_from([1.0, -1.0])
-)
+controls = st.builds(lambda size, sign: sign * size, st.one_of(st.just(0.0), sizes), st.sampled_from([1.0, -1.0]))
 
 
 @compiled
@@ -60,9 +58,7 @@ def test_indent(
 @pytest.mark.parametrize("kind", KINDS)
 @given(parameters=st.tuples(sizes, sizes, sizes), modulus=sizes, work=works)
 @settings(deadline=None, max_examples=150)
-def test_pull_off(
-    kind: str, control: str, parameters: tuple[float, float, float], modulus: float, work: float
-) -> None:
+def test_pull_off(kind: str, control: str, parameters: tuple[float, float, float], modulus: float, work: float) -> None:
     try:
         with np.errstate(all="ignore"):
             off = rm.pull_off(KINDS[kind](parameters), modulus=modulus, work=work, control=control)

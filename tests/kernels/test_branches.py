@@ -32,18 +32,14 @@ def onset(shape: rm.PowerLaw, control: str) -> float:
 
 @every_shape
 @every_work
-@pytest.mark.parametrize(
-    ("control", "through"), [("indentation", "contact_radius"), ("force", "indentation")]
-)
+@pytest.mark.parametrize(("control", "through"), [("indentation", "contact_radius"), ("force", "indentation")])
 def test_there_and_back(shape: rm.PowerLaw, work: float, control: str, through: str) -> None:
     distance = np.logspace(-1, 3, 41)
     values = -onset(shape, control) * (distance if work == 0.0 else distance - 1.0)
     there = indent(shape, work, **{control: values})
     back = indent(shape, work, **{through: there[through].values})
     np.testing.assert_allclose(back[control], values, rtol=1e-12, atol=-1e-12 * onset(shape, control))
-    np.testing.assert_allclose(
-        back.stiffness, there.stiffness, rtol=1e-11, atol=1e-11 * E * there.contact_radius[0]
-    )
+    np.testing.assert_allclose(back.stiffness, there.stiffness, rtol=1e-11, atol=1e-11 * E * there.contact_radius[0])
 
 
 @every_shape
@@ -98,9 +94,7 @@ def test_no_contact_holds_a_stronger_pull(shape: rm.PowerLaw, work: float) -> No
 
 @every_shape
 @pytest.mark.parametrize("modulus", [1e3, 3.3e4, 7.1e6, 1.9e9, 5.7e12])
-def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(
-    shape: rm.PowerLaw, modulus: float
-) -> None:
+def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(shape: rm.PowerLaw, modulus: float) -> None:
     off = rm.pull_off(shape, modulus=modulus, work=W, control="force")
     at_fold = rm.indent(shape, modulus=modulus, work=W, force=float(off.force))
     assert float(at_fold.contact_radius) == pytest.approx(float(off.contact_radius), rel=1e-6)

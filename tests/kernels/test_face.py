@@ -27,9 +27,7 @@ every_control = pytest.mark.parametrize("control", VALUES)
 @every_shape
 @every_work
 @every_control
-def test_the_control_is_the_dimension_in_the_order_given(
-    shape: rm.PowerLaw, work: float, control: str
-) -> None:
+def test_the_control_is_the_dimension_in_the_order_given(shape: rm.PowerLaw, work: float, control: str) -> None:
     contact = rm.indent(shape, modulus=1e9, work=work, **{control: VALUES[control]})
     assert set(contact.variables) == set(UNITS)
     assert set(contact.coords) == {control}

@@ -52,9 +52,7 @@ def test_pull_off_of_a_cone(slope: float) -> None:
     assert close(held.contact_radius, 2 * W / (math.pi * slope**2 * E))
 
 
-def rescaled(
-    shape: rm.PowerLaw | rm.Paraboloid | rm.Cone, length: float
-) -> rm.PowerLaw | rm.Paraboloid | rm.Cone:
+def rescaled(shape: rm.PowerLaw | rm.Paraboloid | rm.Cone, length: float) -> rm.PowerLaw | rm.Paraboloid | rm.Cone:
     powers = {"radius": 1.0, "slope": 0.0, "exponent": 0.0, "width": 1.0, "rise": 1.0}
     given = shape.parameters
     powers["coefficient"] = 1.0 - given.get("exponent", 1.0)
@@ -107,9 +105,7 @@ def test_a_power_law_is_the_shape_it_describes(power: rm.PowerLaw, named: rm.Con
     onset = float(rm.pull_off(named, modulus=E, work=W).indentation)
     for control in ({"indentation": np.array([0.9, -0.5, -20.0]) * onset}, {"force": [0.0, 1e-8, 1e-3]}):
         got = rm.indent(power, modulus=E, work=work, **control)
-        xr.testing.assert_allclose(
-            got, rm.indent(named, modulus=E, work=work, **control), rtol=1e-13, atol=0.0
-        )
+        xr.testing.assert_allclose(got, rm.indent(named, modulus=E, work=work, **control), rtol=1e-13, atol=0.0)
 
 
 def test_hertz() -> None:
@@ -120,19 +116,14 @@ def test_hertz() -> None:
     np.testing.assert_allclose(contact.stiffness, 2 * E * np.sqrt(1e-6 * delta), rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    "shape", [SPHERE, rm.Cone(slope=0.3), rm.PowerLaw(exponent=3.3, coefficient=1e12)], ids=str
-)
+@pytest.mark.parametrize("shape", [SPHERE, rm.Cone(slope=0.3), rm.PowerLaw(exponent=3.3, coefficient=1e12)], ids=str)
 def test_weak_adhesion_tends_to_no_adhesion(shape: rm.PowerLaw) -> None:
     """At fixed indentation a grows by dl/g' ~ w^1/2; the force is stationary in a, so it falls by ~ w."""
     elastic = rm.indent(shape, modulus=E, indentation=1e-8)
     works = W * 2.0 ** -np.arange(20.0, 28.0)
     order = {}
     for name in ("contact_radius", "force"):
-        gaps = [
-            float(abs(rm.indent(shape, modulus=E, work=w, indentation=1e-8)[name] - elastic[name]))
-            for w in works
-        ]
+        gaps = [float(abs(rm.indent(shape, modulus=E, work=w, indentation=1e-8)[name] - elastic[name])) for w in works]
         order[name] = np.polyfit(np.log(works), np.log(gaps), 1)[0]
     assert order["contact_radius"] == pytest.approx(0.5, abs=0.01)
     assert order["force"] == pytest.approx(1.0, abs=0.01)

@@ -36,7 +36,7 @@ def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Real) -> Real:
 
 
 def radii(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw) -> np.ndarray:
-    return np.array([0.03, 0.9, 1.7]) * shape.parameters.get("width", 1e-6)
+    return np.array([0.3, 0.9, 1.7]) * shape.parameters.get("width", 1e-6)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
@@ -51,7 +51,7 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
                 return slope(shape, x * s) / steepest
 
             # r = x sin(angle) takes the root out of both integrands.
-            angles = [mp.pi * part / 40 for part in (0, 12, 16, 18, 19, 20)]
+            angles = [0, 1, mp.pi / 2]
             exact = {
                 "f": x * steepest * mp.quad(relative, [0, mp.mpf(1) / 2, 1]),
                 "g": x * steepest * mp.quad(lambda t: relative(mp.sin(t)), angles),
