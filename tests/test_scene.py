@@ -127,7 +127,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"batch": {"realizations": True}}, "batch.realizations = True: expected a whole number"),
         ({"seed": -1}, "seed = -1"),
         ({"interaction": {"model": "pairwise"}}, "interaction: unknown key"),
-        ({"asperities": {"source": "surface", "file": "a.nc"}}, "batch.realizations: must be 1 with a measured surface"),
+        ({"asperities": {"source": "surface", "file": "a.nc"}}, "batch.realizations: must be 1 with a measured"),
         ({"asperities": {"source": "surface"}, "batch": None}, "asperities.file: is missing"),
         ({"asperities": {}}, "asperities.source: is missing; it can be random, surface"),
         ({"asperities": {**SCENE["asperities"], "height": "1 um"}}, "cannot be given in sigma"),
