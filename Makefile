@@ -20,10 +20,14 @@ lint: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# Every file of every installed package is still there.
+INTACT := import sys; from importlib.metadata import distributions; \
+  sys.exit(any(not file.locate().exists() for package in distributions() for file in package.files or []))
+
 # A set-up counts only when it was finished from this lock file by a Python that still runs.
 setup:
 	@if ! cmp -s requirements.lock $(READY) || \
-	  ! { $(BIN)/python -m pip check && $(BIN)/roughmdr --version; } >/dev/null 2>&1; then \
+	  ! { $(BIN)/python -c "$(INTACT)" && $(BIN)/roughmdr --version; } >/dev/null 2>&1; then \
 	  $(MAKE) --no-print-directory $(READY); fi
 
 .PHONY: $(READY)

@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -54,12 +55,13 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
     from roughmdr.scene import read
     from roughmdr.store import check_writable
 
+    started = time.perf_counter()
     asked = read(scene, changes)
     check_writable(output)
     command = "roughmdr " + shlex.join(sys.argv[1:])
     result = execute(make_plan(asked), output, workers=workers, quiet=quiet, command=command)
     if not quiet:
-        click.echo(_summary(result))
+        click.echo(_summary(result, time.perf_counter() - started))
         click.echo(f"result       {output}")
 
 
@@ -76,7 +78,7 @@ def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     click.echo(f"picture      {output}")
 
 
-def _summary(result: "xr.Dataset") -> str:
+def _summary(result: "xr.Dataset", elapsed: float) -> str:
     from roughmdr.analysis import pull_off_force
 
     count, steps = result.sizes["realization"], result.sizes["step"]
@@ -94,7 +96,7 @@ def _summary(result: "xr.Dataset") -> str:
             text = f"{pull_off.mean:.4g} N ± {error} N (mean and standard error over {count} realisations)"
         lines.append(f"pull-off     {text}")
     lines.append(
-        f"run time     {float(result['run_time'].sum()):.3g} s of computing; "
+        f"run time     {elapsed:.2f} s, of them {float(result['run_time'].sum()):.3g} s in the realisations; "
         f"numerical error at most {float(result['numerical_error'].max()):.1e} of the largest force"
     )
     left_out = result.attrs["left_out"].splitlines()
