@@ -85,7 +85,7 @@ def log(x: Pair) -> Pair:
 
 @njit
 def exp(x: Pair) -> Pair:
-    """e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, absolute."""
+    """e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, and x[1]^2/2."""
     y = math.exp(x[0])
     error = add(x, multiply((-1.0, 0.0), log((y, 0.0))))
     return two_sum(y, y * (error[0] + error[1]))

@@ -26,6 +26,7 @@ class Contact(NamedTuple):
     force: float
     stiffness: float
     force_control: tuple[float, float]
+    radius_under_force: float
 
     @classmethod
     def of(cls, shape: Shape, modulus: float, work: float) -> "Contact":
@@ -36,13 +37,14 @@ class Contact(NamedTuple):
         width, rise, form = (float(column[0]) for column in columns)
         law = choose(shape.name, work, columns[2])
         depth, radius, force, stiffness = law.natural(modulus, work, width, rise, form)
-        force_control = law.natural_force(modulus, work, width, rise, form)
+        force_control, radius_under_force = law.natural_force(modulus, work, width, rise, form)
         scales = {
             "indentation": depth[0],
             "contact_radius": radius,
             "force": force,
             "stiffness": stiffness,
             "pull-off force": force_control[0],
+            "contact_radius under dead load": radius_under_force,
         }
         for quantity, scale in scales.items():
             if not np.finfo(float).tiny <= scale < math.inf:
@@ -50,13 +52,17 @@ class Contact(NamedTuple):
                     f"the natural {quantity} of {shape} with modulus {modulus:g} Pa and work {work:g} J/m^2 "
                     f"is not representable (it must lie between 2e-308 and 2e308 in SI units)"
                 )
-        return cls(law, form, depth, radius, force, stiffness, force_control)
+        return cls(law, form, depth, radius, force, stiffness, force_control, radius_under_force)
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
-        """Distance of ``value`` to the onset of contact over ``scale`` (the fold at -scale with adhesion, else 0)."""
+        """Distance >= 0 of ``value`` to the onset of contact, over ``scale``: to the fold at -scale, or without it to 0.
+
+        The float that is nearest to the fold stands for the fold itself.
+        """
         if not self.law.adhesive:
             return np.asarray(value / scale[0])
-        return np.asarray(((value + scale[0]) + scale[1]) / scale[0])
+        distance = ((value + scale[0]) + scale[1]) / scale[0]
+        return np.where(value == -scale[0], 0.0, distance).clip(min=0.0)
 
     def indentation(self, state: Floats) -> Floats:
         """Indentation [m] of each state."""
@@ -104,12 +110,13 @@ def indent(
     values = _control_values(control, raw)
     contact = Contact.of(shape, modulus, work)
     solve = {"indentation": _at_indentation, "force": _at_force, "contact_radius": _at_radius}[control]
-    results = solve(contact, np.atleast_1d(values))
-    results[control] = np.atleast_1d(values)
-    results["contact_area"] = math.pi * results["contact_radius"] * results["contact_radius"]
+    with np.errstate(all="ignore"):  # what overflows is refused below
+        results = {**solve(contact, np.atleast_1d(values)), control: np.atleast_1d(values)}
+        results["contact_area"] = math.pi * results["contact_radius"] * results["contact_radius"]
     for name, numbers in results.items():
-        if not np.isfinite(numbers).all():
-            worst = np.atleast_1d(values)[~np.isfinite(numbers)][0]
+        lost = ~np.isfinite(numbers) | ((name == "contact_area") & (numbers == 0.0) & (results["contact_radius"] > 0.0))
+        if lost.any():
+            worst = np.atleast_1d(values)[lost][0]
             raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control)
 
@@ -125,23 +132,22 @@ def pull_off(
     if control not in ("displacement", "force"):
         raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
     contact = Contact.of(shape, modulus, work)
-    law, form = contact.law, contact.form
-    if not law.adhesive:
+    if not contact.law.adhesive:
         return _dataset({name: np.zeros(()) for name in ("force", "indentation", "contact_radius")}, None)
-    state = law.state(0.0, form) if control == "displacement" else law.state_of_force(0.0, form)
-    results = {
-        "force": contact.force * law.force(state, form),
-        "indentation": float(contact.indentation(np.array([state]))[0]),
-        "contact_radius": contact.radius * law.radius(state, form),
-    }
-    return _dataset({name: np.asarray(value) for name, value in results.items()}, None)
+    with np.errstate(all="ignore"):
+        if control == "displacement":
+            fold = np.array([-contact.depth[0]])
+            results = {**_at_indentation(contact, fold), "indentation": fold}
+        else:
+            results = _at_force(contact, np.array([-contact.force_control[0]]))
+    return _dataset({name: results[name].reshape(()) for name in ("force", "indentation", "contact_radius")}, None)
 
 
 def _at_indentation(contact: Contact, delta: Floats) -> dict[str, Floats]:
     law = contact.law
     onset = -contact.depth[0] if law.adhesive else 0.0
     touching = (delta >= onset) if law.adhesive else (delta > 0.0)
-    distance = np.where(touching, contact.reduced(delta, contact.depth), 1.0).clip(min=0.0)
+    distance = np.where(touching, contact.reduced(delta, contact.depth), 1.0)
     state = apply(law.state, distance, contact.form)
     one_step_above = contact.reduced(np.nextafter(onset, math.inf) * np.ones(1), contact.depth)
     off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, contact.form), state)
@@ -159,14 +165,10 @@ def _at_force(contact: Contact, force: Floats) -> dict[str, Floats]:
     lowest = -contact.force_control[0] if law.adhesive else 0.0
     if (force < lowest).any():
         worst = float(force.min())
-        raise OutOfRange(f"force is {worst:g} N; the contact holds no more than the pull-off force, {lowest:g} N")
-    distance = contact.reduced(force, contact.force_control).clip(min=0.0)
-    state = apply(law.state_of_force, distance, contact.form)
-    return {
-        "indentation": contact.indentation(state),
-        "contact_radius": contact.radius * apply(law.radius, state, contact.form),
-        "stiffness": contact.stiffness * apply(law.stiffness, state, contact.form),
-    }
+        raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
+    distance = contact.reduced(force, contact.force_control)
+    radius = contact.radius_under_force * apply(law.radius_of_force, distance, contact.form)
+    return {**_at_radius(contact, radius), "contact_radius": radius, "force": force}
 
 
 def _at_radius(contact: Contact, radius: Floats) -> dict[str, Floats]:

@@ -21,7 +21,7 @@ SCENE: dict[str, Any] = {
     "adhesion": {"model": "jkr", "work": "50 mJ/m^2"},
     "asperities": ASPERITIES,
     "path": {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 40}, "unload": True},
-    "batch": {"realizations": 7},
+    "batch": {"realizations": 16},
 }
 
 

@@ -99,12 +99,12 @@ def stiffness(t: float, n: float) -> float:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """The force [N] at t = 1."""
-    return 2.0 * modulus * width * (kappa(n) * rise) * (n / (n + 1.0)), 0.0
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+    """The force [N] at t = 1, and the radius [m] there."""
+    return (2.0 * modulus * width * (kappa(n) * rise) * (n / (n + 1.0)), 0.0), width
 
 
 @njit
-def state_of_force(x: float, n: float) -> float:
-    """t at x >= 0, the force over that at t = 1."""
+def radius_of_force(x: float, n: float) -> float:
+    """t at x >= 0, the force over that at t = 1: x = t^(n + 1)."""
     return state_power(x, n + 1.0)

@@ -18,12 +18,13 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """|P_c| = 54 w^2/(pi S^3 E*) [N] under dead load."""
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+    """|P_c| = 54 w^2/(pi S^3 E*) [N] under dead load, and a_P = 9 a_c [m]."""
     slope = extended.divide((rise, 0.0), (width, 0.0))
     depth = extended.divide((work, 0.0), extended.multiply(slope, (modulus, 0.0)))
     a_c = extended.divide(extended.multiply((2.0, 0.0), depth), extended.multiply(extended.PI, slope))
-    return extended.multiply(extended.multiply((27.0 * modulus, 0.0), a_c), depth)
+    force = extended.multiply(extended.multiply(extended.two_product(27.0, modulus), a_c), depth)
+    return force, 9.0 * a_c[0]
 
 
 @njit
@@ -39,9 +40,9 @@ def state_of_radius(ratio: float, n: float) -> float:
 
 
 @njit
-def state_of_force(x: float, n: float) -> float:
-    """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
-    return 3.0 * math.exp(branch(x, 1.0 / 3.0) / 3.0) - 1.0
+def radius_of_force(x: float, n: float) -> float:
+    """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
+    return math.exp(2.0 / 3.0 * branch(x, 1.0 / 3.0))
 
 
 @njit

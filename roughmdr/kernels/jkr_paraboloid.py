@@ -49,10 +49,12 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """|P_c| = 3/2 pi w R [N] under dead load."""
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+    """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
     curvature_radius = width * (width / (2.0 * rise))
-    return extended.multiply(extended.PI, extended.two_product(1.5 * work, curvature_radius))
+    force = extended.multiply(extended.PI, extended.multiply((1.5 * work, 0.0), (curvature_radius, 0.0)))
+    reduced = _reduced_work(modulus, work, curvature_radius)[0]
+    return force, 0.5 * curvature_radius * float(np.cbrt(9.0 * reduced))
 
 
 @njit
@@ -76,9 +78,9 @@ def state_of_radius(ratio: float, n: float) -> float:
 
 
 @njit
-def state_of_force(x: float, n: float) -> float:
-    """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load: tau^3 = 3 (1 + sqrt x)."""
-    return float(np.cbrt(3.0 * (1.0 + math.sqrt(x)))) - 1.0
+def radius_of_force(x: float, n: float) -> float:
+    """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load: (1 + sqrt x)^(2/3)."""
+    return float(np.cbrt((1.0 + math.sqrt(x)) ** 2))
 
 
 @njit

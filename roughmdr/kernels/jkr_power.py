@@ -42,19 +42,6 @@ def log_depth(modulus: float, work: float, width: float, rise: float, n: float) 
 
 
 @njit
-def log_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """ln |P_c| under dead load: P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2)."""
-    log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
-    e = extended.two_sum(2.0 * n, -1.0)
-    scale = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * modulus, 0.0)))
-    fold = extended.add(
-        extended.multiply((3.0, 0.0), extended.divide(extended.LOG_3, e)),
-        extended.log(extended.divide(e, extended.two_sum(2.0 * n, 2.0))),
-    )
-    return extended.add(scale, fold)
-
-
-@njit
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
     log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
@@ -114,10 +101,9 @@ def state_of_radius(ratio: float, n: float) -> float:
 
 
 @njit
-def state_of_force(x: float, n: float) -> float:
-    """l at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
-    e = 2.0 * n - 1.0
-    return (math.log(3.0) / e) + branch(x, e / 3.0) / 3.0
+def radius_of_force(x: float, n: float) -> float:
+    """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
+    return math.exp(2.0 / 3.0 * branch(x, (2.0 * n - 1.0) / 3.0))
 
 
 @njit
@@ -146,9 +132,15 @@ def stiffness(l: float, n: float) -> float:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """|P_c| [N] under dead load; 0 where no float can hold it."""
-    logarithm = log_force(modulus, work, width, rise, n)
-    if not abs(logarithm[0]) < _LOG_LARGEST:
-        return 0.0, 0.0
-    return extended.exp(logarithm)
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+    """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 where no float holds them."""
+    log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
+    e = extended.two_sum(2.0 * n, -1.0)
+    log_tau = extended.divide(extended.LOG_3, e)
+    log_force = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * modulus, 0.0)))
+    log_force = extended.add(log_force, extended.multiply((3.0, 0.0), log_tau))
+    log_force = extended.add(log_force, extended.log(extended.divide(e, extended.two_sum(2.0 * n, 2.0))))
+    log_radius = extended.add(log_radius, extended.multiply((2.0, 0.0), log_tau))
+    if not (abs(log_force[0]) < _LOG_LARGEST and abs(log_radius[0]) < _LOG_LARGEST):
+        return (0.0, 0.0), 0.0
+    return extended.exp(log_force), extended.exp(log_radius)[0]

@@ -23,12 +23,12 @@ class Law(NamedTuple):
     adhesive: bool
     natural: Callable[..., tuple[tuple[float, float], float, float, float]]
     """(modulus, work, width, rise, form) -> depth (hi, lo), radius, force, stiffness."""
-    natural_force: Callable[..., tuple[float, float]]
-    """(modulus, work, width, rise, form) -> the force (hi, lo) that force control is reduced by."""
+    natural_force: Callable[..., tuple[tuple[float, float], float]]
+    """(modulus, work, width, rise, form) -> the force (hi, lo) that force control is reduced by, and its radius."""
     state: Kernel
     """(x, form) -> the state on the branch that a retraction follows."""
-    state_of_force: Kernel
-    """(x, form) -> the state, x being the distance to the onset under dead load over ``natural_force``."""
+    radius_of_force: Kernel
+    """(x, form) -> a over the radius of ``natural_force``; x is the distance to the onset under dead load."""
     state_of_radius: Kernel
     """(a over natural radius, form) -> the state."""
     distance: Kernel
@@ -48,7 +48,7 @@ def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kerne
         natural=natural,
         natural_force=elastic.natural_force,
         state=state,
-        state_of_force=elastic.state_of_force,
+        radius_of_force=elastic.radius_of_force,
         state_of_radius=elastic.state_of_radius,
         distance=elastic.distance,
         radius=elastic.radius,
@@ -71,7 +71,7 @@ _JKR = {
         natural=kernels.natural,
         natural_force=kernels.natural_force,
         state=kernels.state,
-        state_of_force=kernels.state_of_force,
+        radius_of_force=kernels.radius_of_force,
         state_of_radius=kernels.state_of_radius,
         distance=kernels.distance,
         radius=kernels.radius,

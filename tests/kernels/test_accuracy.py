@@ -71,8 +71,8 @@ def excesses(twin: Twin, control: str, got: dict[str, float]) -> dict[str, float
     """Each error over its bound."""
     law = {"indentation": twin.indentation, "force": twin.force}
     a = mp.mpf(got["contact_radius"])
-    # a itself is rounded by 1.1e-16 of it, which moves delta by n times as much: beyond n = 30 that takes the bound.
-    steep = max(1, twin.n / 30)
+    # Each of the four roundings that make a (of its scale, the growth, the product, and a itself) moves delta by n u.
+    steep = max(1, 4 * twin.n * 2.0**-53 / 1e-14)
     fold = twin.fold("force" if control == "force" else "indentation")
     scale = {name: max(abs(mp.mpf(got[name])), abs(law[name](fold))) for name in law}
     bound = {"indentation": mp.mpf("1e-13"), "force": mp.mpf("1e-13")}
