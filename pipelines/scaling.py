@@ -102,7 +102,7 @@ def by_brentq(ensemble: Ensemble, path: np.ndarray, work: float) -> float:
     height, radius = ensemble.height[:300], ensemble.parameters["radius"][:300]
 
     def indentation(a: float, R: float, delta: float) -> float:
-        return a * a / R - np.sqrt(2.0 * np.pi * a * work / MODULUS) - delta
+        return float(a * a / R - np.sqrt(2.0 * np.pi * a * work / MODULUS) - delta)
 
     def action() -> int:
         visits, force = 0, 0.0

@@ -55,7 +55,7 @@ class Contact(NamedTuple):
         return cls(law, form, depth, radius, force, stiffness, force_control, radius_under_force)
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
-        """Distance >= 0 of ``value`` to the onset of contact, over ``scale``: to the fold at -scale, or without it to 0.
+        """Distance >= 0 of ``value`` to the onset of contact over ``scale``: to the fold at -scale, or to 0.
 
         The float that is nearest to the fold stands for the fold itself.
         """

@@ -133,7 +133,7 @@ def stiffness(l: float, n: float) -> float:
 
 @njit
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
-    """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 where no float holds them."""
+    """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable."""
     log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
     e = extended.two_sum(2.0 * n, -1.0)
     log_tau = extended.divide(extended.LOG_3, e)
