@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.arguments import check_number, check_values
+from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.kernels.elementwise import apply
 from roughmdr.kernels.laws import Law, choose
 from roughmdr.shapes.base import Floats, Shape
@@ -20,39 +21,51 @@ class Contact(NamedTuple):
     """A law with the natural scales of one asperity."""
 
     law: Law
-    form: float
+    arguments: tuple[float, float, float, float, float]
+    """modulus, work, width, rise, form."""
     depth: tuple[float, float]
     radius: float
     force: float
     stiffness: float
-    force_control: tuple[float, float]
-    radius_under_force: float
 
     @classmethod
     def of(cls, shape: Shape, modulus: float, work: float) -> "Contact":
         """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
-        modulus = check_number("modulus", modulus, "Pa", zero=False)
+        if not isinstance(shape, Shape):
+            raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
+        modulus = check_number("modulus", modulus, "Pa")
         work = check_number("work", work, "J/m^2", zero=True)
         columns = shape.stretch({name: np.array([value]) for name, value in shape.parameters.items()})
         width, rise, form = (float(column[0]) for column in columns)
         law = choose(shape.name, work, columns[2])
-        depth, radius, force, stiffness = law.natural(modulus, work, width, rise, form)
-        force_control, radius_under_force = law.natural_force(modulus, work, width, rise, form)
-        scales = {
-            "indentation": depth[0],
-            "contact_radius": radius,
-            "force": force,
-            "stiffness": stiffness,
-            "pull-off force": force_control[0],
-            "contact_radius under dead load": radius_under_force,
-        }
+        contact = cls(law, (modulus, work, width, rise, form), *law.natural(modulus, work, width, rise, form))
+        contact._check(
+            indentation=contact.depth[0],
+            contact_radius=contact.radius,
+            force=contact.force,
+            stiffness=contact.stiffness,
+        )
+        return contact
+
+    @property
+    def form(self) -> float:
+        """The third number of ``Shape.stretch``."""
+        return self.arguments[-1]
+
+    def under_load(self) -> tuple[tuple[float, float], float]:
+        """The force [N] that force control is reduced by, and its radius [m]."""
+        force, radius = self.law.natural_force(*self.arguments)
+        self._check(force=force[0], contact_radius=radius)
+        return force, radius
+
+    def _check(self, **scales: float) -> None:
         for quantity, scale in scales.items():
             if not np.finfo(float).tiny <= scale < math.inf:
+                modulus, work, width, rise, form = self.arguments
                 raise OutOfRange(
-                    f"the natural {quantity} of {shape} with modulus {modulus:g} Pa and work {work:g} J/m^2 "
-                    f"is not representable (it must lie between 2e-308 and 2e308 in SI units)"
+                    f"the natural {quantity} is not representable (2e-308 to 2e308 in SI): modulus {modulus:g} Pa, "
+                    f"work {work:g} J/m^2, asperity of width {width:g} m, rise {rise:g} m, exponent {form:g}"
                 )
-        return cls(law, form, depth, radius, force, stiffness, force_control, radius_under_force)
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
         """Distance >= 0 of ``value`` to the onset of contact over ``scale``: to the fold at -scale, or to 0.
@@ -107,7 +120,7 @@ def indent(
         names = " and ".join(given) or "none"
         raise RoughmdrError(f"got {names}; indent takes exactly one of indentation, force, contact_radius")
     ((control, raw),) = given.items()
-    values = _control_values(control, raw)
+    values = check_values(control, raw)
     contact = Contact.of(shape, modulus, work)
     solve = {"indentation": _at_indentation, "force": _at_force, "contact_radius": _at_radius}[control]
     with np.errstate(all="ignore"):  # what overflows is refused below
@@ -126,7 +139,7 @@ def pull_off(
 ) -> "xr.Dataset":
     """Where a slow retraction lets go: under fixed grips ("displacement") or dead load ("force").
 
-    The global minimum of delta(a), or of P(a) (H 45 ff.). modulus is E* [Pa], work [J/m^2]. Returns a Dataset of
+    The global minimum of delta(a), or of P(a). modulus is E* [Pa], work [J/m^2]. Returns a Dataset of
     scalars: force [N], indentation [m], contact_radius [m]; all 0 without adhesion. Raises OutOfRange as ``indent``.
     """
     if control not in ("displacement", "force"):
@@ -139,7 +152,7 @@ def pull_off(
             fold = np.array([-contact.depth[0]])
             results = {**_at_indentation(contact, fold), "indentation": fold}
         else:
-            results = _at_force(contact, np.array([-contact.force_control[0]]))
+            results = _at_force(contact, np.array([-contact.under_load()[0][0]]))
     return _dataset({name: results[name].reshape(()) for name in ("force", "indentation", "contact_radius")}, None)
 
 
@@ -162,12 +175,12 @@ def _at_indentation(contact: Contact, delta: Floats) -> dict[str, Floats]:
 
 def _at_force(contact: Contact, force: Floats) -> dict[str, Floats]:
     law = contact.law
-    lowest = -contact.force_control[0] if law.adhesive else 0.0
+    scale, radius_there = contact.under_load()
+    lowest = -scale[0] if law.adhesive else 0.0
     if (force < lowest).any():
         worst = float(force.min())
         raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
-    distance = contact.reduced(force, contact.force_control)
-    radius = contact.radius_under_force * apply(law.radius_of_force, distance, contact.form)
+    radius = radius_there * apply(law.radius_of_force, contact.reduced(force, scale), contact.form)
     return {**_at_radius(contact, radius), "contact_radius": radius, "force": force}
 
 
@@ -186,31 +199,6 @@ def _at_radius(contact: Contact, radius: Floats) -> dict[str, Floats]:
         "stiffness": contact.stiffness * apply(law.stiffness, off_the_fold, contact.form),
     }
     return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
-
-
-def _control_values(name: str, raw: ArrayLike) -> Floats:
-    try:
-        values = np.asarray(raw, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise OutOfRange(f"{name} is {raw!r}; it must be a number or a one-dimensional array") from None
-    if values.ndim > 1:
-        raise OutOfRange(f"{name} has {values.ndim} dimensions; it must be a number or a one-dimensional array")
-    if not np.isfinite(values).all():
-        worst = np.atleast_1d(values)[~np.isfinite(np.atleast_1d(values))][0]
-        raise OutOfRange(f"{name} is {worst}; it must be finite")
-    return values
-
-
-def check_number(name: str, value: float, unit: str, *, zero: bool) -> float:
-    """``value`` as a float; OutOfRange unless it is finite and above 0 (or 0, where that is allowed)."""
-    allowed = f"a finite number {'of at least' if zero else 'above'} 0 {unit}"
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise OutOfRange(f"{name} is {value!r}; it must be {allowed}") from None
-    if not (math.isfinite(number) and (number > 0.0 or (zero and number == 0.0))):
-        raise OutOfRange(f"{name} is {number:g} {unit}; it must be {allowed}")
-    return number
 
 
 def _dataset(results: dict[str, Floats], control: str | None) -> "xr.Dataset":

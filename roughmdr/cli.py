@@ -47,6 +47,9 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
 @click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable.")
 @click.option("--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads.")
+@click.option(
+    "--scheduler", type=click.Choice(["threads"]), default="threads", expose_value=False, help="What runs the workers."
+)
 @click.option("--quiet", is_flag=True, help="Say nothing but errors.")
 def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet: bool) -> None:
     """Compute SCENE and write its load-separation law."""
@@ -57,7 +60,7 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
 
     started = time.perf_counter()
     asked = read(scene, changes)
-    check_writable(output)
+    check_writable(output, [scene, *asked.asperities.inputs])
     command = "roughmdr " + shlex.join(sys.argv[1:])
     result = execute(make_plan(asked), output, workers=workers, quiet=quiet, command=command)
     if not quiet:

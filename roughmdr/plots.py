@@ -42,7 +42,7 @@ def plot(result: "xr.Dataset", path: Path, variables: list[str] | None = None) -
     axes.flat[0].legend(frameon=False)
     count = result.sizes["realization"]
     note = f"{count} realisations, mean ± 2 standard errors" if count > 1 else "one realisation"
-    figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11)
+    figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11, parse_math=False)
     suffix = path.suffix.lstrip(".").lower() or "png"
     if suffix not in figure.canvas.get_supported_filetypes():
         raise StoreError(f"{path}: cannot draw a .{suffix}; try .png, .pdf or .svg")
@@ -56,19 +56,20 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
     scale, prefix = 1.0, ""
     if values.units != "1":
         scale, prefix = _scale(_shown(values).to_numpy(), power=2 if values.units == "m2" else 1)
-    means: dict[str, tuple[Floats, Floats]] = {}
-    for branch, colour in _INK.items():
-        steps = np.flatnonzero(result["branch"].to_numpy() == branch)
-        if steps.size == 0:
-            continue
-        part = values.isel(step=steps)
+    branches = result["branch"].to_numpy()
+    sweeps = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    means: list[tuple[str, Floats, Floats]] = []
+    for steps in sweeps:
+        branch = str(branches[steps[0]])
+        part, colour = values.isel(step=steps), _INK[branch]
         h = result["separation"].isel(step=steps).to_numpy() / h_scale
         mean, error = part.mean("realization").to_numpy() / scale, standard_error(part).to_numpy() / scale
         ax.plot(h, part.to_numpy().T / scale, color=colour, lw=0.3, alpha=0.25)
-        means[branch] = h, mean
         if name != "stiffness" or branch == "loading":  # where contacts snap its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
-        ax.plot(h, mean, color=colour, lw=1.8, label=branch)
+        first = branch not in [other for other, _, _ in means]
+        ax.plot(h, mean, color=colour, lw=1.8, label=branch if first else None)
+        means.append((branch, h, mean))
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
@@ -82,17 +83,17 @@ def _draw(ax: "Axes", result: "xr.Dataset", name: str) -> None:
     ax.set_xlabel(f"separation [{h_prefix}m]")
 
 
-def _zoom_on_tension(ax: "Axes", means: dict[str, tuple[Floats, Floats]]) -> None:
+def _zoom_on_tension(ax: "Axes", means: list[tuple[str, Floats, Floats]]) -> None:
     """An inset where the tension is too small beside the compression to be seen."""
-    h, values = (np.concatenate([curve[i] for curve in means.values()]) for i in (0, 1))
+    h, values = (np.concatenate([curve[i] for curve in means]) for i in (1, 2))
     lowest = float(values.min())
-    if not -0.2 * values.max() < lowest < 0.0:
+    tense = h[values < 0.02 * lowest]
+    if not -0.2 * values.max() < lowest < 0.0 or np.ptp(tense) == 0.0:
         return
     inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
-    for branch, curve in means.items():
+    for branch, *curve in means:
         inset.plot(*curve, color=_INK[branch], lw=1.2)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
-    tense = h[values < 0.02 * lowest]
     inset.set(xlim=(tense.min(), tense.max()), ylim=(1.3 * lowest, -1.3 * lowest))
     inset.tick_params(labelsize=7)
 

@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,9 @@ class Shard(NamedTuple):
 def run(
     scene: str | Path | dict[str, Any] | Scene,
     out: str | Path | None = None,
-    *,
     workers: int = 2,
+    scheduler: Literal["threads"] = "threads",
+    *,
     quiet: bool = True,
 ) -> "xr.Dataset":
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
@@ -39,12 +40,17 @@ def run(
     The result lies over realization and step and does not depend on ``workers``, to the last bit. ``quiet`` leaves out
     the progress display. SceneError, OutOfRange or StoreError say what is wrong before anything is written.
     """
+    if scheduler != "threads":
+        raise RoughmdrError(f"scheduler is {scheduler!r}; it must be 'threads'")
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
     target = None if out is None else Path(out)
     if target is not None:
-        check_writable(target)
-    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet)
+        check_writable(target, [Path(scene)] if isinstance(scene, str | Path) else [])
+    asked = read(scene)
+    if target is not None:
+        check_writable(target, asked.asperities.inputs)
+    return execute(make_plan(asked), target, workers=workers, quiet=quiet)
 
 
 def execute(

@@ -4,7 +4,7 @@ import contextlib
 import os
 import platform
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -62,10 +62,14 @@ def assemble(
     return xr.Dataset(data, coords=plan.route.coordinates(), attrs=attrs)
 
 
-def check_writable(path: Path) -> None:
-    """StoreError where a file cannot be put at ``path``; leaves nothing behind."""
+def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
+    """StoreError where a file cannot be put at ``path``, or would take the place of an input; leaves nothing behind."""
     if path.is_dir():
         raise StoreError(f"{path}: is a folder; the output must be a file")
+    if path.exists() and not path.is_file():
+        raise StoreError(f"{path}: is no ordinary file; the output must be one")
+    if path.exists() and any(other.exists() and path.samefile(other) for other in inputs):
+        raise StoreError(f"{path}: is what the scene is read from; the output must be another file")
     if not path.parent.is_dir():
         raise StoreError(f"{path}: the folder {path.parent} does not exist")
     try:
@@ -80,17 +84,25 @@ def check_writable(path: Path) -> None:
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary name beside ``path`` to write to; it takes the place of ``path`` when all is written and on disk."""
     check_writable(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    with tempfile.NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent, delete=False) as made:
+        temporary = Path(made.name)
     try:
         yield temporary
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
+        temporary.chmod(0o666 & ~_umask())
         temporary.replace(path)
         _sync_folder(path.parent)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
 
 
 def _sync_folder(folder: Path) -> None:
@@ -111,7 +123,10 @@ def write(dataset: "xr.Dataset", path: Path) -> None:
     }
     encoding |= {str(name): {"_FillValue": None} for name in dataset.coords if dataset[name].dtype.kind == "f"}
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, format="NETCDF4", engine="netcdf4", encoding=encoding)
+        try:
+            dataset.to_netcdf(temporary, format="NETCDF4", engine="netcdf4", encoding=encoding)
+        except RuntimeError as error:  # so netCDF4 says that a disk is full
+            raise StoreError(f"{path}: cannot be written: {error}") from None
 
 
 def read(path: Path) -> "xr.Dataset":

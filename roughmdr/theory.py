@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.asperity import Contact, check_number
+from roughmdr.arguments import check_number, check_values
+from roughmdr.asperity import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import Paraboloid
@@ -20,7 +21,7 @@ def greenwood_williamson(*, separation: ArrayLike, modulus: float, radius: float
     """Pressure [Pa] of equal paraboloids with normal heights at separations [m] from the mean summit plane.
 
     p = 4/3 E* R^(1/2) eta ∫_h^∞ (z - h)^(3/2) phi(z) dz: J. A. Greenwood, J. B. P. Williamson, Proc. R. Soc. A 295
-    (1966) 300, equation 9. modulus E* [Pa], radius R [m], std of the heights [m], density eta of summits [1/m2].
+    (1966) 300. modulus E* [Pa], radius R [m], std of the heights [m], density eta of summits [1/m2].
     OutOfRange where an argument is not above 0. Accurate to about 1e-13 of itself to six standard deviations.
     """
     contact = Contact.of(Paraboloid(radius), modulus, 0.0)
@@ -44,14 +45,13 @@ def fuller_tabor(
     reached and have not let go, z >= max(turning, h + delta_c). work [J/m^2]; the others as for
     ``greenwood_williamson``. OutOfRange where an argument is not above 0, or a separation lies below ``turning``.
     """
-    contact = Contact.of(Paraboloid(radius), modulus, check_number("work", work, "J/m^2", zero=False))
+    contact = Contact.of(Paraboloid(radius), modulus, check_number("work", work, "J/m^2"))
     if turning is None:
         return _pressure(contact, separation, std, density, lambda h: h)
-    lowest = float(turning)
-    if np.min(separation) < lowest:
-        raise OutOfRange(
-            f"separation goes down to {np.min(separation):g} m; it must not lie below turning, {lowest:g} m"
-        )
+    lowest = float(check_values("turning", turning))
+    closest = float(np.min(check_values("separation", separation), initial=np.inf))
+    if closest < lowest:
+        raise OutOfRange(f"separation goes down to {closest:g} m; it must not lie below turning, {lowest:g} m")
     return _pressure(contact, separation, std, density, lambda h: max(lowest, h - contact.depth[0]))
 
 
@@ -59,13 +59,13 @@ def _pressure(
     contact: Contact, separation: ArrayLike, std: float, density: float, first: Callable[[float], float]
 ) -> Floats:
     """eta ∫ P(z - h) phi(z) dz over z >= first(h)."""
-    std = check_number("std", std, "m", zero=False)
-    density = check_number("density", density, "1/m2", zero=False)
-    separations = np.asarray(separation, dtype=np.float64)
-    if not np.isfinite(separations).all():
-        raise OutOfRange("separation must be finite")
+    std = check_number("std", std, "m")
+    density = check_number("density", density, "1/m2")
+    separations = check_values("separation", separation)
     onset = -contact.depth[0] if contact.law.adhesive else 0.0
     pressures = [density * _mean_force(contact, onset, float(h), first(float(h)), std) for h in separations.flat]
+    if not np.isfinite(pressures).all():
+        raise OutOfRange(f"the pressure at separations from {separations.min():g} m on is not representable")
     return np.array(pressures).reshape(separations.shape)
 
 

@@ -4,6 +4,7 @@ import math
 import re
 from decimal import Decimal
 
+from roughmdr.arguments import check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
@@ -57,7 +58,10 @@ def quantity(value: object, dimension: str) -> float:
         match = _QUANTITY.fullmatch(value)
         if match is None:
             raise RoughmdrError(f"expected {wanted}")
-        number = float(Decimal(match[1]) * unit_factor(match[2], dimension))
+        try:
+            number = float(Decimal(match[1]) * unit_factor(match[2], dimension))
+        except ArithmeticError:
+            raise RoughmdrError("expected a number that a float can hold") from None
     else:
         try:
             number = float(value)
@@ -75,7 +79,7 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     if dimension == DIMENSIONLESS:
         raise RoughmdrError(f"has the unit {unit!r}, but is a plain number")
     spelled = unit.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")
-    table = _table(dimension)
+    table = _table(dimension) if dimension in _BASES else {}
     if spelled in table:
         return table[spelled]
     for other in _BASES:
@@ -89,15 +93,19 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
 def effective_modulus(E1: float, nu1: float, E2: float = math.inf, nu2: float = 0.0) -> float:
     """E* [Pa] of two elastic bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (H 43).
 
-    E1, E2 are Young's moduli [Pa], inf is rigid; nu1, nu2 Poisson's ratios. OutOfRange unless E > 0 and
-    -1 < nu <= 1/2, and where both bodies are rigid.
+    E1, E2 are Young's moduli [Pa], E2 = inf is rigid; nu1, nu2 Poisson's ratios. OutOfRange unless E > 0,
+    -1 < nu <= 1/2 and E* is representable.
     """
-    for name, modulus in (("E1", E1), ("E2", E2)):
-        if not modulus > 0.0:
-            raise OutOfRange(f"{name} is {modulus:g} Pa; it must be above 0")
-    for name, poisson in (("nu1", nu1), ("nu2", nu2)):
-        if not -1.0 < poisson <= 0.5:
-            raise OutOfRange(f"{name} is {poisson:g}; it must be above -1 and at most 0.5")
-    if math.isinf(E1) and math.isinf(E2):
-        raise OutOfRange("E1 and E2 are both inf; at least one body must be elastic")
-    return 1.0 / ((1.0 - nu1 * nu1) / E1 + (1.0 - nu2 * nu2) / E2)
+    compliance = 0.0
+    for body, modulus, poisson in (("1", E1, nu1), ("2", E2, nu2)):
+        try:
+            ratio = float(poisson)
+        except (TypeError, ValueError):
+            raise OutOfRange(f"nu{body} is {poisson!r}; it must be a number above -1 and at most 0.5") from None
+        if not -1.0 < ratio <= 0.5:
+            raise OutOfRange(f"nu{body} is {ratio:g}; it must be above -1 and at most 0.5")
+        if body == "1" or modulus != math.inf:
+            compliance += (1.0 - ratio * ratio) / check_number(f"E{body}", modulus, "Pa")
+    if not 1e-300 < compliance < 1e300:
+        raise OutOfRange(f"E* of E1 = {E1:g} Pa and E2 = {E2:g} Pa is not representable")
+    return 1.0 / compliance

@@ -9,7 +9,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
-    ("errors", "variables", "units", "fields", "complaints", "_jit", "_extended"),
+    ("errors", "arguments", "variables", "units", "quantities", "complaints", "_jit", "_extended"),
     ("shapes",),
     ("kernels",),
     ("asperity",),

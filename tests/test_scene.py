@@ -60,7 +60,9 @@ def test_paths_are_relative_to_the_scene_and_in_set_to_the_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "scenes"
-    folder.mkdir()
+    (folder / "maps").mkdir(parents=True)
+    for file in (folder / "maps" / "a.nc", tmp_path / "b.nc"):
+        file.touch()
     table = scene(asperities={"source": "surface", "file": "maps/a.nc"}, batch=None)
     (folder / "s.toml").write_text(tomli_w.dumps(table))
     monkeypatch.chdir(tmp_path)
@@ -127,7 +129,11 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"batch": {"realizations": True}}, "batch.realizations = True: expected a whole number"),
         ({"seed": -1}, "seed = -1"),
         ({"interaction": {"model": "pairwise"}}, "interaction: unknown key"),
-        ({"asperities": {"source": "surface", "file": "a.nc"}}, "batch.realizations: must be 1 with a measured"),
+        ({"asperities": {"source": "surface", "file": __file__}}, "batch.realizations: must be 1 with a measured"),
+            ({"asperities": {"source": "surface", "file": "a.nc"}}, "asperities.file = '.*a.nc': no such file"),
+            ({"path": {"separation": {"start": "1e308 m", "stop": "-1e308 m", "steps": 3}}}, "largest float"),
+            ({"path": {"separation": ["1e999 sigma"]}}, "expected a finite number"),
+            ({"path": {"separation": [0], "unload": "yes"}}, "path.unload"),
         ({"asperities": {"source": "surface"}, "batch": None}, "asperities.file: is missing"),
         ({"asperities": {}}, "asperities.source: is missing; it can be random, surface"),
         ({"asperities": {**SCENE["asperities"], "height": "1 um"}}, "cannot be given in sigma"),

@@ -68,7 +68,9 @@ def test_effective_modulus() -> None:
         ((1.0, 0.6), "nu1 is 0.6"),
         ((1.0, 0.3, 0.0), "E2 is 0"),
         ((1.0, 0.3, 1.0, -1.0), "nu2 is -1"),
-        ((math.inf, 0.3), "at least one body"),
+        ((math.inf, 0.3), "E1 is inf"),
+        (("3", None), "nu1 is None"),
+        ((1e-320, 0.3), "not representable"),
     ],
 )
 def test_effective_modulus_refuses(arguments: tuple[float, ...], says: str) -> None:

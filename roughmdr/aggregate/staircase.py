@@ -45,17 +45,3 @@ def staircase(separation: Floats) -> Staircase:
 def no_memory(separation: Floats) -> Staircase:
     """The staircase of contacts without memory: only where the flat is now counts."""
     return Staircase(np.arange(separation.size + 1), separation, separation)
-
-
-def branches(separation: Floats) -> list[str]:
-    """The branch of each step: unloading where the flat rises, or stands at the turning point for the second time."""
-    names: list[str] = []
-    ahead = np.inf  # the next separation that is another one
-    values = separation.tolist()
-    for m in range(len(values) - 1, -1, -1):
-        h = values[m]
-        before = values[m - 1] if m else np.inf
-        if m + 1 < len(values) and values[m + 1] != h:
-            ahead = values[m + 1]
-        names.append("unloading" if h > before or (h == before and ahead > h) else "loading")
-    return names[::-1]

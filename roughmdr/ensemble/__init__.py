@@ -1,6 +1,7 @@
 """Where asperities come from: one file a source, each with the section of the scene that asks for it."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+import operator
+from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -27,16 +28,21 @@ def generate(
     a unit. The result holds ``height`` [m] and each shape parameter under its argument's name; attrs ``shape``,
     ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
     """
-    for name, value in (("seed", seed), ("realization", realization)):
-        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
-    section = _validated(asperities) if isinstance(asperities, dict) else asperities
-    return section.ensemble(seed, realization).to_dataset()
+    section = asperities if isinstance(asperities, RandomAsperities | SurfaceAsperities) else _validated(asperities)
+    return section.ensemble(_whole("seed", seed), _whole("realization", realization)).to_dataset()
+
+
+def _whole(name: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, SupportsIndex) or operator.index(value) < 0:
+        raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
+    return operator.index(value)
 
 
 def _validated(table: dict[str, Any]) -> RandomAsperities | SurfaceAsperities:
     try:
         return TypeAdapter[RandomAsperities | SurfaceAsperities](Asperities).validate_python(table)
     except ValidationError as error:
+        if not isinstance(table, dict):
+            raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
         found = complaints(error, table, Asperities)
         raise SceneError("\n".join(f"asperities.{complaint}" for complaint in found)) from None

@@ -45,7 +45,11 @@ class Distribution:
         """The values below which the given fractions lie."""
         if self.constant is not None:
             return np.full_like(uniform, self.constant)
-        values: Floats = np.asarray(self.frozen.ppf(uniform), dtype=np.float64)
+        # From the nearer tail: 1 - u is exact, and ppf(u) near 1 may round to infinity.
+        values = np.empty_like(uniform)
+        upper = uniform > 0.5
+        values[~upper] = self.frozen.ppf(uniform[~upper])
+        values[upper] = self.frozen.isf(1.0 - uniform[upper])
         return values
 
     @property
@@ -100,9 +104,13 @@ def read_distribution(value: object, dimension: str, *, mean: float | None = Non
     numbers = {
         key: _parameter(key, entry, DIMENSIONLESS if key in shapes else dimension) for key, entry in table.items()
     }
-    distribution = Distribution(name, tuple(_located(family, given, shapes, numbers, mean).items()))
-    if not (math.isfinite(distribution.least) and math.isfinite(distribution.greatest)):
-        raise RoughmdrError(f"{given} can be infinite with {_listed(numbers)}")
+    try:
+        distribution = Distribution(name, tuple(_located(family, given, shapes, numbers, mean).items()))
+        ends = distribution.least, distribution.greatest
+    except (ArithmeticError, RuntimeError) as error:
+        raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
+    if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
+        raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
     return distribution
 
 

@@ -1,11 +1,12 @@
 """An ensemble of asperities: plain arrays inside, an xarray dataset outside."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.errors import RoughmdrError, SceneError, ShapeError
+from roughmdr.arguments import check_number
+from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.base import Floats, check_positive
 from roughmdr.units import unit_factor
@@ -75,7 +76,7 @@ class Ensemble:
         SceneError, naming the variable or attribute, where something is missing, not finite or out of range.
         """
         shape = dataset.attrs.get("shape")
-        if shape not in SHAPES:
+        if not isinstance(shape, str) or shape not in SHAPES:
             raise SceneError(f"ensemble: attribute shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
         kind = SHAPES[shape]
         given = {name for name in kind.units if name in dataset}
@@ -91,12 +92,25 @@ class Ensemble:
             except ShapeError as error:
                 raise SceneError(f"ensemble: {error}") from None
         positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
-        area = dataset.attrs.get("nominal_area")
-        if area is None and "patch" in dataset.attrs:
-            area = float(dataset.attrs["patch"]) ** 2
-        if area is not None and not (np.isfinite(area) and area > 0.0):
-            raise SceneError(f"ensemble: attribute nominal_area is {area!r}; it must be an area above 0 m2")
-        return cls.sorted(shape, height, parameters, None if area is None else float(area), positions)
+        return cls.sorted(shape, height, parameters, _nominal_area(dataset.attrs), positions)
+
+
+def _nominal_area(attrs: dict[str, Any]) -> float | None:
+    """The nominal area [m2], or else what the sides of the patch make of it."""
+
+    def number(name: str) -> float:
+        try:
+            return check_number(f"ensemble: attribute {name}", attrs[name], "in SI")
+        except OutOfRange as error:
+            raise SceneError(str(error)) from None
+
+    if "nominal_area" in attrs:
+        return number("nominal_area")
+    if "patch" in attrs:
+        return number("patch") ** 2
+    if "patch_x" in attrs and "patch_y" in attrs:
+        return number("patch_x") * number("patch_y")
+    return None
 
 
 def _column(dataset: "xr.Dataset", name: str, unit: str) -> Floats:
@@ -110,7 +124,8 @@ def _column(dataset: "xr.Dataset", name: str, unit: str) -> Floats:
     if variable.dtype.kind not in "iuf":
         raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
     try:
-        factor = 1.0 if unit.startswith("m^(") else float(unit_factor(str(variable.attrs.get("units", "")), unit))
+        given = str(variable.attrs.get("units", ""))
+        factor = 1.0 if given == unit else float(unit_factor(given, unit))
     except RoughmdrError as error:
         raise SceneError(f"ensemble: units of {name}: {error}") from None
     column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor

@@ -1,5 +1,6 @@
 """source = "random": heights and shape parameters drawn from distributions, independent of each other."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
@@ -7,7 +8,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field
 from roughmdr.ensemble.distributions import Distribution, read_distribution, uniforms
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
-from roughmdr.fields import Length, Section, whole_number
+from roughmdr.quantities import Length, Section, whole_number
 from roughmdr.shapes import SHAPES, Shape
 
 # Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
@@ -45,6 +46,11 @@ class RandomAsperities(Section):
         """The distribution of each shape parameter that was given."""
         entries = {name: getattr(self, name) for name in SHAPES[self.shape].units}
         return {name: entry for name, entry in entries.items() if entry is not None}
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the asperities are read from."""
+        return ()
 
     @property
     def sigma(self) -> float:

@@ -1,20 +1,23 @@
 """source = "surface": the summits of a measured height map, as paraboloids."""
 
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from pydantic import field_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.fields import Section
+from roughmdr.quantities import Section
 from roughmdr.shapes.base import Floats
 from roughmdr.units import unit_factor
 
 if TYPE_CHECKING:
     import xarray as xr
 
+_ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a quadratic may leave of nothing
 _UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular grid
 
 
@@ -29,7 +32,20 @@ class SurfaceAsperities(Section):
     def summits(self) -> Ensemble:
         """The asperities of the map; SceneError where it cannot be read or has none."""
         height, dx, dy = read_map(Path(self.file))
-        return find_summits(remove_quadratic(height), dx, dy)
+        noise = _ROUNDING * float(np.max(np.abs(height)))
+        return find_summits(remove_quadratic(height), dx, dy, noise)
+
+    @field_validator("file")
+    @classmethod
+    def _is_there(cls, value: str) -> str:
+        if not Path(value).is_file():
+            raise RoughmdrError("no such file")
+        return value
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the asperities are read from."""
+        return (Path(self.file),)
 
     @property
     def sigma(self) -> float:
@@ -38,15 +54,13 @@ class SurfaceAsperities(Section):
 
     def ensemble(self, seed: int, realization: int) -> Ensemble:
         """The asperities of the map: always the same ones."""
-        return self.summits
+        return replace(self.summits, attrs={**self.summits.attrs, "seed": seed})
 
 
 def read_map(path: Path) -> tuple[Floats, float, float]:
     """Heights [m] over x and y, and both spacings [m], from a netCDF file with height(x, y); SceneError if not so."""
     import xarray as xr
 
-    if not path.is_file():
-        raise SceneError(f"{path}: no such file")
     try:
         with xr.open_dataset(path) as dataset:
             dataset.load()
@@ -57,6 +71,8 @@ def read_map(path: Path) -> tuple[Floats, float, float]:
             f"{path}: it must hold a variable height over two dimensions; it has {list(dataset.data_vars)}"
         )
     height = dataset["height"].transpose("x", "y") if set(dataset["height"].dims) == {"x", "y"} else dataset["height"]
+    if height.dtype.kind not in "iuf":
+        raise SceneError(f"{path}: heights are of type {height.dtype}; they must be numbers")
     if min(height.shape) < 3:
         raise SceneError(f"{path}: the map has {height.shape[0]} x {height.shape[1]} points; it needs at least 3 x 3")
     values = np.asarray(height.to_numpy(), dtype=np.float64) * _factor(path, "height", height)
@@ -77,6 +93,8 @@ def _factor(path: Path, name: str, variable: "xr.DataArray") -> float:
 def _spacing(path: Path, dataset: "xr.Dataset", dim: str) -> float:
     if dim not in dataset.coords:
         raise SceneError(f"{path}: the coordinate {dim} is missing; it says where the points lie")
+    if dataset[dim].dtype.kind not in "iuf":
+        raise SceneError(f"{path}: the coordinate {dim} is of type {dataset[dim].dtype}; it must be numbers")
     points = np.asarray(dataset[dim].to_numpy(), dtype=np.float64) * _factor(path, dim, dataset[dim])
     steps = np.diff(points)
     mean = float(np.mean(steps))
@@ -95,13 +113,13 @@ def remove_quadratic(height: Floats) -> Floats:
     return np.asarray(height - (terms @ coefficients).reshape(height.shape))
 
 
-def find_summits(height: Floats, dx: float, dy: float) -> Ensemble:
-    """The points above all eight neighbours, each with a paraboloid through it that fits the eight by least squares.
+def find_summits(height: Floats, dx: float, dy: float, noise: float = 0.0) -> Ensemble:
+    """The points above all eight neighbours by more than ``noise``, each with a paraboloid that fits them.
 
-    Its top is the summit; the radius is 1/sqrt(k1 k2), from the geometric mean of the principal curvatures: that of
-    the sphere which an elliptic contact is best replaced by (J. A. Greenwood, Wear 261 (2006) 191). A point whose
-    paraboloid is a saddle is no summit; the attribute ``saddles`` counts them. Heights and spacings are [m]; SceneError
-    where no summit is found.
+    The fit is by least squares. Its top is the summit; the radius is 1/sqrt(k1 k2), from the geometric mean of the
+    principal curvatures: that of the sphere which an elliptic contact is best replaced by (J. A. Greenwood, Wear 261
+    (2006) 191). A point whose paraboloid is a saddle is no summit; the attribute ``saddles`` counts them. Heights,
+    spacings and noise are [m]; SceneError where no summit is found.
     """
     nx, ny = height.shape
     inner = height[1:-1, 1:-1]
@@ -110,7 +128,7 @@ def find_summits(height: Floats, dx: float, dy: float) -> Ensemble:
         return height[1 + i : nx - 1 + i, 1 + j : ny - 1 + j]
 
     around = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
-    rows, columns = np.nonzero(np.logical_and.reduce([inner > neighbours(i, j) for i, j in around]))
+    rows, columns = np.nonzero(np.logical_and.reduce([inner > neighbours(i, j) + noise for i, j in around]))
     drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in around}
 
     def moment(m: int, n: int) -> Floats:

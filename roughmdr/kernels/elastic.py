@@ -5,9 +5,12 @@ Reduced: x = delta/depth with depth = kappa rise, and the state t = a/width, so 
 
 import math
 
-from roughmdr._extended import Pair
+from roughmdr._extended import Pair, two_product
 from roughmdr._jit import njit
 from roughmdr.shapes.power import kappa
+
+
+_STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
 @njit
@@ -32,8 +35,17 @@ def natural_cone(modulus: float, work: float, width: float, rise: float, n: floa
 
 @njit
 def natural_power(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
-    """The natural scales with any kappa(n)."""
-    return _natural(modulus, width, kappa(n) * rise)
+    """The natural scales with any kappa(n), at the width where the profile rises by about as much as that.
+
+    Where f = c r^n is steep and the width given is a metre, t^n would be no normal float.
+    """
+    k = 0.0
+    if n > _STEEP:
+        k = math.floor(math.log2(width / rise) / (n - 1.0))
+    power, rest = two_product(k, n)
+    whole = math.floor(power)
+    lifted = math.ldexp(rise * math.pow(2.0, (power - whole) + rest), int(whole))
+    return _natural(modulus, math.ldexp(width, int(k)), kappa(n) * lifted)
 
 
 @njit
@@ -101,7 +113,8 @@ def stiffness(t: float, n: float) -> float:
 @njit
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at t = 1, and the radius [m] there."""
-    return (2.0 * modulus * width * (kappa(n) * rise) * (n / (n + 1.0)), 0.0), width
+    _, size, force, _ = natural_power(modulus, work, width, rise, n)
+    return (force * (n / (n + 1.0)), 0.0), size
 
 
 @njit

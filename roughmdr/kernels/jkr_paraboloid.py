@@ -5,6 +5,7 @@ becomes vector code.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -24,22 +25,20 @@ _SMALLEST = 1e-270
 
 @njit
 def _reduced_work(modulus: float, work: float, radius: float) -> Pair:
-    """pi w/(E* R)."""
-    strain = extended.divide((work, 0.0), extended.two_product(modulus, radius))
-    return extended.multiply(extended.PI, strain)
+    """pi w/(E* R), the part without R first: a loop over asperities computes it once."""
+    length = extended.divide(extended.multiply(extended.PI, (work, 0.0)), (modulus, 0.0))
+    return extended.divide(length, (radius, 0.0))
 
 
-@njit
+@partial(njit, inline=True)
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """|delta_c| = 3/4 (pi^2 w^2 R/E*^2)^(1/3) [m], a_c = (pi w R^2/(8 E*))^(1/3) [m], pi w R [N], 2 E* a_c [N/m].
 
-    All 0 where pi w/(E* R) is too small or large to be cubed.
+    All NaN where pi w/(E* R) lies so far from 1 that its cube root cannot be corrected in pairs.
     """
     curvature_radius = width * (width / (2.0 * rise))
     reduced = _reduced_work(modulus, work, curvature_radius)
-    if not _SMALLEST < reduced[0] < 1.0 / _SMALLEST:
-        return (0.0, 0.0), 0.0, 0.0, 0.0
-    root = float(np.cbrt(reduced[0]))
+    root = float(np.cbrt(reduced[0] if _SMALLEST < reduced[0] < 1.0 / _SMALLEST else math.nan))
     cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
     rest = extended.add(reduced, (-cube[0], -cube[1]))
     root_exact = extended.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
@@ -52,7 +51,7 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
     curvature_radius = width * (width / (2.0 * rise))
-    force = extended.multiply(extended.PI, extended.multiply((1.5 * work, 0.0), (curvature_radius, 0.0)))
+    force = extended.multiply(extended.PI, extended.multiply(extended.two_product(1.5, work), (curvature_radius, 0.0)))
     reduced = _reduced_work(modulus, work, curvature_radius)[0]
     return force, 0.5 * curvature_radius * float(np.cbrt(9.0 * reduced))
 

@@ -34,18 +34,11 @@ def _log_fold(modulus: float, work: float, width: float, rise: float, n: float) 
 
 
 @njit
-def log_depth(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
-    """ln |delta_c|."""
-    log_stretch = _log_fold(modulus, work, width, rise, n)[1]
-    e = extended.two_sum(2.0 * n, -1.0)
-    return extended.add(log_stretch, extended.log(extended.divide(e, (2.0 * n, 0.0))))
-
-
-@njit
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
     log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
-    depth = log_depth(modulus, work, width, rise, n)
+    e = extended.two_sum(2.0 * n, -1.0)
+    depth = extended.add(log_stretch, extended.log(extended.divide(e, (2.0 * n, 0.0))))
     if not (abs(depth[0]) < _LOG_LARGEST and abs(log_radius[0]) < _LOG_LARGEST):
         return (0.0, 0.0), 0.0, 0.0, 0.0
     a_c = extended.exp(log_radius)[0]

@@ -4,12 +4,12 @@ import re
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
-from roughmdr.errors import RoughmdrError
-from roughmdr.fields import Section, whole_number
+from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.quantities import Section, whole_number
 from roughmdr.shapes.base import Floats
-from roughmdr.units import quantity
+from roughmdr.units import DIMENSIONLESS, quantity
 
 _SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
 
@@ -27,7 +27,7 @@ class Separation(NamedTuple):
 
 def _read(value: object) -> Separation:
     if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
-        return Separation(float(match[1]), in_sigma=True)
+        return Separation(quantity(match[1], DIMENSIONLESS), in_sigma=True)
     try:
         return Separation(quantity(value, "m"), in_sigma=False)
     except RoughmdrError as error:
@@ -56,7 +56,7 @@ class Path(Section):
             custom_error_message="must be a table with start, stop and steps, or a list",
         ),
     ]
-    unload: bool = False
+    unload: StrictBool = False
 
     @property
     def uses_sigma(self) -> bool:
@@ -65,8 +65,19 @@ class Path(Section):
         return any(end.in_sigma for end in ends)
 
     def separations(self, sigma: float) -> Floats:
-        """The way in, without the way back [m]; sigma is the standard deviation of the heights [m]."""
+        """The way in, without the way back [m]; sigma is the standard deviation of the heights [m].
+
+        SceneError where the path is given in sigma and there is none, or where it is not finite.
+        """
+        if self.uses_sigma and not 0.0 < sigma < np.inf:
+            raise SceneError(
+                f"path.separation: cannot be given in sigma, the heights' standard deviation is {sigma:g} m"
+            )
         if isinstance(self.separation, Range):
             start, stop = self.separation.start.metres(sigma), self.separation.stop.metres(sigma)
-            return np.linspace(start, stop, self.separation.steps)
-        return np.array([separation.metres(sigma) for separation in self.separation])
+            path = np.linspace(start, stop, self.separation.steps) if np.isfinite(stop - start) else np.array([np.inf])
+        else:
+            path = np.array([separation.metres(sigma) for separation in self.separation])
+        if not np.isfinite(path).all():
+            raise SceneError("path.separation: reaches beyond the largest float")
+        return path

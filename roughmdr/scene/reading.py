@@ -33,7 +33,7 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
         text = _text(path)
         try:
             table = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise SceneError(f"{label}: not valid TOML: {error}") from None
     _resolve_paths(table, folder)
     changed = _change(table, changes)
@@ -76,9 +76,10 @@ def _change(table: dict[str, Any], changes: Iterable[str]) -> set[str]:
 
 def _value(text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        table = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
         return text
+    return table["value"] if len(table) == 1 else text
 
 
 def _resolve_paths(table: dict[str, Any], folder: Path) -> None:
@@ -89,7 +90,7 @@ def _resolve_paths(table: dict[str, Any], folder: Path) -> None:
 
 
 def _located(complaint: Complaint, label: str, lines: dict[str, int], changed: set[str]) -> str:
-    if any(complaint.key == key or complaint.key.startswith(f"{key}.") for key in changed):
+    if any(complaint.key == key or complaint.key.startswith((f"{key}.", f"{key}[")) for key in changed):
         return f"--set {complaint}"
     line = line_of(complaint.key, lines)
     return f"{label}: {complaint}" if line is None else f"{label}:{line}: {complaint}"

@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from roughmdr.ensemble import Asperities, SurfaceAsperities
 from roughmdr.errors import RoughmdrError
-from roughmdr.fields import Section, reading, whole_number
+from roughmdr.quantities import Section, reading, whole_number
 from roughmdr.scene.path import Path
 from roughmdr.units import effective_modulus
 from roughmdr.variables import DEFAULT, LAW
@@ -57,7 +57,7 @@ class Adhesion(Section):
 
 
 def _known_variable(value: object) -> object:
-    if value not in LAW:
+    if not isinstance(value, str) or value not in LAW:
         raise RoughmdrError(f"no such variable; there are {', '.join(LAW)}")
     return value
 
@@ -120,8 +120,7 @@ class Scene(Section):
         sigma = self.asperities.sigma
         if self.path.uses_sigma and not 0.0 < sigma < math.inf:
             raise _misfit(
-                "path.separation",
-                f"cannot be given in sigma: the standard deviation of the heights is {sigma:g}",
+                "path.separation", f"cannot be given in sigma: the heights' standard deviation is {sigma:g} m"
             )
         exponent = self.asperities.distributions.get("exponent")
         if self.work > 0.0 and exponent is not None and not exponent.least > 0.5:

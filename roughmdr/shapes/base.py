@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roughmdr.errors import ShapeError
+from roughmdr.errors import OutOfRange, ShapeError
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,18 @@ class Shape(ABC):
         parameters = self.parameters
         type(self).spelling(set(parameters))
         for name, value in parameters.items():
+            if isinstance(value, bool) or np.ndim(value) != 0:
+                raise ShapeError(f"{type(self).name}: {name} is {value!r}; it must be one number")
             check_positive(type(self).name, name, value)
+
+
+def radii(name: str, values: ArrayLike) -> Floats:
+    """``values`` as floats; OutOfRange unless all are finite and at least 0."""
+    numbers = np.asarray(values, dtype=np.float64)
+    wrong = ~(np.isfinite(numbers) & (numbers >= 0.0))
+    if wrong.any():
+        raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0")
+    return numbers
 
 
 def check_positive(owner: str, name: str, values: ArrayLike) -> None:

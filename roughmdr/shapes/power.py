@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from roughmdr import _extended as extended
 from roughmdr._extended import Pair
 from roughmdr._jit import njit
-from roughmdr.shapes.base import Floats, Shape
+from roughmdr.shapes.base import Floats, Shape, radii
 
 _EULER = (-1.0, 5.0, -61.0, 1385.0, -50521.0, 2702765.0, -199360981.0)  # E_2, E_4, ... E_14
 
@@ -20,7 +20,7 @@ def _log_gamma_step(z: float) -> Pair:
     """ln[Gamma(z + 1/2)/Gamma(z)] for z > 0.
 
     The asymptotic series in w = z - 1/4, ln(w)/2 - sum_k E_k/(2 k (4 w)^k), begun at z >= 24 where the first term left
-    out is below 1e-23 (NIST DLMF 5.11.13, with B_{k+1}(1/4) = -(k+1) E_k/4^(k+1)).
+    out is below 1e-23 (NIST DLMF 5.11.8 at 3/4 and 1/4, with B_{k+1}(1/4) = -(k+1) E_k/4^(k+1) of 24.4.31).
     """
     lift = (1.0, 0.0)
     top = (z, 0.0)
@@ -62,13 +62,14 @@ class _Power(Shape):
 
     def f(self, r: ArrayLike) -> Floats:
         width, rise, exponent = self._stretched()
-        return np.asarray(rise * (np.abs(r) / width) ** exponent)
+        return np.asarray(rise * (radii("r", r) / width) ** exponent)
 
     def g(self, x: ArrayLike) -> Floats:
-        return np.asarray(kappa(self._stretched()[2]) * self.f(x))
+        return np.asarray(kappa(self._stretched()[2]) * self.f(radii("x", x)))
 
     def G(self, a: ArrayLike) -> Floats:
-        return np.asarray(np.abs(a) * self.g(a) / (self._stretched()[2] + 1.0))
+        radius = radii("a", a)
+        return np.asarray(radius * self.g(radius) / (self._stretched()[2] + 1.0))
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,44 @@
+"""The way of the flat, step by step."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
+from roughmdr.shapes.base import Floats
+from roughmdr.variables import COORDINATES
+
+
+class Route(NamedTuple):
+    """A path of the flat, with what the contacts remember of it."""
+
+    separation: Floats
+    memory: Staircase
+
+    @classmethod
+    def along(cls, way_in: Floats, *, unload: bool, adhesive: bool) -> "Route":
+        """The way in [m] and, with ``unload``, the way back with the turning point repeated."""
+        separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
+        return cls(separation, staircase(separation) if adhesive else no_memory(separation))
+
+    def coordinates(self) -> dict[str, tuple[str, object, dict[str, str]]]:
+        """The coordinates over ``step``."""
+        branch = {"long_name": COORDINATES["branch"].long_name}
+        return {
+            "separation": ("step", self.separation, COORDINATES["separation"].attrs),
+            "branch": ("step", np.array(branches(self.separation)), branch),
+        }
+
+
+def branches(separation: Floats) -> list[str]:
+    """The branch of each step: unloading where the flat rises, or stands at the turning point for the second time."""
+    names: list[str] = []
+    ahead = np.inf  # the next separation that is another one
+    values = separation.tolist()
+    for m in range(len(values) - 1, -1, -1):
+        h = values[m]
+        before = values[m - 1] if m else np.inf
+        if m + 1 < len(values) and values[m + 1] != h:
+            ahead = values[m + 1]
+        names.append("unloading" if h > before or (h == before and ahead > h) else "loading")
+    return names[::-1]
