@@ -131,7 +131,6 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"interaction": {"model": "pairwise"}}, "interaction: unknown key"),
         ({"asperities": {"source": "surface", "file": __file__}}, "batch.realizations: must be 1 with a measured"),
             ({"asperities": {"source": "surface", "file": "a.nc"}}, "asperities.file = '.*a.nc': no such file"),
-            ({"path": {"separation": {"start": "1e308 m", "stop": "-1e308 m", "steps": 3}}}, "largest float"),
             ({"path": {"separation": ["1e999 sigma"]}}, "expected a finite number"),
             ({"path": {"separation": [0], "unload": "yes"}}, "path.unload"),
         ({"asperities": {"source": "surface"}, "batch": None}, "asperities.file: is missing"),
@@ -199,3 +198,8 @@ def test_no_leaf_takes_nonsense_in_silence(leaf: tuple[str, ...], value: object)
         read(table)
     else:
         assert any(leaf[0] in line for line in faults(table))
+
+
+def test_a_path_beyond_all_floats_is_refused() -> None:
+    with pytest.raises(rm.SceneError, match="largest float"):
+        rm.run(scene(path={"separation": {"start": "1e308 m", "stop": "-1e308 m", "steps": 3}}))

@@ -35,13 +35,14 @@ def natural_cone(modulus: float, work: float, width: float, rise: float, n: floa
 
 @njit
 def natural_power(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
-    """The natural scales with any kappa(n), at the width where the profile rises by about as much as that.
+    """The natural scales with any kappa(n).
 
-    Where f = c r^n is steep and the width given is a metre, t^n would be no normal float.
+    Where f = c r^n is so steep that t^n of a common radius is no normal float, they are those of a width midway (in
+    logarithm) between the one given and that where the profile rises by as much as it is wide.
     """
     k = 0.0
     if n > _STEEP:
-        k = math.floor(math.log2(width / rise) / (n - 1.0))
+        k = math.floor(0.5 * math.log2(width / rise) / (n - 1.0))
     power, rest = two_product(k, n)
     whole = math.floor(power)
     lifted = math.ldexp(rise * math.pow(2.0, (power - whole) + rest), int(whole))
