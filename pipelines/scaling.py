@@ -29,7 +29,7 @@ from roughmdr.scene import read
 from roughmdr.store import replacing
 
 MODULUS, WORK = 4e6, 0.05
-ROWS = {loop.FORCE, loop.AREA, loop.COUNT, loop.STIFFNESS}
+ROWS = {loop.FORCE, loop.AREA, loop.COUNT, loop.STIFFNESS, loop.ERROR}
 SECTION: dict[str, Any] = {
     "source": "random",
     "shape": "paraboloid",
@@ -56,7 +56,7 @@ def per_visit(action: Callable[[], int], repeats: int) -> float:
 
 
 def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int) -> float:
-    """Nanoseconds per visit of the package's sum, natural scales included: force, area, count and stiffness."""
+    """Nanoseconds per visit of the package's sum, natural scales included: force with its error, area, count, stiffness."""
     columns = ensemble.columns()
     law = choose("paraboloid", work, columns[2])
     memory = staircase(path) if work else no_memory(path)

@@ -82,6 +82,18 @@ def test_a_picture_of_what_is_not_there(small: Path) -> None:
     assert sorted(path.name for path in small.iterdir()) == ["out.nc", "small.toml"]
 
 
+def test_a_picture_of_a_crooked_path_with_an_odd_title(small: Path) -> None:
+    crooked = [
+        "--set",
+        'path.separation=["2 um","0 um","2 um","0.5 um","2 um","-1 um"]',
+        "--set",
+        r"title='a$\foo$ [/b]'",
+    ]
+    assert roughmdr("run", "small.toml", "-o", "out.nc", *crooked, cwd=small).returncode == 0
+    drawn = roughmdr("plot", "out.nc", "-o", "a.png", cwd=small)
+    assert drawn.returncode == 0, drawn.stderr
+
+
 def test_an_interrupt_is_exit_status_130_and_leaves_nothing(small: Path) -> None:
     large = ["--set", "asperities.count=300000", "--set", "batch.realizations=200"]
     command = [*ROUGHMDR, "run", "small.toml", "-o", "out.nc", *large]

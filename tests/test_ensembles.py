@@ -42,6 +42,7 @@ def test_heights_and_radii_follow_their_distributions() -> None:
         ({"distribution": "expon", "loc": 0, "scale": "1 um"}, 1e-6, 1e-6),
         ({"distribution": "gamma", "a": 4, "mean": "3 um", "std": "1 um"}, 3e-6, 1e-6),
         ({"distribution": "uniform", "mean": "1 um", "std": "1 um"}, 1e-6, 1e-6),
+        ({"distribution": "halfnorm", "std": "1 um"}, 0.0, 1e-6),
         ({"distribution": "weibull", "c": 2.0, "std": "1 um"}, 0.0, 1e-6),
     ],
 )
@@ -111,6 +112,9 @@ def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
         ({"height": {"distribution": "gamma", "std": 1}}, "gamma needs a"),
         ({"height": {"distribution": "gamma", "a": -1, "std": 1}}, "not defined for a = -1"),
         ({"height": {"distribution": "normal", "std": 1, "scale": 1}}, "std or scale, not both"),
+        ({"radius": {"distribution": "lognormal", "mean": 1e-200, "std": 1}}, "asperities.radius"),
+        ({"patch": "1e999999999 m"}, "asperities.patch"),
+        ({"height": {"distribution": "cauchy", "scale": 1e308}}, "cannot be drawn from"),
         ({"min_distance": "1 um"}, 'goes with placement = "hard_core" only'),
         ({"placement": "hard_core"}, "needs min_distance"),
         ({"slope": 1.0}, "asperities.slope: unknown key"),

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import netCDF4
 import pytest
+import tomli_w
 import xarray as xr
 from scenes import scene
 
@@ -103,3 +104,34 @@ def test_a_killed_run_leaves_a_whole_file_or_none(tmp_path: Path, pause: float) 
         time.sleep(pause)
         os.kill(process.pid, signal.SIGKILL)
     assert read(target).force.equals(rm.run(scene()).force)
+
+
+def test_only_an_ordinary_file_that_is_no_input_is_replaced(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(rm.StoreError, match="no ordinary file"):
+        rm.run(scene(), tmp_path / "pipe")
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene()))
+    with pytest.raises(rm.StoreError, match="what the scene is read from"):
+        rm.run(tmp_path / "scene.toml", tmp_path / "scene.toml")
+    assert (tmp_path / "pipe").is_fifo()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["pipe", "scene.toml"]
+
+
+def test_a_full_disk_is_a_store_error(tmp_path: Path) -> None:
+    code = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))\n"
+        "from roughmdr.cli import main; main()"
+    )
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene()))
+    done = subprocess.run(
+        [sys.executable, "-c", code, "run", "scene.toml", "-o", "out.nc"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2, done.stderr
+    assert "out.nc: cannot be written" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]

@@ -124,3 +124,51 @@ def test_the_measured_surface_has_about_140_summits() -> None:
         law = rm.load_separation(data, separation=path, modulus=6.6e6, work=work, unload=True)
         assert float(law.force.max()) > 0.0
         assert (float(law.force.min()) < 0.0) == (work > 0.0)
+
+
+def test_area_positions_and_saddles_are_counted() -> None:
+    x, y = np.arange(20.0)[:, None], np.arange(30.0)[None, :]
+    bumps = np.zeros((20, 30))
+    for at_x, at_y in ((5, 6), (12, 20)):
+        bumps += np.maximum(0.0, 1.0 - 0.1 * ((x - at_x) ** 2 + (y - at_y) ** 2))
+    # Above all eight neighbours, yet the fit through it is a saddle: a ridge along the diagonal, dented beside it.
+    bumps[15:18, 3:6] = [[0.99, -9.0, -9.0], [-0.01, 1.0, -0.01], [-9.0, -9.0, 0.99]]
+    found = find_summits(bumps, 0.5, 2.0)
+    assert found.height.size == 2
+    assert found.attrs["saddles"] == 1
+    assert found.nominal_area == 20 * 0.5 * 30 * 2.0
+    assert sorted(found.positions["x"]) == pytest.approx([5.5 * 0.5, 12.5 * 0.5])
+
+
+def test_a_top_beyond_the_neighbours_is_not_trusted() -> None:
+    """A flank that only just peaks: the fitted top lies nearly a spacing away and is taken; further off it is not."""
+    x, y = (np.arange(9) - 4.0)[:, None], (np.arange(9) - 4.0)[None, :]
+    near = find_summits(-((x - 0.45) ** 2) - (y - 0.3) ** 2, 1.0, 1.0)
+    assert near.height[0] == pytest.approx(0.0, abs=1e-12)
+    skewed = -(x**2) - y**2
+    skewed[5, 3:6] = skewed[4, 3:6] - 1e-3
+    skewed[3, 3:6] = skewed[4, 3:6] - 1.0
+    found = find_summits(skewed, 1.0, 1.0)
+    assert found.height.max() < 0.3
+
+
+def test_rounding_is_no_roughness(tmp_path: Path) -> None:
+    x, y = np.arange(60.0)[:, None], np.arange(50.0)[None, :]
+    for name, height in (("plane", 1e-3 * x + 2e-3 * y), ("dome", -((x - 30.0) ** 2) - (y - 25.0) ** 2)):
+        path = write_map(tmp_path / f"{name}.nc", 1e-9 * height)
+        with pytest.raises(rm.SceneError, match="no summit"):
+            surface(path)
+
+
+def test_one_summit_has_no_sigma(tmp_path: Path) -> None:
+    height = np.zeros((9, 9))
+    height[4, 4] = 1e-6
+    path = write_map(tmp_path / "spike.nc", height)
+    asked = {
+        "material": {"effective_modulus": "1 MPa"},
+        "asperities": {"source": "surface", "file": str(path)},
+        "path": {"separation": {"start": "4 sigma", "stop": "0 sigma", "steps": 4}},
+    }
+    with pytest.raises(rm.SceneError, match="standard deviation is 0 m"):
+        rm.run(asked)
+    assert surface(path).attrs["seed"] == 0

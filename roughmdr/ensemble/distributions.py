@@ -48,8 +48,9 @@ class Distribution:
         # From the nearer tail: 1 - u is exact, and ppf(u) near 1 may round to infinity.
         values = np.empty_like(uniform)
         upper = uniform > 0.5
-        values[~upper] = self.frozen.ppf(uniform[~upper])
-        values[upper] = self.frozen.isf(1.0 - uniform[upper])
+        with np.errstate(all="ignore"):  # what overflows is refused when the distribution is read
+            values[~upper] = self.frozen.ppf(uniform[~upper])
+            values[upper] = self.frozen.isf(1.0 - uniform[upper])
         return values
 
     @property

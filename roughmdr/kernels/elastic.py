@@ -9,7 +9,6 @@ from roughmdr._extended import Pair, two_product
 from roughmdr._jit import njit
 from roughmdr.shapes.power import kappa
 
-
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
