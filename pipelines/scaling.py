@@ -56,7 +56,7 @@ def per_visit(action: Callable[[], int], repeats: int) -> float:
 
 
 def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int) -> float:
-    """Nanoseconds per visit of the package's sum, natural scales included: force with its error, area, count, stiffness."""
+    """Nanoseconds per visit of the package's sum, all included: force and its error, area, count and stiffness."""
     columns = ensemble.columns()
     law = choose("paraboloid", work, columns[2])
     memory = staircase(path) if work else no_memory(path)

@@ -87,6 +87,10 @@ def _accumulate(total: Floats, carried: Floats, step: int, term: float) -> None:
 @njit
 def _within_reach(height: Floats, lowest: float) -> int:
     """How many of the descending heights are at least ``lowest``."""
+    if height[0] < lowest:
+        return 0
+    if height[-1] >= lowest:
+        return height.size
     low, high = 0, height.size
     while low < high:
         middle = (low + high) // 2
