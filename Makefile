@@ -13,7 +13,7 @@ demo: setup
 
 test: setup lint
 	$(BIN)/python -m pytest
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels tests/test_sum.py
 
 lint: setup
 	$(BIN)/ruff check .
