@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.store import replacing
+from roughmdr.store import write
 from roughmdr.units import quantity
 
 
@@ -66,8 +66,7 @@ def main(
             attrs={"title": f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}"},
         )
         output.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(output) as temporary:
-            dataset.to_netcdf(temporary, engine="netcdf4")
+        write(dataset, output)
     except RoughmdrError as error:
         raise click.UsageError(str(error)) from None
     click.echo(f"{output}: {points} x {points} points")

@@ -26,7 +26,7 @@ from roughmdr.kernels.laws import choose
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-from roughmdr.store import replacing
+from roughmdr.store import replacing, write
 
 MODULUS, WORK = 4e6, 0.05
 ROWS = {loop.FORCE, loop.AREA, loop.COUNT, loop.STIFFNESS, loop.ERROR}
@@ -223,8 +223,7 @@ def main(output: Path, quick: bool) -> None:
     """Measure, print, write scaling.nc and scaling.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(quick)
-    with replacing(output / "scaling.nc") as temporary:
-        result.to_netcdf(temporary, engine="netcdf4")
+    write(result, output / "scaling.nc")
     draw(result, output / "scaling.png")
     click.echo(result["cost"].to_pandas().round(2).to_string())
     one, two = result["batch_time"].to_numpy()

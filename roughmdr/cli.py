@@ -1,5 +1,6 @@
 """The command line, thin over the library. Exit status: 0 done, 2 wrong input, 130 interrupted, 1 anything else."""
 
+import os
 import shlex
 import sys
 import time
@@ -25,7 +26,9 @@ class _Group(click.Group):
         except RoughmdrError as error:
             _stop(f"roughmdr: {error}".replace("\n", "\nroughmdr: "), _WRONG_INPUT)
         except (KeyboardInterrupt, click.Abort):
-            _stop("roughmdr: interrupted; nothing was written", _INTERRUPTED)
+            click.echo("roughmdr: interrupted; nothing was written", err=True)
+            # Threads may still compute, and none of them has anything on disk: leave without waiting for them.
+            os._exit(_INTERRUPTED)
 
 
 def _stop(message: str, status: int) -> NoReturn:
@@ -56,13 +59,10 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
     from roughmdr.plan import make_plan
     from roughmdr.runner import execute
     from roughmdr.scene import read
-    from roughmdr.store import check_writable
 
     started = time.perf_counter()
-    asked = read(scene, changes)
-    check_writable(output, [scene, *asked.asperities.inputs])
     command = "roughmdr " + shlex.join(sys.argv[1:])
-    result = execute(make_plan(asked), output, workers=workers, quiet=quiet, command=command)
+    result = execute(make_plan(read(scene, changes)), output, workers=workers, quiet=quiet, command=command)
     if not quiet:
         click.echo(_summary(result, time.perf_counter() - started))
         click.echo(f"result       {output}")

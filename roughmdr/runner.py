@@ -45,18 +45,15 @@ def run(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
     target = None if out is None else Path(out)
-    if target is not None:
-        check_writable(target, [Path(scene)] if isinstance(scene, str | Path) else [])
-    asked = read(scene)
-    if target is not None:
-        check_writable(target, asked.asperities.inputs)
-    return execute(make_plan(asked), target, workers=workers, quiet=quiet)
+    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet)
 
 
 def execute(
     plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run"
 ) -> "xr.Dataset":
-    """Do what a plan says; ``command`` goes into the file's history."""
+    """Do what a plan says; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
+    if target is not None:
+        check_writable(target, plan.scene.inputs)
     prepare(plan.scene.asperities.shape, plan.scene.work)
     with progress(plan.scene.title, plan.scene.batch.realizations, quiet=quiet) as advance:
         shards = _over_threads(plan, workers, advance)

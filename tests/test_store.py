@@ -11,9 +11,12 @@ import netCDF4
 import pytest
 import tomli_w
 import xarray as xr
-from scenes import scene
+from scenes import ASPERITIES, scene
 
 import roughmdr as rm
+from roughmdr.plan import make_plan
+from roughmdr.runner import execute
+from roughmdr.scene import read as read_scene
 from roughmdr.store import read, replacing
 
 
@@ -47,9 +50,9 @@ def test_an_old_file_is_replaced(result: xr.Dataset, tmp_path: Path) -> None:
 @pytest.mark.parametrize("target", ["folder", "none/out.nc"])
 def test_an_output_that_cannot_be_written_is_found_before_computing(tmp_path: Path, target: str) -> None:
     (tmp_path / "folder").mkdir()
-    wrong = {**scene(), "material": "a fault that is found only later"}
+    endless = scene(asperities={**ASPERITIES, "count": 1_000_000_000}, batch={"realizations": 1_000_000})
     with pytest.raises(rm.StoreError, match=str(tmp_path / target)):
-        rm.run(wrong, tmp_path / target)
+        execute(make_plan(read_scene(endless), chunk=1_000_000), tmp_path / target, workers=2, quiet=True)
 
 
 def test_a_failure_while_writing_leaves_the_old_file_and_no_other(tmp_path: Path) -> None:
@@ -86,7 +89,7 @@ def test_what_is_no_result_is_refused(tmp_path: Path) -> None:
 _ENDLESS = """
 import sys, roughmdr as rm
 sys.path.insert(0, {tests!r})
-from scenes import scene
+from scenes import ASPERITIES, scene
 while True:
     rm.run(scene(), {target!r})
     print("written", flush=True)

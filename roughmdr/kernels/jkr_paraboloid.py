@@ -18,9 +18,13 @@ from roughmdr._jit import njit
 _B = 2.577472688647387
 _C0, _C1, _C2 = 2.5126716141883847, -2.5782406660482913, 1.2749000231451322
 _C3, _C4, _C5 = -0.04324516500758297, -0.24742443101061207, 0.08133881774388521
-
-
 _SMALLEST = 1e-270
+
+
+@njit
+def _curvature_radius(width: float, rise: float) -> float:
+    """R of rise (r/width)^2 = r^2/(2 R)."""
+    return width * (width / (2.0 * rise))
 
 
 @njit
@@ -36,7 +40,7 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 
     All NaN where pi w/(E* R) lies so far from 1 that its cube root cannot be corrected in pairs.
     """
-    curvature_radius = width * (width / (2.0 * rise))
+    curvature_radius = _curvature_radius(width, rise)
     reduced = _reduced_work(modulus, work, curvature_radius)
     root = float(np.cbrt(reduced[0] if _SMALLEST < reduced[0] < 1.0 / _SMALLEST else math.nan))
     cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
@@ -50,7 +54,7 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 @njit
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
-    curvature_radius = width * (width / (2.0 * rise))
+    curvature_radius = _curvature_radius(width, rise)
     force = extended.multiply(extended.PI, extended.multiply(extended.two_product(1.5, work), (curvature_radius, 0.0)))
     reduced = _reduced_work(modulus, work, curvature_radius)[0]
     return force, 0.5 * curvature_radius * float(np.cbrt(9.0 * reduced))

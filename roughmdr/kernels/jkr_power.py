@@ -46,9 +46,11 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
 
 
 @njit
-def distance_e(l: float, e: float) -> float:
-    """X(l), exact to a few roundings of l tau."""
-    return math.exp(l) * math.expm1(e * l) / e - math.expm1(l)
+def _distance(l: float, e: float) -> tuple[float, float, float]:
+    """X, dX/dl and d2X/dl2 at l; X is exact to a few roundings of l tau."""
+    tau, excess = math.exp(l), math.expm1(e * l)
+    slope = tau * (1.0 + e) * excess / e
+    return tau * excess / e - math.expm1(l), slope, slope + tau * (1.0 + e) * (excess + 1.0)
 
 
 @njit
@@ -63,11 +65,7 @@ def branch(x: float, e: float) -> float:
     p = 1.0 + e
     l = 2.0 / p * math.asinh(0.5 * p * math.sqrt(2.0 * x / p))
     for _ in range(8):
-        tau = math.exp(l)
-        excess = math.expm1(e * l)
-        value = tau * excess / e - math.expm1(l)
-        slope = tau * p * excess / e
-        curve = slope + tau * p * (excess + 1.0)
+        value, slope, curve = _distance(l, e)
         if x > 1.0:
             residual = math.log(value / x)
             curve = curve / value - (slope / value) ** 2
@@ -102,7 +100,7 @@ def radius_of_force(x: float, n: float) -> float:
 @njit
 def distance(l: float, n: float) -> float:
     """X(l)."""
-    return distance_e(l, 2.0 * n - 1.0)
+    return _distance(l, 2.0 * n - 1.0)[0]
 
 
 @njit

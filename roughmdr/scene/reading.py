@@ -26,20 +26,18 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     if isinstance(source, Scene):
         source = tomllib.loads(source.toml)
     if isinstance(source, dict):
-        label, text, table, folder, stem = "scene", "", copy.deepcopy(source), Path(), "scene"
+        path, label, text, table = None, "scene", "", copy.deepcopy(source)
     else:
-        path = Path(source)
-        label, folder, stem = str(path), path.parent, path.stem
-        text = _text(path)
+        path, label, text = Path(source), str(source), _text(Path(source))
         try:
             table = tomllib.loads(text)
         except (ValueError, RecursionError) as error:
             raise SceneError(f"{label}: not valid TOML: {error}") from None
-    _resolve_paths(table, folder)
+    _resolve_paths(table, path.parent if path else Path())
     changed = _change(table, changes)
-    table.setdefault("title", stem)
+    table.setdefault("title", path.stem if path else "scene")
     try:
-        return Scene.model_validate(table)
+        return Scene.of(table, path)
     except ValidationError as error:
         lines = key_lines(text)
         found = complaints(error, table, Scene)

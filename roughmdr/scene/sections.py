@@ -1,13 +1,13 @@
 """What a scene may ask for: its sections, their keys and defaults."""
 
 import math
+from pathlib import Path as FilePath
 from typing import Annotated, Any, Literal
 
 import tomli_w
 from pydantic import (
     BeforeValidator,
     Field,
-    ModelWrapValidatorHandler,
     PrivateAttr,
     field_validator,
     model_validator,
@@ -100,13 +100,13 @@ class Scene(Section):
     batch: Batch = Batch()
 
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _file: FilePath | None = PrivateAttr(default=None)
 
-    @model_validator(mode="wrap")
     @classmethod
-    def _keep_the_table(cls, data: Any, handler: ModelWrapValidatorHandler["Scene"]) -> "Scene":
-        scene = handler(data)
-        if isinstance(data, dict):
-            scene._table = data
+    def of(cls, table: dict[str, Any], file: FilePath | None) -> "Scene":
+        """The scene of a table, which was read from ``file`` if from one; pydantic's ValidationError if it is none."""
+        scene = cls.model_validate(table)
+        scene._table, scene._file = table, file
         return scene
 
     @model_validator(mode="after")
@@ -146,6 +146,12 @@ class Scene(Section):
     def work(self) -> float:
         """Work of adhesion [J/m^2]; 0 without adhesion."""
         return 0.0 if self.adhesion is None else self.adhesion.work
+
+    @property
+    def inputs(self) -> tuple[FilePath, ...]:
+        """The files that the scene is read from."""
+        own = () if self._file is None else (self._file,)
+        return (*own, *self.asperities.inputs)
 
     @property
     def toml(self) -> str:
