@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.labelled import Labelled
 from roughmdr.store import write
 from roughmdr.units import quantity
 
@@ -66,7 +67,7 @@ def main(
             attrs={"title": f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}"},
         )
         output.parent.mkdir(parents=True, exist_ok=True)
-        write(dataset, output)
+        write(Labelled.of(dataset), output)
     except RoughmdrError as error:
         raise click.UsageError(str(error)) from None
     click.echo(f"{output}: {points} x {points} points")

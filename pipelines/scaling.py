@@ -23,6 +23,7 @@ from roughmdr.aggregate import loop
 from roughmdr.aggregate.staircase import no_memory, staircase
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.laws import choose
+from roughmdr.labelled import Labelled
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
@@ -223,7 +224,7 @@ def main(output: Path, quick: bool) -> None:
     """Measure, print, write scaling.nc and scaling.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(quick)
-    write(result, output / "scaling.nc")
+    write(Labelled.of(result), output / "scaling.nc")
     draw(result, output / "scaling.png")
     click.echo(result["cost"].to_pandas().round(2).to_string())
     one, two = result["batch_time"].to_numpy()

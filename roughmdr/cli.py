@@ -64,7 +64,7 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
     command = "roughmdr " + shlex.join(sys.argv[1:])
     result = execute(make_plan(read(scene, changes)), output, workers=workers, quiet=quiet, command=command)
     if not quiet:
-        click.echo(_summary(result, time.perf_counter() - started))
+        click.echo(_summary(result.to_xarray(), time.perf_counter() - started))
         click.echo(f"result       {output}")
 
 
@@ -77,7 +77,7 @@ def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     from roughmdr.plots import plot
     from roughmdr.store import read
 
-    plot(read(result), output, list(variables))
+    plot(read(result).to_xarray(), output, list(variables))
     click.echo(f"picture      {output}")
 
 

@@ -1,6 +1,7 @@
 """The batch: a plan's tasks over dask's threads, the results into one dataset. The only file that knows dask."""
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from roughmdr.aggregate import compute, prepare
 from roughmdr.errors import RoughmdrError
+from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Advance, progress
 from roughmdr.scene import Scene, read
@@ -45,12 +47,10 @@ def run(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
     target = None if out is None else Path(out)
-    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet)
+    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet).to_xarray()
 
 
-def execute(
-    plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run"
-) -> "xr.Dataset":
+def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run") -> Labelled:
     """Do what a plan says; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
     if target is not None:
         check_writable(target, plan.scene.inputs)
@@ -69,19 +69,19 @@ def execute(
 
 
 def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
-    from dask.base import compute as dask_compute
     from dask.callbacks import Callback
-    from dask.delayed import delayed
+    from dask.threaded import get
 
-    tasks = [delayed(compute_shard, pure=False)(plan, chunk) for chunk in plan.chunks]
+    # A task without arguments: dask would search them for other tasks, and import dask.array to tell them apart.
+    keys = [f"shard-{number}" for number in range(len(plan.chunks))]
+    graph = {key: (partial(compute_shard, plan, chunk),) for key, chunk in zip(keys, plan.chunks, strict=True)}
 
     def done(key: object, result: object, *_: object) -> None:
         if isinstance(result, Shard):
             advance(len(result.run_time))
 
     with Callback(posttask=done):
-        shards = dask_compute(*tasks, scheduler="threads", num_workers=workers)
-    return list(shards)
+        return list(get(graph, keys, num_workers=workers))
 
 
 def compute_shard(plan: Plan, realizations: tuple[int, ...]) -> Shard:

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.errors import StoreError
+from roughmdr.labelled import Array, Labelled
 from roughmdr.plan import Plan
 from roughmdr.shapes.base import Floats
 from roughmdr.variables import LAW, RUN
 
 if TYPE_CHECKING:
-    import xarray as xr
+    import netCDF4
 
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 _REFERENCES = (
@@ -30,22 +31,18 @@ DONE, FAILED, NOT_RUN = 0, 1, 2
 
 def assemble(
     plan: Plan, variables: dict[str, Floats], run_time: Floats, numerical_error: Floats, command: str
-) -> "xr.Dataset":
+) -> Labelled:
     """The result: ``variables`` over realization and step [SI], the others over realization."""
-    import xarray as xr
-
     scene = plan.scene
-    data: dict[str, tuple[object, object, dict[str, object]]] = {
-        name: (("realization", "step"), values, dict(LAW[name].attrs)) for name, values in variables.items()
-    }
+    data = {name: Array(("realization", "step"), values, dict(LAW[name].attrs)) for name, values in variables.items()}
     status = np.full(run_time.shape, DONE, dtype=np.int8)
     flags = {
         "flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8),
         "flag_meanings": "done failed not_run",
     }
-    data["run_time"] = ("realization", run_time, dict(RUN["run_time"].attrs))
-    data["numerical_error"] = ("realization", numerical_error, dict(RUN["numerical_error"].attrs))
-    data["status"] = ("realization", status, {"long_name": RUN["status"].long_name, **flags})
+    data["run_time"] = Array(("realization",), run_time, dict(RUN["run_time"].attrs))
+    data["numerical_error"] = Array(("realization",), numerical_error, dict(RUN["numerical_error"].attrs))
+    data["status"] = Array(("realization",), status, {"long_name": RUN["status"].long_name, **flags})
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
     attrs = {
@@ -59,7 +56,7 @@ def assemble(
         "packages": ", ".join(versions),
         "left_out": "\n".join(plan.left_out),
     }
-    return xr.Dataset(data, coords=plan.route.coordinates(), attrs=attrs)
+    return Labelled(data, plan.route.coordinates(), attrs)
 
 
 def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
@@ -115,31 +112,63 @@ def _sync_folder(folder: Path) -> None:
             os.close(descriptor)
 
 
-def write(dataset: "xr.Dataset", path: Path) -> None:
-    """Put ``dataset`` at ``path`` as netCDF-4, atomically; StoreError where that fails."""
-    encoding = {
-        str(name): {"_FillValue": np.nan if variable.dtype.kind == "f" else None}
-        for name, variable in dataset.data_vars.items()
-    }
-    encoding |= {str(name): {"_FillValue": None} for name in dataset.coords if dataset[name].dtype.kind == "f"}
+def write(data: Labelled, path: Path) -> None:
+    """Put ``data`` at ``path`` as netCDF-4, atomically; StoreError where that fails."""
     with replacing(path) as temporary:
         try:
-            dataset.to_netcdf(temporary, format="NETCDF4", engine="netcdf4", encoding=encoding)
+            _write_netcdf(data, temporary)
         except RuntimeError as error:  # so netCDF4 says that a disk is full
             raise StoreError(f"{path}: cannot be written: {error}") from None
 
 
-def read(path: Path) -> "xr.Dataset":
+def _write_netcdf(data: Labelled, path: Path) -> None:
+    import netCDF4
+
+    beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.setncatts(data.attrs)
+        for dimension, size in data.sizes.items():
+            file.createDimension(dimension, size)
+        for name, array in (data.coordinates | data.variables).items():
+            kind = array.values.dtype.kind
+            variable = file.createVariable(
+                name,
+                str if kind in "OU" else array.values.dtype,
+                array.dims,
+                fill_value=np.nan if kind == "f" and name in data.variables else None,
+            )
+            variable.setncatts(array.attrs)
+            if name in data.variables and (apt := [other for other, dims in beside.items() if dims <= set(array.dims)]):
+                variable.coordinates = " ".join(apt)
+            variable[...] = array.values.astype(object) if kind == "U" else array.values
+
+
+def read(path: Path) -> Labelled:
     """A result file, loaded; StoreError where it is none."""
-    import xarray as xr
+    import netCDF4
 
     if not path.is_file():
         raise StoreError(f"{path}: no such file")
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            dataset.load()
-    except Exception as error:
-        raise StoreError(f"{path}: not a netCDF file that can be read ({type(error).__name__})") from error
-    if "step" not in dataset.dims or "scene" not in dataset.attrs:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            data = _read_netcdf(file)
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        raise StoreError(f"{path}: not a netCDF file that can be read ({error})") from None
+    if "step" not in data.sizes or "scene" not in data.attrs:
         raise StoreError(f"{path}: not a result of roughmdr: it has no dimension step, or no attribute scene")
-    return dataset
+    return data
+
+
+def _read_netcdf(file: "netCDF4.Dataset") -> Labelled:
+    arrays, beside = {}, set(file.dimensions)
+    for name, variable in file.variables.items():
+        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        beside |= set(attrs.pop("coordinates", "").split())
+        attrs.pop("_FillValue", None)
+        arrays[name] = Array(variable.dimensions, np.asarray(variable[...]), attrs)
+    return Labelled(
+        {name: array for name, array in arrays.items() if name not in beside},
+        {name: array for name, array in arrays.items() if name in beside},
+        {key: file.getncattr(key) for key in file.ncattrs()},
+    )

@@ -7,6 +7,7 @@ from scenes import ASPERITIES
 
 import roughmdr as rm
 from roughmdr.ensemble.distributions import SMALLEST_UNIFORM, uniforms
+from roughmdr.ensemble.families import find_family
 
 
 def generate(seed: int = 1, realization: int = 0, **changes: object) -> object:
@@ -129,3 +130,16 @@ def test_a_wrong_section_is_refused(changes: dict[str, object], says: str) -> No
 def test_a_wrong_seed_is_refused(seed: object) -> None:
     with pytest.raises(rm.SceneError, match="seed is"):
         rm.generate(ASPERITIES, seed=seed)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("name", "own"), [("norm", ()), ("lognorm", (0.3,)), ("lognorm", (4.0,)), ("uniform", ())])
+def test_lean_families_are_those_of_scipy_to_the_bit(name: str, own: tuple[float, ...]) -> None:
+    drawn = uniforms(3, 1, 0, 10_000)
+    levels = np.concatenate([[SMALLEST_UNIFORM], drawn, [1.0 - SMALLEST_UNIFORM]])
+    lean, whole = find_family(name), getattr(scipy.stats, name)
+    assert lean is not None
+    assert lean.shapes == (() if whole.shapes is None else tuple(whole.shapes.split(", ")))
+    np.testing.assert_array_equal(lean.lower(levels, *own), whole.ppf(levels, *own))
+    np.testing.assert_array_equal(lean.upper(levels, *own), whole.isf(levels, *own))
+    np.testing.assert_allclose(lean.moments(*own), whole.stats(*own, moments="mv"), rtol=1e-14)
+    assert lean.defined(*own)

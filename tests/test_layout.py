@@ -9,7 +9,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
-    ("errors", "arguments", "variables", "units", "quantities", "complaints", "_jit", "_extended"),
+    ("errors", "arguments", "variables", "labelled", "units", "quantities", "complaints", "_jit", "_extended"),
     ("shapes",),
     ("kernels",),
     ("asperity",),
@@ -54,7 +54,8 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
         ("matplotlib", {"plots"}),
         ("click", {"cli"}),
         ("rich", {"progress"}),
-        ("xarray", {"asperity", "ensemble", "aggregate", "store", "runner", "analysis", "plots", "cli"}),
+        ("xarray", {"labelled", "asperity", "ensemble", "aggregate", "runner", "analysis", "plots", "cli"}),
+        ("netCDF4", {"store", "scene"}),
     ],
 )
 def test_a_package_is_known_only_where_it_belongs(package: str, allowed: set[str]) -> None:

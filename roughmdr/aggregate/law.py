@@ -13,6 +13,7 @@ from roughmdr.arguments import check_number, check_values
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.kernels.laws import choose
+from roughmdr.labelled import Array, Labelled
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.base import Floats
 from roughmdr.variables import DEFAULT, LAW, RUN
@@ -118,6 +119,6 @@ def load_separation(
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(LAW)}")
     route = Route.along(path, unload=unload, adhesive=work > 0.0)
     result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, work=work, variables=names)
-    data = {name: ("step", result.variables[name], LAW[name].attrs) for name in names}
-    error = ((), result.numerical_error, RUN["numerical_error"].attrs)
-    return xr.Dataset({**data, "numerical_error": error}, coords=route.coordinates())
+    data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
+    data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
+    return Labelled(data, route.coordinates(), {}).to_xarray()

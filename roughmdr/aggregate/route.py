@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
+from roughmdr.labelled import Array
 from roughmdr.shapes.base import Floats
 from roughmdr.variables import COORDINATES
 
@@ -21,12 +22,13 @@ class Route(NamedTuple):
         separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
-    def coordinates(self) -> dict[str, tuple[str, object, dict[str, str]]]:
+    def coordinates(self) -> dict[str, Array]:
         """The coordinates over ``step``."""
-        branch = {"long_name": COORDINATES["branch"].long_name}
         return {
-            "separation": ("step", self.separation, COORDINATES["separation"].attrs),
-            "branch": ("step", np.array(branches(self.separation)), branch),
+            "separation": Array(("step",), self.separation, COORDINATES["separation"].attrs),
+            "branch": Array(
+                ("step",), np.array(branches(self.separation)), {"long_name": COORDINATES["branch"].long_name}
+            ),
         }
 
 

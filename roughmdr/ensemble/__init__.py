@@ -29,7 +29,7 @@ def generate(
     ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
     """
     section = asperities if isinstance(asperities, RandomAsperities | SurfaceAsperities) else _validated(asperities)
-    return section.ensemble(_whole("seed", seed), _whole("realization", realization)).to_dataset()
+    return section.ensemble(_whole("seed", seed), _whole("realization", realization)).labelled().to_xarray()
 
 
 def _whole(name: str, value: object) -> int:

@@ -3,11 +3,10 @@
 import difflib
 import math
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from roughmdr.ensemble.families import Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
 from roughmdr.shapes.base import Floats
 from roughmdr.units import DIMENSIONLESS, quantity
@@ -24,39 +23,43 @@ SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution of a quantity in SI: a scipy.stats name with its parameters, or a constant (``name`` empty)."""
+    """A distribution of a quantity in SI, or a constant: ``loc``, with ``scale`` 0 and no family."""
 
-    name: str
-    parameters: tuple[tuple[str, float], ...]
-
-    @cached_property
-    def frozen(self) -> Any:
-        """The scipy.stats distribution with its parameters."""
-        import scipy.stats
-
-        return getattr(scipy.stats, self.name)(**dict(self.parameters))
+    family: str
+    """Name in scipy.stats; empty for a constant."""
+    own: tuple[float, ...]
+    """The family's own shape parameters."""
+    loc: float
+    scale: float
 
     @property
     def constant(self) -> float | None:
         """The value, where every draw has the same."""
-        return None if self.name else self.parameters[0][1]
+        return None if self.family else self.loc
+
+    @property
+    def _standard(self) -> Family:
+        family = find_family(self.family)
+        if family is None:
+            raise AssertionError("checked when the distribution was read")
+        return family
 
     def quantile(self, uniform: Floats) -> Floats:
         """The values below which the given fractions lie."""
-        if self.constant is not None:
-            return np.full_like(uniform, self.constant)
-        # From the nearer tail: 1 - u is exact, and ppf(u) near 1 may round to infinity.
+        if not self.family:
+            return np.full_like(uniform, self.loc)
+        # From the nearer tail: 1 - u is exact, and the inverse near 1 may round to infinity.
         values = np.empty_like(uniform)
         upper = uniform > 0.5
         with np.errstate(all="ignore"):  # what overflows is refused when the distribution is read
-            values[~upper] = self.frozen.ppf(uniform[~upper])
-            values[upper] = self.frozen.isf(1.0 - uniform[upper])
-        return values
+            values[~upper] = self._standard.lower(uniform[~upper], *self.own)
+            values[upper] = self._standard.upper(1.0 - uniform[upper], *self.own)
+            return values * self.scale + self.loc
 
     @property
     def std(self) -> float:
         """Standard deviation; inf or NaN where the distribution has none."""
-        return 0.0 if self.constant is not None else float(self.frozen.std())
+        return self.scale * math.sqrt(self._standard.moments(*self.own)[1]) if self.family else 0.0
 
     @property
     def least(self) -> float:
@@ -86,33 +89,32 @@ def read_distribution(value: object, dimension: str, *, mean: float | None = Non
     Raises RoughmdrError, with the names that would do, where it cannot be read.
     """
     if not isinstance(value, dict):
-        return Distribution("", (("value", quantity(value, dimension)),))
-    import scipy.stats
-
+        return Distribution("", (), quantity(value, dimension), 0.0)
     table = dict(value)
     given = table.pop("distribution", None)
     if not isinstance(given, str):
         raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
     name = _FRIENDLY.get(given, given)
-    family = getattr(scipy.stats, name, None)
-    if not isinstance(family, scipy.stats.rv_continuous):
+    family = find_family(name)
+    if family is None:
         raise RoughmdrError(f"unknown distribution {given!r}{_near(given)}; any continuous one of scipy.stats will do")
-    shapes = [] if family.shapes is None else family.shapes.split(", ")
-    allowed = [*shapes, "loc", "scale", "mean", "std"]
     for key in table:
-        if key not in allowed:
-            raise RoughmdrError(f"{given} has no parameter {key!r}; it takes {', '.join(allowed)}")
-    numbers = {
-        key: _parameter(key, entry, DIMENSIONLESS if key in shapes else dimension) for key, entry in table.items()
-    }
+        if key not in _parameters(family):
+            raise RoughmdrError(f"{given} has no parameter {key!r}; it takes {', '.join(_parameters(family))}")
+    units = dict.fromkeys(family.shapes, DIMENSIONLESS)
+    numbers = {key: _parameter(key, entry, units.get(key, dimension)) for key, entry in table.items()}
     try:
-        distribution = Distribution(name, tuple(_located(family, given, shapes, numbers, mean).items()))
+        distribution = Distribution(name, *_located(family, given, numbers, mean))
         ends = distribution.least, distribution.greatest
     except (ArithmeticError, RuntimeError) as error:
         raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
     if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
         raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
     return distribution
+
+
+def _parameters(family: Family) -> list[str]:
+    return [*family.shapes, "loc", "scale", "mean", "std"]
 
 
 def _parameter(key: str, value: object, dimension: str) -> float:
@@ -123,9 +125,9 @@ def _parameter(key: str, value: object, dimension: str) -> float:
 
 
 def _located(
-    family: Any, given: str, shapes: list[str], numbers: dict[str, float], default_mean: float | None
-) -> dict[str, float]:
-    """scipy's own parameters, from mean and std where those are given."""
+    family: Family, given: str, numbers: dict[str, float], default_mean: float | None
+) -> tuple[tuple[float, ...], float, float]:
+    """The family's own parameters, loc and scale, from mean and std where those are given."""
     mean, std = numbers.get("mean"), numbers.get("std")
     for key in ("std", "scale"):
         if numbers.get(key, 1.0) <= 0.0:
@@ -138,25 +140,23 @@ def _located(
         if mean is None or std is None or not mean > 0.0:
             raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
         variance = math.log1p((std / mean) ** 2)
-        return {"s": math.sqrt(variance), "scale": mean * math.exp(-0.5 * variance)}
-    missing = [shape for shape in shapes if shape not in numbers]
+        return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
+    missing = [shape for shape in family.shapes if shape not in numbers]
     if missing:
-        raise RoughmdrError(
-            f"{given} needs {' and '.join(missing)}; it takes {', '.join([*shapes, 'loc', 'scale', 'mean', 'std'])}"
-        )
+        raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {', '.join(_parameters(family))}")
     if std is None and "scale" not in numbers:
         raise RoughmdrError(f"{given} needs a std or a scale")
-    own = {shape: numbers[shape] for shape in shapes}
-    if not family._argcheck(*own.values()):
+    own = {shape: numbers[shape] for shape in family.shapes}
+    if not family.defined(*own.values()):
         raise RoughmdrError(f"{given} is not defined for {_listed(own)}")
-    unit_mean, unit_variance = (float(moment) for moment in family.stats(**own, moments="mv"))
+    unit_mean, unit_variance = family.moments(*own.values())
     if mean is None and "loc" not in numbers and math.isfinite(unit_mean):
         mean = default_mean
     scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
     loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean
     if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
         raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
-    return {**own, "loc": loc, "scale": scale}
+    return tuple(own.values()), loc, scale
 
 
 def _listed(numbers: dict[str, float]) -> str:
@@ -164,11 +164,5 @@ def _listed(numbers: dict[str, float]) -> str:
 
 
 def _near(name: str) -> str:
-    import scipy.stats
-
-    known = [
-        *_FRIENDLY,
-        *(n for n in dir(scipy.stats) if isinstance(getattr(scipy.stats, n), scipy.stats.rv_continuous)),
-    ]
-    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+    near = difflib.get_close_matches(name, [*_FRIENDLY, *known_families()], n=3, cutoff=0.6)
     return f"; did you mean {' or '.join(repr(other) for other in near)}?" if near else ""

@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.arguments import check_number
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
+from roughmdr.labelled import Array, Labelled
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.base import Floats, check_positive
 from roughmdr.units import unit_factor
@@ -50,24 +51,17 @@ class Ensemble:
         """Width [m], rise [m] and form [1] of each asperity."""
         return SHAPES[self.shape].stretch(self.parameters)
 
-    def to_dataset(self) -> "xr.Dataset":
-        """The dataset over ``asperity``."""
-        import xarray as xr
-
+    def labelled(self) -> Labelled:
+        """The arrays over ``asperity``, with their units."""
         units = SHAPES[self.shape].units
-        variables = {"height": ("asperity", self.height, COORDINATES["height"].attrs)}
+        variables = {"height": Array(("asperity",), self.height, COORDINATES["height"].attrs)}
         for name, column in self.parameters.items():
-            variables[name] = (
-                "asperity",
-                column,
-                {"units": units[name], "long_name": f"{name} of the {self.shape}"},
-            )
+            attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}"}
+            variables[name] = Array(("asperity",), column, attrs)
         for name, column in self.positions.items():
-            variables[name] = ("asperity", column, COORDINATES[name].attrs)
-        attrs: dict[str, float | int | str] = {"shape": self.shape, **self.attrs}
-        if self.nominal_area is not None:
-            attrs["nominal_area"] = self.nominal_area
-        return xr.Dataset(variables, attrs=attrs)
+            variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
+        area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
+        return Labelled(variables, {}, {"shape": self.shape, **self.attrs, **area})
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":

@@ -1,0 +1,51 @@
+"""Arrays with dimensions, units and attributes: what becomes an xarray Dataset, or a file without importing xarray."""
+
+from collections.abc import Hashable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Array(NamedTuple):
+    """Values over named dimensions."""
+
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    attrs: dict[str, Any]
+
+
+class Labelled(NamedTuple):
+    """Variables and coordinates, flat, as netCDF and xarray have them."""
+
+    variables: dict[str, Array]
+    coordinates: dict[str, Array]
+    attrs: dict[str, Any]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The length of each dimension, in the order in which the variables name them."""
+        sizes: dict[str, int] = {}
+        for array in (*self.variables.values(), *self.coordinates.values()):
+            sizes |= dict(zip(array.dims, array.values.shape, strict=True))
+        return sizes
+
+    @classmethod
+    def of(cls, dataset: "xr.Dataset") -> "Labelled":
+        """The same from a Dataset."""
+
+        def arrays(variables: "Mapping[Hashable, xr.DataArray]") -> dict[str, Array]:
+            return {
+                str(name): Array(tuple(map(str, array.dims)), array.to_numpy(), dict(array.attrs))
+                for name, array in variables.items()
+            }
+
+        return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
+
+    def to_xarray(self) -> "xr.Dataset":
+        """The same as a Dataset."""
+        import xarray as xr
+
+        return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
