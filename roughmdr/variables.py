@@ -28,6 +28,8 @@ LAW = _table(
     ("pressure", "Pa", "force over nominal area"),
     ("contact_fraction", "1", "contact area over nominal area"),
     ("contact_radius_sum", "m", "sum of the contact radii"),
+    ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
+    ("dissipated_energy", "J", "energy lost in the jumps of contacts since the start of the path"),
 )
 """Variables of a load-separation law that can be asked for."""
 

@@ -6,6 +6,8 @@ Halves, since a running sum may not be reordered and so never becomes vector cod
 
 import math
 
+import numpy as np
+
 from roughmdr._jit import njit
 from roughmdr.shapes.base import Floats
 
@@ -48,3 +50,12 @@ def accumulate(total: Floats, carried: Floats, step: int, term: float) -> None:
     else:
         carried[step] += (term - after) + before
     total[step] = after
+
+
+@njit
+def run_on(terms: Floats) -> None:
+    """Each term becomes the sum of itself and all before it."""
+    total, carried = np.zeros(1), np.zeros(1)
+    for i in range(terms.size):
+        accumulate(total, carried, 0, terms[i])
+        terms[i] = total[0] + carried[0]

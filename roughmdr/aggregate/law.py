@@ -29,6 +29,8 @@ _ROW = {
     "contact_count": loop.COUNT,
     "contact_radius_sum": loop.RADIUS,
     "stiffness": loop.STIFFNESS,
+    "energy": loop.ENERGY,
+    "dissipated_energy": loop.DISSIPATED,
 }
 _PER_AREA = {"pressure", "contact_fraction"}
 

@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr._jit import njit, specialise
-from roughmdr.aggregate.block import BLOCK, accumulate, add_up, least
+from roughmdr.aggregate.block import BLOCK, accumulate, add_up, least, run_on
 from roughmdr.aggregate.staircase import Staircase
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.laws import Law
 from roughmdr.shapes.base import Floats
 
 # Rows of the totals.
-FORCE, RADIUS, AREA, STIFFNESS, COUNT, ERROR = range(6)
-ROWS = 6
+FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR = range(8)
+ROWS = 8
 
 _UNIT = 2.0**-53  # the largest relative error of one rounding
 _KERNEL_ERROR = 1e-13  # of the force of a contact over its natural scale, as the kernels are tested
@@ -31,8 +31,8 @@ _KERNEL_ERROR = 1e-13  # of the force of a contact over its natural scale, as th
 _NOT_REPRESENTABLE = -1
 
 # Rows of a block's natural scales.
-_DEPTH, _PER_DEPTH, _SIZE, _LOAD, _RIGIDITY = range(5)
-_SCALES = 5
+_DEPTH, _PER_DEPTH, _SIZE, _LOAD, _RIGIDITY, _WORTH = range(6)
+_SCALES = 6
 _SMALLEST, _LARGEST = np.finfo(np.float64).tiny, np.finfo(np.float64).max
 
 # Names that ``specialise`` fills with the kernels of a law.
@@ -42,6 +42,7 @@ _state: Callable[..., float]
 _radius: Callable[..., float]
 _force: Callable[..., float]
 _stiffness: Callable[..., float]
+_energy: Callable[..., float]
 
 
 @njit
@@ -67,11 +68,15 @@ def _measure(
     form: Floats,
     modulus: float,
     work: float,
+    wanted: NDArray[np.bool_],
     scales: Floats,
     greatest: Floats,
     terms: Floats,
 ) -> bool:
-    """Fill the natural scales of a block, and the greatest of each; False where one is not representable."""
+    """Fill the natural scales of a block, and the greatest of each; False where one is not representable.
+
+    That of the energy is 1 unless an energy is wanted.
+    """
     for i in range(width.size):  # nothing but this, so that it becomes vector code
         (depth, _), size, load, rigidity = _natural(modulus, work, width[i], rise[i], form[i])
         scales[_DEPTH, i] = depth
@@ -79,6 +84,9 @@ def _measure(
         scales[_SIZE, i] = size
         scales[_LOAD, i] = load
         scales[_RIGIDITY, i] = rigidity
+    energetic = wanted[ENERGY] or wanted[DISSIPATED]
+    for i in range(width.size):
+        scales[_WORTH, i] = scales[_LOAD, i] * scales[_DEPTH, i] if energetic else 1.0
     strange = 0
     for row in range(_SCALES):
         for i in range(width.size):
@@ -148,7 +156,7 @@ def _tally(
 
     Each total chooses among its terms as it makes them: a pass of its own over the block for that costs a tenth of all.
     """
-    size, load, rigidity = scales[_SIZE], scales[_LOAD], scales[_RIGIDITY]
+    size, load, rigidity, worth = scales[_SIZE], scales[_LOAD], scales[_RIGIDITY], scales[_WORTH]
     if wanted[FORCE]:
         for i in range(count):
             terms[i] = load[i] * _force(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
@@ -166,11 +174,33 @@ def _tally(
         for i in range(count):
             terms[i] = rigidity[i] * _stiffness(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[STIFFNESS], carried[STIFFNESS], step, add_up(terms, count))
+    if wanted[ENERGY]:
+        for i in range(count):
+            terms[i] = worth[i] * _energy(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+        accumulate(total[ENERGY], carried[ENERGY], step, add_up(terms, count))
     if wanted[COUNT]:
         contacts = float(count)
         if _adhesive:
             contacts = add_up(held, count)  # the last use of held: it is spoilt
         accumulate(total[COUNT], carried[COUNT], step, contacts)
+
+
+def _jumps(count: int, form: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
+    """The energy [J] lost in the jumps of a block since the step before, of whose contacts it takes the place.
+
+    Between two steps the flat moves one way, so that a contact made or lost on the way has jumped once: on at first
+    touch, where it goes from no energy to U < 0, or off at its fold, from U > 0 to none.
+    """
+    for i in range(count):
+        made = held[i] > held_before[i]
+        lost = held[i] < held_before[i]
+        if made or lost:
+            energy = _energy(_state(1.0 if made else 0.0, form[i]), form[i])
+            terms[i] = worth[i] * (-energy if made else energy)
+        else:
+            terms[i] = 0.0
+        held_before[i] = held[i]
+    return add_up(terms, count)
 
 
 def _bound(
@@ -234,15 +264,17 @@ def _loop(
     visits = 0
     closest = np.min(separation)
     scales, greatest = np.empty((_SCALES, BLOCK)), np.empty(_SCALES)
-    held, state, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    held, held_before, state, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     for start in range(0, height.size, BLOCK):
         block = slice(start, min(start + BLOCK, height.size))
         z, n = height[block], form[block]
         if z[0] < closest:
             break
         mixed = bool(np.any(n != n[0]))
-        if not _measure(width[block], rise[block], n, modulus, work, scales, greatest, terms):
+        if not _measure(width[block], rise[block], n, modulus, work, wanted, scales, greatest, terms):
             return _NOT_REPRESENTABLE
+        count_before = 0
+        held_before[:] = 0.0
         for step in range(separation.size):
             h = separation[step]
             begin, end = first[step], first[step + 1]
@@ -254,10 +286,18 @@ def _loop(
                     retracted = end - begin > 1 or top[begin] > bottom[begin]
                     bound = _bound(count, z, n, mixed, h, retracted, greatest, held, state, terms)
                     accumulate(total[ERROR], carried[ERROR], step, bound)
+            if _adhesive and wanted[DISSIPATED]:
+                held[count:count_before] = 0.0
+                spent = _jumps(max(count, count_before), n, scales[_WORTH], held, held_before, terms)
+                accumulate(total[DISSIPATED], carried[DISSIPATED], step, spent)
+                count_before = count
+            if count > 0:
                 _tally(count, n, scales, held, state, terms, wanted, step, total, carried)
     for row in range(ROWS):
         for step in range(separation.size):
             total[row, step] += carried[row, step]
+    if wanted[DISSIPATED]:
+        run_on(total[DISSIPATED])
     return visits
 
 
@@ -270,8 +310,9 @@ def _compiled(law: Law) -> Callable[..., int]:
         "_radius": law.radius,
         "_force": law.force,
         "_stiffness": law.stiffness,
+        "_energy": law.energy,
     }
-    for part in (_measure, _lowest, _settle, _bound, _tally):
+    for part in (_measure, _lowest, _settle, _bound, _jumps, _tally):
         kernels[part.__name__] = specialise(cast(FunctionType, part), law.name, kernels, inline=True)
     return specialise(cast(FunctionType, _loop), law.name, kernels)
 

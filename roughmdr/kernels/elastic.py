@@ -111,6 +111,26 @@ def stiffness(t: float, n: float) -> float:
 
 
 @njit
+def energy_paraboloid(t: float, n: float) -> float:
+    """U = ∫ P d(delta) over 2 E* width depth^2, n = 2."""
+    square = t * t
+    return 4.0 / 15.0 * (square * square * t)
+
+
+@njit
+def energy_cone(t: float, n: float) -> float:
+    """U = ∫ P d(delta) over 2 E* width depth^2, n = 1."""
+    return t * t * t / 6.0
+
+
+@njit
+def energy_power(t: float, n: float) -> float:
+    """U = ∫ P d(delta) over 2 E* width depth^2."""
+    x = math.pow(t, n)
+    return n * n / ((n + 1.0) * (2.0 * n + 1.0)) * (t * x * x)
+
+
+@njit
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at t = 1, and the radius [m] there."""
     _, size, force, _ = natural_power(modulus, work, width, rise, n)

@@ -10,6 +10,7 @@ from roughmdr.kernels.jkr_power import branch
 
 __all__ = [
     "distance",
+    "energy",
     "force",
     "natural",
     "natural_force",
@@ -73,3 +74,10 @@ def stiffness(v: float, n: float) -> float:
     """k over 2 E* a_c."""
     tau = 1.0 + v
     return tau * tau * (v - 2.0) / v
+
+
+@njit
+def energy(v: float, n: float) -> float:
+    """U over 2 E* a_c dl(a_c) |delta_c|."""
+    square = (1.0 + v) * (1.0 + v)
+    return square * square * (1.0 - v * (4.0 - v)) / 12.0

@@ -110,3 +110,11 @@ def stiffness(v: float, n: float) -> float:
     """k over 2 E* a_c."""
     excess = v * (3.0 + v * (3.0 + v))
     return (1.0 + v) * (1.0 + v) * (excess - 2.0) / excess
+
+
+@njit
+def energy(v: float, n: float) -> float:
+    """U over pi w R |delta_c|."""
+    square = (1.0 + v) * (1.0 + v)
+    excess = v * (3.0 + v * (3.0 + v))
+    return square * square * (6.0 - excess * (8.0 - excess)) / 45.0

@@ -4,7 +4,8 @@ All is measured from the fold under fixed grips, where the contact lets go: ther
 a_c g'(a_c) = dl(a_c)/2. With tau = sqrt(a/a_c), e = 2 n - 1 and the distance to the fold X = 1 - delta/delta_c,
 
     X = tau (tau^e - 1)/e - (tau - 1),   delta_c = -e/(2 n) dl(a_c),
-    P = 2 E* a_c dl(a_c) tau^3 [tau^e/(2 n + 2) - 1],   k = 2 E* a (tau^e - 3)/(tau^e - 1).
+    P = 2 E* a_c dl(a_c) tau^3 [tau^e/(2 n + 2) - 1],   k = 2 E* a (tau^e - 3)/(tau^e - 1),
+    U = 2 E* a_c dl(a_c) |delta_c| n tau^4 [n - q (4 n - tau^e + 1)]/((2 n + 2) (2 n + 1)),   q = (tau^e - 1)/e.
 
 The state is l = ln tau, so that neither tau^e near 1 nor a huge tau loses digits. Under dead load the same equation
 holds with u = (tau/tau_P)^3, tau_P^e = 3, in place of tau, e/3 in place of e, and X = 1 - P/P_c.
@@ -120,6 +121,14 @@ def stiffness(l: float, n: float) -> float:
     """k over 2 E* a_c; -inf from the right at the fold l = 0, which the caller keeps away from."""
     excess = math.expm1((2.0 * n - 1.0) * l)
     return math.exp(2.0 * l) * (excess - 2.0) / excess
+
+
+@njit
+def energy(l: float, n: float) -> float:
+    """U, elastic and surface, over 2 E* a_c dl(a_c) |delta_c|."""
+    e = 2.0 * n - 1.0
+    excess = math.expm1(e * l)
+    return n * math.exp(4.0 * l) * (n - excess / e * (4.0 * n - excess)) / ((2.0 * n + 2.0) * (2.0 * n + 1.0))
 
 
 @njit

@@ -39,9 +39,11 @@ class Law(NamedTuple):
     """(state, form) -> P over natural force."""
     stiffness: Kernel
     """(state, form) -> k over natural stiffness."""
+    energy: Kernel
+    """(state, form) -> elastic and surface energy over natural force times natural depth."""
 
 
-def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kernel) -> Law:
+def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kernel, energy: Kernel) -> Law:
     return Law(
         name=f"elastic_{name}",
         adhesive=False,
@@ -54,15 +56,22 @@ def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kerne
         radius=elastic.radius,
         force=force,
         stiffness=elastic.stiffness,
+        energy=energy,
     )
 
 
 _ELASTIC = {
     "paraboloid": _elastic(
-        "paraboloid", elastic.natural_paraboloid, elastic.state_paraboloid, elastic.force_paraboloid
+        "paraboloid",
+        elastic.natural_paraboloid,
+        elastic.state_paraboloid,
+        elastic.force_paraboloid,
+        elastic.energy_paraboloid,
     ),
-    "cone": _elastic("cone", elastic.natural_cone, elastic.state_cone, elastic.force_cone),
-    "power_law": _elastic("power_law", elastic.natural_power, elastic.state_power, elastic.force_power),
+    "cone": _elastic("cone", elastic.natural_cone, elastic.state_cone, elastic.force_cone, elastic.energy_cone),
+    "power_law": _elastic(
+        "power_law", elastic.natural_power, elastic.state_power, elastic.force_power, elastic.energy_power
+    ),
 }
 _JKR = {
     name: Law(
@@ -77,6 +86,7 @@ _JKR = {
         radius=kernels.radius,
         force=kernels.force,
         stiffness=kernels.stiffness,
+        energy=kernels.energy,
     )
     for name, kernels in (("paraboloid", jkr_paraboloid), ("cone", jkr_cone), ("power_law", jkr_power))
 }
