@@ -4,7 +4,6 @@ Everything listed in ``__all__`` is loaded when it is first used, so that what i
 """
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        return version("roughmdr")
+        return import_module("importlib.metadata").version("roughmdr")
     if name == "theory":
         return import_module("roughmdr.theory")
     if name in _HOME:

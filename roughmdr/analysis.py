@@ -5,28 +5,45 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from roughmdr.arguments import Floats
 from roughmdr.errors import StoreError
+from roughmdr.labelled import Labelled
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 class PullOff(NamedTuple):
-    """The pull-off force [N]: the largest tension along the path, mean over the realisations."""
+    """The pull-off force [N] of each cell of a result: the largest tension along the path, 0 where there is none."""
 
-    mean: float
-    standard_error: float
+    mean: Floats
+    """Over the realisations."""
+    standard_error: Floats
     """NaN for a single realisation, which has none."""
+    of_the_mean: bool
+    """Whether it is the lowest point of the mean curve, since the realisations were not kept."""
 
 
-def pull_off_force(result: "xr.Dataset") -> PullOff:
-    """The pull-off force of a result, below 0; 0 where the path has no tension. StoreError without a force."""
-    if "force" not in result:
-        raise StoreError("the result holds no force: add it to output.variables")
-    lowest = np.minimum(result["force"].min("step").to_numpy(), 0.0)
-    count = lowest.size
-    error = float(np.std(lowest, ddof=1)) / math.sqrt(count) if count > 1 else math.nan
-    return PullOff(float(np.mean(lowest)), error)
+def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
+    """The pull-off force of a result, over its swept dimensions. StoreError without a force."""
+    arrays = result.variables
+    if "force" in arrays:
+        lowest = np.minimum(np.min(arrays["force"].values, axis=-1), 0.0)
+        return PullOff(*_mean_and_error(lowest), of_the_mean=False)
+    if "force_mean" in arrays:
+        mean, error = arrays["force_mean"].values, arrays["force_sem"].values
+        where = np.argmin(mean, axis=-1)[..., None]
+        lowest, at = (np.take_along_axis(values, where, axis=-1)[..., 0] for values in (mean, error))
+        return PullOff(np.minimum(lowest, 0.0), np.where(lowest < 0.0, at, 0.0), of_the_mean=True)
+    raise StoreError("the result holds no force: add it to output.variables")
+
+
+def _mean_and_error(values: Floats) -> tuple[Floats, Floats]:
+    count = values.shape[-1]
+    mean = np.asarray(values.mean(axis=-1))
+    if count < 2:
+        return mean, np.full_like(mean, math.nan)
+    return mean, np.asarray(values.std(axis=-1, ddof=1)) / math.sqrt(count)
 
 
 def standard_error(values: "xr.DataArray") -> "xr.DataArray":

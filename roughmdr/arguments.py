@@ -7,6 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange
 
+Floats = NDArray[np.float64]
+
 
 def check_number(name: str, value: float, unit: str, *, zero: bool = False) -> float:
     """``value`` as a float; OutOfRange unless it is finite and above 0 (or 0, where that is allowed)."""
@@ -20,7 +22,7 @@ def check_number(name: str, value: float, unit: str, *, zero: bool = False) -> f
     return number
 
 
-def check_values(name: str, raw: ArrayLike) -> NDArray[np.float64]:
+def check_values(name: str, raw: ArrayLike) -> Floats:
     """A number or a one-dimensional array of numbers as floats; OutOfRange unless all are finite."""
     try:
         values = np.asarray(raw, dtype=np.float64)

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import check_number, check_values
+from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.kernels.elementwise import apply
 from roughmdr.kernels.laws import Law, choose
-from roughmdr.shapes.base import Floats, Shape
+from roughmdr.shapes.base import Shape
 from roughmdr.variables import ASPERITY
 
 if TYPE_CHECKING:

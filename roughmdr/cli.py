@@ -5,14 +5,11 @@ import shlex
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import click
 
-from roughmdr.errors import RoughmdrError
-
-if TYPE_CHECKING:
-    import xarray as xr
+from roughmdr.errors import Fault, RoughmdrError, SceneError
 
 _WRONG_INPUT, _INTERRUPTED = 2, 130
 
@@ -24,16 +21,36 @@ class _Group(click.Group):
         try:
             return super().invoke(ctx)
         except RoughmdrError as error:
-            _stop(f"roughmdr: {error}".replace("\n", "\nroughmdr: "), _WRONG_INPUT)
+            _stop(error)
         except (KeyboardInterrupt, click.Abort):
             click.echo("roughmdr: interrupted; nothing was written", err=True)
             # Threads may still compute, and none of them has anything on disk: leave without waiting for them.
             os._exit(_INTERRUPTED)
 
 
-def _stop(message: str, status: int) -> NoReturn:
-    click.echo(message, err=True)
-    sys.exit(status)
+def _stop(error: RoughmdrError) -> NoReturn:
+    """The message on the standard error stream; in colour where that is a terminal and NO_COLOR is not set."""
+    faults = error.faults if isinstance(error, SceneError) else ()
+    for line in map(_coloured, faults) if faults else str(error).splitlines():
+        click.echo(f"roughmdr: {line}", err=True, color=False if os.environ.get("NO_COLOR") else None)
+    sys.exit(_WRONG_INPUT)
+
+
+def _coloured(fault: Fault) -> str:
+    message, hint, name = fault.message.partition("did you mean")
+    return str(
+        fault._replace(
+            place=fault.place and click.style(fault.place, bold=True),
+            key=fault.key and click.style(fault.key, fg="cyan", bold=True),
+            value=fault.value and click.style(fault.value, fg="red"),
+            message=message + (hint and click.style(hint + name, fg="green")),
+        )
+    )
+
+
+def _command() -> str:
+    """What goes into a file's history."""
+    return "roughmdr " + shlex.join(sys.argv[1:])
 
 
 @click.group(cls=_Group, context_settings={"help_option_names": ["-h", "--help"]})
@@ -42,34 +59,60 @@ def main() -> None:
     """Rough, multi-asperity contact, with and without adhesion: a scene in, a load-separation law out."""
 
 
+_FILE = click.Path(path_type=Path)
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
+_changes = click.option(
+    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable."
+)
+_workers = click.option(
+    "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads."
+)
 
 
 @main.command()
-@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("scene", type=_FILE)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
-@click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable.")
-@click.option("--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads.")
+@_changes
+@_workers
 @click.option(
     "--scheduler", type=click.Choice(["threads"]), default="threads", expose_value=False, help="What runs the workers."
 )
 @click.option("--quiet", is_flag=True, help="Say nothing but errors.")
 def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet: bool) -> None:
-    """Compute SCENE and write its load-separation law."""
-    from roughmdr.plan import make_plan
-    from roughmdr.runner import execute
+    """Compute SCENE, a TOML file or a result that holds one, and write its load-separation law."""
+    from roughmdr.describe import describe_result
     from roughmdr.scene import read
 
     started = time.perf_counter()
-    command = "roughmdr " + shlex.join(sys.argv[1:])
-    result = execute(make_plan(read(scene, changes)), output, workers=workers, quiet=quiet, command=command)
+    asked = read(scene, changes)  # before anything heavy is loaded
+    from roughmdr.plan import make_plan
+    from roughmdr.runner import execute
+
+    result = execute(make_plan(asked), output, workers=workers, quiet=quiet, command=_command())
     if not quiet:
-        click.echo(_summary(result.to_xarray(), time.perf_counter() - started))
+        click.echo(describe_result(result, time.perf_counter() - started))
         click.echo(f"result       {output}")
 
 
 @main.command()
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("scene", type=_FILE)
+@_changes
+@_workers
+def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
+    """Say what a run of SCENE will do: tasks, time, memory, and what is left out and why. Nothing is written."""
+    from roughmdr.describe import describe_plan
+    from roughmdr.scene import read
+
+    asked = read(scene, changes)
+    from roughmdr.estimate import estimate
+    from roughmdr.plan import make_plan
+
+    planned = make_plan(asked)
+    click.echo(describe_plan(planned, estimate(planned, workers), workers))
+
+
+@main.command()
+@click.argument("result", type=_FILE)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The picture to write: .png, .pdf or .svg.")
 @click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: all.")
 def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
@@ -81,26 +124,49 @@ def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     click.echo(f"picture      {output}")
 
 
-def _summary(result: "xr.Dataset", elapsed: float) -> str:
-    from roughmdr.analysis import pull_off_force
+@main.command()
+@click.argument("result", type=_FILE)
+def info(result: Path) -> None:
+    """Say what RESULT holds: sizes, pull-off force with its error, seed, versions, time, and the scene."""
+    from roughmdr.describe import describe_origin, describe_result
+    from roughmdr.store import read
 
-    count, steps = result.sizes["realization"], result.sizes["step"]
-    held = [str(name) for name in result.data_vars if result[name].dims == ("realization", "step")]
-    size = f"{count} realisation{'s' * (count > 1)} x {steps} steps"
-    lines = [f"computed     {result.attrs['title']}: {size}; {', '.join(held)}"]
-    if "force" in held:
-        pull_off = pull_off_force(result)
-        if pull_off.mean == 0.0:
-            text = "none: the force is never tensile on this path"
-        elif count == 1:
-            text = f"{pull_off.mean:.4g} N (one realisation: no standard error)"
-        else:
-            error = f"{pull_off.standard_error:.2g}"
-            text = f"{pull_off.mean:.4g} N ± {error} N (mean and standard error over {count} realisations)"
-        lines.append(f"pull-off     {text}")
-    lines.append(
-        f"run time     {elapsed:.2f} s, of them {float(result['run_time'].sum()):.3g} s in the realisations; "
-        f"numerical error at most {float(result['numerical_error'].max()):.1e} of the largest force"
-    )
-    left_out = result.attrs["left_out"].splitlines()
-    return "\n".join([*lines, *(f"{'left out' if i == 0 else '':<12} {line}" for i, line in enumerate(left_out))])
+    data = read(result)
+    click.echo(describe_result(data))
+    click.echo(describe_origin(data, result.stat().st_size))
+
+
+@main.command()
+@click.argument("scene", type=_OUTPUT)
+def new(scene: Path) -> None:
+    """Write a starter scene to SCENE: it runs as it is, and its comments list units and choices."""
+    from importlib.resources import files
+
+    from roughmdr.errors import StoreError
+    from roughmdr.store import replacing
+
+    if scene.exists():
+        raise StoreError(f"{scene}: is there already; give a new name")
+    with replacing(scene) as temporary:
+        temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
+    click.echo(f"scene        {scene}")
+
+
+@main.command()
+@click.argument("scene", type=_FILE)
+@click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
+@click.option("--realization", type=click.IntRange(min=0), default=0, show_default=True, help="Which of the ensembles.")
+@_changes
+def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ...]) -> None:
+    """Write the asperities that a run of SCENE presses on."""
+    from roughmdr.scene import read
+    from roughmdr.store import check_writable, provenance, write
+
+    asked = read(scene, changes)
+    if asked.sweep is not None and (keys := [axis.key for axis in asked.sweep.axes if "asperities" in axis.key]):
+        raise SceneError(f"sweep: changes {keys[0]} from cell to cell; say which with --set {keys[0]}=VALUE")
+    check_writable(output, asked.inputs)
+    made = asked.asperities.ensemble(asked.seed, realization).labelled()
+    write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
+    click.echo(f"asperities   {made.sizes['asperity']} of shape {made.attrs['shape']}")
+    click.echo(f"ensemble     {output}")

@@ -1,5 +1,24 @@
 """The errors that roughmdr raises on purpose. Each message names the argument, its value and what is allowed."""
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Fault(NamedTuple):
+    """One thing that is wrong with a scene."""
+
+    key: str
+    """Dotted; empty where no key is at fault."""
+    value: str
+    """As in the scene; empty where there is none to show."""
+    message: str
+    place: str = ""
+    """File and line; empty where there is none."""
+
+    def __str__(self) -> str:
+        shown = f"{self.key} = {self.value}" if self.value else self.key
+        return ": ".join(part for part in (self.place, shown, self.message) if part)
+
 
 class RoughmdrError(ValueError):
     """Base of all errors that roughmdr raises on purpose."""
@@ -7,6 +26,16 @@ class RoughmdrError(ValueError):
 
 class SceneError(RoughmdrError):
     """What was asked for, in a scene or an ensemble, cannot be computed as it stands."""
+
+    faults: tuple[Fault, ...] = ()
+    """What is wrong, one by one; empty where the message says it."""
+
+    @classmethod
+    def of(cls, faults: Sequence[Fault]) -> "SceneError":
+        """The error that names all of ``faults``, each once."""
+        error = cls("\n".join(dict.fromkeys(map(str, faults))))
+        error.faults = tuple(dict.fromkeys(faults))
+        return error
 
 
 class ShapeError(RoughmdrError):

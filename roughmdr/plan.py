@@ -1,60 +1,149 @@
-"""From a scene to tasks: which realisations go together, and what is left out and why."""
+"""From a scene to tasks: which runs go together, and what is left out and why."""
 
+from collections import Counter
+from collections.abc import Iterator
 from typing import NamedTuple
+
+import numpy as np
 
 from roughmdr.aggregate import Route
 from roughmdr.ensemble import RandomAsperities
+from roughmdr.errors import SceneError
+from roughmdr.labelled import Array
 from roughmdr.scene import Scene
-from roughmdr.variables import LAW
+from roughmdr.variables import COORDINATES, LAW
 
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
 # batch into tasks that are long beside dask's own 0.4 ms.
 _DRAW, _VISIT = 2e-7, 5e-9
-_TASK_SECONDS = 0.1
+_TASK_SECONDS = 0.1  # a batch that takes less is one task: to load dask takes as long
 _TASKS_AT_LEAST = 8  # so that two or three workers finish together
 
 
-class Plan(NamedTuple):
-    """What a run of a scene will do."""
+class Cell(NamedTuple):
+    """A scene without a sweep, and the way of its flat."""
 
     scene: Scene
     route: Route
-    chunks: tuple[tuple[int, ...], ...]
-    """The realisations of each task."""
+
+
+class Plan(NamedTuple):
+    """What a run of a scene will do: all realisations of the first cell, then all of the second, and so on."""
+
+    scene: Scene
+    cells: tuple[Cell, ...]
+    tasks: tuple[range, ...]
+    """The runs of each task; run number c * realizations + r is realisation r of cell c."""
     left_out: tuple[str, ...]
     """Lines "part: reason"."""
 
+    @property
+    def runs(self) -> int:
+        """How many runs there are, over all cells."""
+        return len(self.cells) * self.scene.batch.realizations
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The swept dimensions, in their order."""
+        return {} if self.scene.sweep is None else self.scene.sweep.sizes
+
+    def run(self, number: int) -> tuple[Cell, int]:
+        """The cell and the realisation of a run."""
+        cell, realization = divmod(number, self.scene.batch.realizations)
+        return self.cells[cell], realization
+
+    def coordinates(self) -> dict[str, Array]:
+        """The swept values, the separation over those of them that change it, and the branch."""
+        swept = {} if self.scene.sweep is None else self.scene.sweep.coordinates()
+        separation = np.array([cell.route.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
+        dims: list[str] = []
+        for axis, name in reversed(list(enumerate(self.sizes))):
+            first = separation.take([0], axis)
+            if (separation == first).all():
+                separation = first.squeeze(axis)
+            else:
+                dims.insert(0, name)
+        return {
+            **swept,
+            "separation": Array((*dims, "step"), separation, COORDINATES["separation"].attrs),
+            "branch": self.cells[0].route.branch(),
+        }
+
 
 def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
-    """The plan of a scene; ``chunk`` realisations a task, by default as many as make a task worth its overhead."""
-    way_in = scene.path.separations(scene.asperities.sigma)
-    route = Route.along(way_in, unload=scene.path.unload, adhesive=scene.work > 0.0)
-    count = scene.batch.realizations
-    size = chunk if chunk is not None else _chunk(scene, route)
-    chunks = tuple(tuple(range(start, min(start + size, count))) for start in range(0, count, size))
-    return Plan(scene, route, chunks, tuple(left_out(scene)))
+    """The plan of a scene; ``chunk`` runs a task, by default as many as make a task worth its overhead.
+
+    SceneError where the way of the flat cannot be laid out, or where two cells go different ways, in and out.
+    """
+    cells = tuple(_cells(scene))
+    runs = len(cells) * scene.batch.realizations
+    tasks = _tasks(scene, cells) if chunk is None else [range(i, min(i + chunk, runs)) for i in range(0, runs, chunk)]
+    return Plan(scene, cells, tuple(tasks), tuple(left_out(scene)))
 
 
-def _chunk(scene: Scene, route: Route) -> int:
-    asperities = scene.asperities.count if isinstance(scene.asperities, RandomAsperities) else 1000
-    seconds = asperities * (_DRAW + _VISIT * route.separation.size)
-    fair = -(-scene.batch.realizations // _TASKS_AT_LEAST)
-    return max(1, min(fair, round(_TASK_SECONDS / seconds)))
+def _cells(scene: Scene) -> Iterator[Cell]:
+    known: dict[tuple[bytes, bool], Route] = {}
+    first: Route | None = None
+    for cell in scene.cells:
+        way_in = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
+        key = way_in.tobytes(), cell.work > 0.0
+        if key not in known:
+            known[key] = Route.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
+        route = known[key]
+        first = first or route
+        if route is not first and route.branch().values.tolist() != first.branch().values.tolist():
+            raise SceneError("sweep: the flat comes closer in some cells where it goes away in others")
+        yield Cell(cell, route)
+
+
+def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
+    """Runs in their order, as many a task as take about as long as a task should."""
+    seconds = [_seconds(cell) for cell in cells]
+    realizations = scene.batch.realizations
+    runs, in_all = len(cells) * realizations, sum(seconds) * realizations
+    if in_all <= _TASK_SECONDS:
+        yield range(runs)
+        return
+    enough = min(_TASK_SECONDS, in_all / _TASKS_AT_LEAST)
+    begin, filled = 0, 0.0
+    for number in range(runs):
+        filled += seconds[number // realizations]
+        if filled >= enough or number == runs - 1:
+            yield range(begin, number + 1)
+            begin, filled = number + 1, 0.0
+
+
+def _seconds(cell: Cell) -> float:
+    section = cell.scene.asperities
+    count = section.count if isinstance(section, RandomAsperities) else 1000
+    return count * (_DRAW + _VISIT * cell.route.separation.size)
+
+
+def kinds(plan: Plan) -> list[tuple[str, bool]]:
+    """The shapes that a plan adds up, each without and with adhesion as the cells have it."""
+    return sorted({(cell.scene.asperities.shape, cell.scene.work > 0.0) for cell in plan.cells})
 
 
 def left_out(scene: Scene) -> list[str]:
-    """What the scene does not need, and why, as lines "part: reason"."""
-    lines = []
+    """What the scene does not need, and why, as lines "part: reason"; in which cells, where not in all."""
+    lines = Counter(line for cell in scene.cells for line in _left_out(cell))
+    cells = len(scene.cells)
+    return [line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in lines.items()]
+
+
+def _left_out(scene: Scene) -> Iterator[str]:
     if scene.adhesion is None:
-        lines.append("adhesion: the scene has no [adhesion]")
-        lines.append("hysteresis: without adhesion a contact has no memory")
+        yield "adhesion: the scene has no [adhesion]"
     elif scene.work == 0.0:
-        lines.append("adhesion: adhesion.work is 0")
+        yield "adhesion: adhesion.work is 0"
+    if scene.work == 0.0:
+        yield "hysteresis: without adhesion a contact has no memory"
     if isinstance(scene.asperities, RandomAsperities):
-        lines.append("positions: asperities are independent; nothing depends on where they stand")
-    lines.append("interaction: asperities are independent; the scene has no [interaction]")
+        yield "positions: asperities are independent; nothing depends on where they stand"
+    yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in LAW if name not in scene.output.variables]
     if unasked:
-        lines.append(f"{', '.join(unasked)}: not among output.variables")
-    lines.append("asperities out of reach: not visited")
-    return lines
+        yield f"{', '.join(unasked)}: not among output.variables"
+    if scene.output.keep == "statistics":
+        yield "curves of the realisations: output.keep is 'statistics'"
+    yield "asperities out of reach: not visited"

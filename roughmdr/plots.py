@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.analysis import standard_error
+from roughmdr.arguments import Floats
 from roughmdr.errors import StoreError
-from roughmdr.shapes.base import Floats
 from roughmdr.store import replacing
 
 if TYPE_CHECKING:

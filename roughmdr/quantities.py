@@ -1,11 +1,16 @@
-"""What sections of a scene are declared with: a section refuses keys that it does not know, a quantity reads units."""
+"""What sections of a scene are declared with: a section refuses keys that it does not know, a reader checks a value.
 
-from typing import Annotated
+A reader is a callable that turns what stands in the scene into a value, or raises RoughmdrError; its ``dimension`` says
+what it reads.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.units import quantity
+from roughmdr.units import DIMENSIONLESS, quantity
 
 
 class Section(BaseModel):
@@ -14,35 +19,62 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
-def reading(
-    dimension: str, *, above: float | None = None, least: float | None = None, most: float | None = None
-) -> BeforeValidator:
-    """For a float in SI, read from a number or a string with a unit, within the given bounds."""
+class Reader(Protocol):
+    """What reads one value of a scene."""
 
-    def read(value: object) -> float:
-        number = quantity(value, dimension)
-        if above is not None and not number > above:
-            raise RoughmdrError(f"must be above {above:g}")
-        if least is not None and not number >= least:
-            raise RoughmdrError(f"must be at least {least:g}")
-        if most is not None and not number <= most:
-            raise RoughmdrError(f"must be at most {most:g}")
+    @property
+    def dimension(self) -> str:
+        """As in ``units``."""
+        ...
+
+    def __call__(self, value: object) -> Any:
+        """The value in SI; RoughmdrError where there is none."""
+
+
+class EntryError(RoughmdrError):
+    """A fault of one entry of the table that a reader was given."""
+
+    def __init__(self, key: str, value: object, message: str) -> None:
+        super().__init__(message)
+        self.key, self.value = key, value
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Reads a float in SI from a number or a string with a unit, within the given bounds."""
+
+    dimension: str
+    above: float | None = None
+    least: float | None = None
+    most: float | None = None
+
+    def __call__(self, value: object) -> float:
+        """The number in SI."""
+        number = quantity(value, self.dimension)
+        if self.above is not None and not number > self.above:
+            raise RoughmdrError(f"must be above {self.above:g}")
+        if self.least is not None and not number >= self.least:
+            raise RoughmdrError(f"must be at least {self.least:g}")
+        if self.most is not None and not number <= self.most:
+            raise RoughmdrError(f"must be at most {self.most:g}")
         return number
 
-    return BeforeValidator(read)
 
+@dataclass(frozen=True)
+class WholeNumber:
+    """Reads an integer within the given bounds."""
 
-def whole_number(least: int, most: int) -> BeforeValidator:
-    """For an integer within the given bounds."""
+    least: int
+    most: int
+    dimension: ClassVar[str] = DIMENSIONLESS
 
-    def read(value: object) -> int:
+    def __call__(self, value: object) -> int:
+        """The integer."""
         if isinstance(value, bool) or not isinstance(value, int):
             raise RoughmdrError("expected a whole number")
-        if not least <= value <= most:
-            raise RoughmdrError(f"must be from {least} to {most}")
+        if not self.least <= value <= self.most:
+            raise RoughmdrError(f"must be from {self.least} to {self.most}")
         return value
 
-    return BeforeValidator(read)
 
-
-Length = Annotated[float, reading("m", above=0.0)]
+Length = Annotated[float, BeforeValidator(Quantity("m", above=0.0))]

@@ -8,20 +8,21 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import compute, prepare
+from roughmdr.arguments import Floats
 from roughmdr.errors import RoughmdrError
 from roughmdr.labelled import Labelled
-from roughmdr.plan import Plan, make_plan
+from roughmdr.plan import Plan, kinds, make_plan
 from roughmdr.progress import Advance, progress
+from roughmdr.result import assemble
 from roughmdr.scene import Scene, read
-from roughmdr.shapes.base import Floats
-from roughmdr.store import assemble, check_writable, write
+from roughmdr.store import check_writable, write
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 class Shard(NamedTuple):
-    """The results of one task: each array begins with the task's realisations."""
+    """The results of one task: each array begins with the task's runs."""
 
     variables: dict[str, Floats]
     run_time: Floats
@@ -39,8 +40,9 @@ def run(
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
 
     scene is the path of a TOML file, a dictionary of the same form, or a Scene; ``workers`` is the number of threads.
-    The result lies over realization and step and does not depend on ``workers``, to the last bit. ``quiet`` leaves out
-    the progress display. SceneError, OutOfRange or StoreError say what is wrong before anything is written.
+    The result lies over the swept keys, realization and step and does not depend on ``workers``, to the last bit.
+    ``quiet`` leaves out the progress display. SceneError, OutOfRange or StoreError say what is wrong before anything
+    is written.
     """
     if scheduler != "threads":
         raise RoughmdrError(f"scheduler is {scheduler!r}; it must be 'threads'")
@@ -54,11 +56,12 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
     """Do what a plan says; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
     if target is not None:
         check_writable(target, plan.scene.inputs)
-    prepare(plan.scene.asperities.shape, plan.scene.work)
-    with progress(plan.scene.title, plan.scene.batch.realizations, quiet=quiet) as advance:
-        shards = _over_threads(plan, workers, advance)
+    for shape, adhesive in kinds(plan):
+        prepare(shape, adhesive=adhesive)
+    with progress(plan.scene.title, plan.runs, quiet=quiet) as advance:
+        shards = _over_threads(plan, workers, advance) if len(plan.tasks) > 1 else _here(plan, advance)
     variables = {
-        name: np.concatenate([shard.variables[name] for shard in shards]) for name in plan.scene.output.variables
+        name: np.concatenate([shard.variables.pop(name) for shard in shards]) for name in plan.scene.output.variables
     }
     run_time = np.concatenate([shard.run_time for shard in shards])
     numerical_error = np.concatenate([shard.numerical_error for shard in shards])
@@ -68,13 +71,21 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
     return result
 
 
+def _here(plan: Plan, advance: Advance) -> list[Shard]:
+    shards = []
+    for runs in plan.tasks:
+        shards.append(compute_shard(plan, runs))
+        advance(len(runs))
+    return shards
+
+
 def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
     from dask.callbacks import Callback
     from dask.threaded import get
 
     # A task without arguments: dask would search them for other tasks, and import dask.array to tell them apart.
-    keys = [f"shard-{number}" for number in range(len(plan.chunks))]
-    graph = {key: (partial(compute_shard, plan, chunk),) for key, chunk in zip(keys, plan.chunks, strict=True)}
+    keys = [f"shard-{number}" for number in range(len(plan.tasks))]
+    graph = {key: (partial(compute_shard, plan, runs),) for key, runs in zip(keys, plan.tasks, strict=True)}
 
     def done(key: object, result: object, *_: object) -> None:
         if isinstance(result, Shard):
@@ -84,19 +95,19 @@ def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
         return list(get(graph, keys, num_workers=workers))
 
 
-def compute_shard(plan: Plan, realizations: tuple[int, ...]) -> Shard:
-    """The law of each of the given realisations."""
-    scene = plan.scene
-    names, steps = scene.output.variables, plan.route.separation.size
+def compute_shard(plan: Plan, runs: range) -> Shard:
+    """The law of each of the given runs."""
+    names, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
     shard = Shard(
-        {name: np.empty((len(realizations), steps)) for name in names},
-        np.empty(len(realizations)),
-        np.empty(len(realizations)),
+        {name: np.empty((len(runs), steps)) for name in names},
+        np.empty(len(runs)),
+        np.empty(len(runs)),
     )
-    for row, realization in enumerate(realizations):
+    for row, number in enumerate(runs):
+        (scene, route), realization = plan.run(number)
         started = time.perf_counter()
         ensemble = scene.asperities.ensemble(scene.seed, realization)
-        result = compute(ensemble, plan.route, modulus=scene.modulus, work=scene.work, variables=names)
+        result = compute(ensemble, route, modulus=scene.modulus, work=scene.work, variables=names)
         for name in names:
             shard.variables[name][row] = result.variables[name]
         shard.numerical_error[row] = result.numerical_error

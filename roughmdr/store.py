@@ -1,4 +1,4 @@
-"""The result file: assembled in memory, written by one thread, whole or not at all."""
+"""netCDF files: written by one thread, whole or not at all, and read."""
 
 import contextlib
 import os
@@ -14,49 +14,25 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Array, Labelled
-from roughmdr.plan import Plan
-from roughmdr.shapes.base import Floats
-from roughmdr.variables import LAW, RUN
 
 if TYPE_CHECKING:
     import netCDF4
 
+
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
-_REFERENCES = (
-    "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
-    "with and without adhesion (2012)"
-)
-DONE, FAILED, NOT_RUN = 0, 1, 2
 
 
-def assemble(
-    plan: Plan, variables: dict[str, Floats], run_time: Floats, numerical_error: Floats, command: str
-) -> Labelled:
-    """The result: ``variables`` over realization and step [SI], the others over realization."""
-    scene = plan.scene
-    data = {name: Array(("realization", "step"), values, dict(LAW[name].attrs)) for name, values in variables.items()}
-    status = np.full(run_time.shape, DONE, dtype=np.int8)
-    flags = {
-        "flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8),
-        "flag_meanings": "done failed not_run",
-    }
-    data["run_time"] = Array(("realization",), run_time, dict(RUN["run_time"].attrs))
-    data["numerical_error"] = Array(("realization",), numerical_error, dict(RUN["numerical_error"].attrs))
-    data["status"] = Array(("realization",), status, {"long_name": RUN["status"].long_name, **flags})
+def provenance(title: str, command: str) -> dict[str, str]:
+    """The attributes that say what made a file, and with which versions."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
-    attrs = {
+    return {
         "Conventions": "CF-1.11",
-        "title": scene.title,
+        "title": title,
         "source": f"roughmdr {version('roughmdr')}",
         "history": f"{now}: {command}",
-        "references": _REFERENCES,
-        "seed": scene.seed,
-        "scene": scene.toml,
         "packages": ", ".join(versions),
-        "left_out": "\n".join(plan.left_out),
     }
-    return Labelled(data, plan.route.coordinates(), attrs)
 
 
 def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:

@@ -5,12 +5,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import check_number, check_values
+from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.asperity import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import Paraboloid
-from roughmdr.shapes.base import Floats
 
 # Gauss-Legendre panels over the root of the distance to the onset of contact, in which every integrand here is smooth.
 _PANELS, _NODES = 48, 16

@@ -90,6 +90,11 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     raise RoughmdrError(f"unknown unit {unit!r}; expected a unit of {dimension}, like {example(dimension)}")
 
 
+def udunits(dimension: str) -> str:
+    """A dimension in the spelling that CF asks for."""
+    return dimension.replace("/m^2", " m-2")
+
+
 def effective_modulus(E1: float, nu1: float, E2: float = math.inf, nu2: float = 0.0) -> float:
     """E* [Pa] of two elastic bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (H 43).
 

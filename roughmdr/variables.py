@@ -53,7 +53,8 @@ COORDINATES = _table(
 )
 
 RUN = _table(
-    ("run_time", "s", "time spent on the realization"),
+    ("run_time", "s", "time spent on the realization, or on all that a statistic is of"),
+    ("realization_count", "1", "number of realizations that the statistics are of"),
     ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
     ("status", "1", "what became of the realization"),
 )

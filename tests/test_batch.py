@@ -25,7 +25,7 @@ def base() -> xr.Dataset:
 @pytest.mark.parametrize("chunk", [1, 7, 16])
 def test_bits_do_not_depend_on_workers_or_chunks(base: xr.Dataset, workers: int, chunk: int) -> None:
     plan = make_plan(read(scene()), chunk)
-    assert [realization for task in plan.chunks for realization in task] == list(range(16))
+    assert [number for task in plan.tasks for number in task] == list(range(16))
     assert_same_bits(base, execute(plan, None, workers=workers, quiet=True).to_xarray())
 
 

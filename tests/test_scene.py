@@ -95,11 +95,11 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ":4: material.poisson = 0.7: must be at most 0.5",
         ":5: asperities.height: is missing",
         ":10: asperities.hieght: unknown key; did you mean 'height'?",
-        ":11: asperities.radius = ",
+        ":11: asperities.radius.std = '5 Pa': 'Pa' is a unit of Pa; expected a unit of m",
         ":13: path.separation.stop: is missing",
         ":13: path.separation.stp: unknown key; did you mean 'stop'?",
         ":13: path.separation.steps = 1: must be from 2",
-        ":14: sweep: unknown key",
+        ":14: sweep: names no key to sweep",
     ]
     for text in expected:
         assert sum(text in line for line in found) == 1, (text, found)
@@ -124,7 +124,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"path": {"separation": [0], "unload": "maybe"}}, "path.unload"),
         ({"output": {"variables": ["forc"]}}, r"output.variables\[0\] = 'forc': no such variable; there are force"),
         ({"output": {"variables": []}}, "output.variables"),
-        ({"output": {"keep": "statistics"}}, "output.keep = 'statistics': not available; it can be curves"),
+        ({"output": {"keep": "curve"}}, "output.keep = 'curve': not available; did you mean 'curves'"),
         ({"batch": {"realizations": 0}}, "batch.realizations = 0: must be from 1"),
         ({"batch": {"realizations": True}}, "batch.realizations = True: expected a whole number"),
         ({"seed": -1}, "seed = -1"),
@@ -174,7 +174,7 @@ def test_a_change_that_is_none_is_refused(change: str) -> None:
 
 
 def test_a_fault_in_a_change_is_placed_there() -> None:
-    assert faults(SCENE, "adhesion.work=5 m")[0].startswith("--set adhesion.work = '5 m': 'm' is a unit of m")
+    assert faults(SCENE, "adhesion.work=5 m")[0].startswith("--set: adhesion.work = '5 m': 'm' is a unit of m")
 
 
 def leaves(table: dict[str, Any], at: tuple[str, ...] = ()) -> list[tuple[str, ...]]:

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from roughmdr._jit import njit
-from roughmdr.shapes.base import Floats
+from roughmdr.arguments import Floats
 
 BLOCK = 256
 

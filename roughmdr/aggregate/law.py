@@ -9,14 +9,13 @@ from numpy.typing import ArrayLike
 from roughmdr.aggregate import loop
 from roughmdr.aggregate.route import Route
 from roughmdr.aggregate.staircase import no_memory
-from roughmdr.arguments import check_number, check_values
+from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.kernels.laws import choose
 from roughmdr.labelled import Array, Labelled
 from roughmdr.shapes import SHAPES
-from roughmdr.shapes.base import Floats
-from roughmdr.variables import DEFAULT, LAW, RUN
+from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,10 +77,10 @@ def compute(
     return LoadSeparation(results, error / largest if largest > 0.0 else 0.0, visits)
 
 
-def prepare(shape: str, work: float) -> None:
+def prepare(shape: str, *, adhesive: bool) -> None:
     """Compile the sum for a shape with or without adhesion, once, before several threads or a clock need it."""
     columns = SHAPES[shape].stretch({name: np.ones(1) for name in SHAPES[shape].spellings[0]})
-    law = choose(shape, work, columns[2])
+    law = choose(shape, float(adhesive), columns[2])
     loop.add_asperities(law, np.zeros(1), columns, 1.0, 1.0, np.zeros(1), no_memory(np.zeros(1)), set())
 
 
@@ -123,4 +122,5 @@ def load_separation(
     result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, work=work, variables=names)
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
-    return Labelled(data, route.coordinates(), {}).to_xarray()
+    way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
+    return Labelled(data, {"separation": way, "branch": route.branch()}, {}).to_xarray()

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from roughmdr._jit import njit, specialise
 from roughmdr.aggregate.block import BLOCK, accumulate, add_up, least, run_on
 from roughmdr.aggregate.staircase import Staircase
+from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.laws import Law
-from roughmdr.shapes.base import Floats
 
 # Rows of the totals.
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR = range(8)

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
+from roughmdr.arguments import Floats
 from roughmdr.labelled import Array
-from roughmdr.shapes.base import Floats
 from roughmdr.variables import COORDINATES
 
 
@@ -22,14 +22,9 @@ class Route(NamedTuple):
         separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
-    def coordinates(self) -> dict[str, Array]:
-        """The coordinates over ``step``."""
-        return {
-            "separation": Array(("step",), self.separation, COORDINATES["separation"].attrs),
-            "branch": Array(
-                ("step",), np.array(branches(self.separation)), {"long_name": COORDINATES["branch"].long_name}
-            ),
-        }
+    def branch(self) -> Array:
+        """The branch of each step."""
+        return Array(("step",), np.array(branches(self.separation)), {"long_name": COORDINATES["branch"].long_name})
 
 
 def branches(separation: Floats) -> list[str]:

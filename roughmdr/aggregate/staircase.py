@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.shapes.base import Floats
+from roughmdr.arguments import Floats
 
 
 class Staircase(NamedTuple):

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from roughmdr.complaints import complaints
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.random import AnyRandomAsperities, RandomAsperities
 from roughmdr.ensemble.surface import SurfaceAsperities
 from roughmdr.errors import SceneError
+from roughmdr.faults import find_faults
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,5 +44,5 @@ def _validated(table: dict[str, Any]) -> RandomAsperities | SurfaceAsperities:
     except ValidationError as error:
         if not isinstance(table, dict):
             raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
-        found = complaints(error, table, Asperities)
-        raise SceneError("\n".join(f"asperities.{complaint}" for complaint in found)) from None
+        found = find_faults(error, table, Asperities)
+        raise SceneError.of([fault._replace(key=f"asperities.{fault.key}") for fault in found]) from None

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.arguments import check_number
+from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.labelled import Array, Labelled
 from roughmdr.shapes import SHAPES
-from roughmdr.shapes.base import Floats, check_positive
+from roughmdr.shapes.base import check_positive
 from roughmdr.units import unit_factor
 from roughmdr.variables import COORDINATES
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.shapes.base import Floats
+from roughmdr.arguments import Floats
 
 
 class Family(NamedTuple):

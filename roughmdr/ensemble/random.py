@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
-from roughmdr.ensemble.distributions import Distribution, read_distribution, uniforms
+from roughmdr.ensemble.distributions import Distribution, uniforms
+from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import Length, Section, whole_number
+from roughmdr.quantities import Length, Section, WholeNumber
 from roughmdr.shapes import SHAPES, Shape
 
 # Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
@@ -21,11 +22,11 @@ class RandomAsperities(Section):
 
     source: Literal["random"]
     shape: str
-    count: Annotated[int, whole_number(1, 1_000_000_000)]
+    count: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))]
     patch: Length
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
-    height: Annotated[Distribution, BeforeValidator(lambda value: read_distribution(value, "m", mean=0.0))]
+    height: Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]
 
     @field_validator("min_distance")
     @classmethod
@@ -69,24 +70,12 @@ class RandomAsperities(Section):
         return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs)
 
 
-def _parameter(unit: str) -> Any:
-    def read(value: object) -> Distribution:
-        distribution = read_distribution(value, "1" if unit.startswith("m^(") else unit)
-        if not distribution.least > 0.0:
-            raise RoughmdrError(
-                f"can be as low as {distribution.least:.3g}; it must be above 0 (lognormal, for one, always is)"
-            )
-        return distribution
-
-    return Annotated[Distribution, BeforeValidator(read)]
-
-
 def _section(shape: type[Shape]) -> type[RandomAsperities]:
     """The section of one shape, with a key for each of its parameters."""
     always = set.intersection(*(set(spelling) for spelling in shape.spellings))
     keys: dict[str, Any] = {}
     for name, unit in shape.units.items():
-        kind = _parameter(unit)
+        kind = Annotated[Distribution, BeforeValidator(Drawn(unit, positive=True))]
         keys[name] = (kind, ...) if name in always else (kind | None, None)
     keys["shape"] = (Literal[shape.name], ...)
     return create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys)

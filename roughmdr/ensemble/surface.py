@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import field_validator
 
+from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.quantities import Section
-from roughmdr.shapes.base import Floats
 from roughmdr.units import unit_factor
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import math
 
 from roughmdr._extended import Pair, two_product
 from roughmdr._jit import njit
-from roughmdr.shapes.power import kappa
+from roughmdr.shapes.kappa import kappa
 
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from roughmdr._jit import specialise
-from roughmdr.shapes.base import Floats
+from roughmdr.arguments import Floats
 
 _kernel: Callable[..., float]  # the name that ``specialise`` fills
 

@@ -16,7 +16,7 @@ import math
 from roughmdr import _extended as extended
 from roughmdr._extended import Pair
 from roughmdr._jit import njit
-from roughmdr.shapes.power import log_kappa
+from roughmdr.shapes.kappa import log_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
 

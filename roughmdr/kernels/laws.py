@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels import elastic, jkr_cone, jkr_paraboloid, jkr_power
-from roughmdr.shapes.base import Floats
 
 Kernel = Callable[..., float]
 

@@ -6,9 +6,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
+from roughmdr.arguments import Floats
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.quantities import Section, whole_number
-from roughmdr.shapes.base import Floats
+from roughmdr.quantities import Section, WholeNumber
 from roughmdr.units import DIMENSIONLESS, quantity
 
 _SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
@@ -25,16 +25,22 @@ class Separation(NamedTuple):
         return self.value * sigma if self.in_sigma else self.value
 
 
-def _read(value: object) -> Separation:
-    if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
-        return Separation(quantity(match[1], DIMENSIONLESS), in_sigma=True)
-    try:
-        return Separation(quantity(value, "m"), in_sigma=False)
-    except RoughmdrError as error:
-        raise RoughmdrError(f'{error}, or in standard deviations of the heights, like "4 sigma"') from None
+class SeparationReader:
+    """Reads a separation."""
+
+    dimension = "m"
+
+    def __call__(self, value: object) -> Separation:
+        """The separation, in metres or in sigma."""
+        if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
+            return Separation(quantity(match[1], DIMENSIONLESS), in_sigma=True)
+        try:
+            return Separation(quantity(value, self.dimension), in_sigma=False)
+        except RoughmdrError as error:
+            raise RoughmdrError(f'{error}, or in standard deviations of the heights, like "4 sigma"') from None
 
 
-_Separation = Annotated[Separation, BeforeValidator(_read)]
+_Separation = Annotated[Separation, BeforeValidator(SeparationReader())]
 
 
 class Range(Section):
@@ -42,7 +48,7 @@ class Range(Section):
 
     start: _Separation
     stop: _Separation
-    steps: Annotated[int, whole_number(2, 10_000_000)]
+    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
 
 
 class Path(Section):

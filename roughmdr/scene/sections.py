@@ -8,6 +8,7 @@ import tomli_w
 from pydantic import (
     BeforeValidator,
     Field,
+    InstanceOf,
     PrivateAttr,
     field_validator,
     model_validator,
@@ -16,13 +17,14 @@ from pydantic_core import PydanticCustomError
 
 from roughmdr.ensemble import Asperities, SurfaceAsperities
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import Section, reading, whole_number
+from roughmdr.quantities import Quantity, Section, WholeNumber
 from roughmdr.scene.path import Path
+from roughmdr.scene.sweep import Sweep
 from roughmdr.units import effective_modulus
 from roughmdr.variables import DEFAULT, LAW
 
-_Modulus = Annotated[float, reading("Pa", above=0.0)]
-_Poisson = Annotated[float, reading("1", above=-1.0, most=0.5)]
+_Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
+_Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, most=0.5))]
 
 
 class Body(Section):
@@ -53,7 +55,7 @@ class Adhesion(Section):
     """[adhesion]: work is the work of adhesion, not the surface energy of one side."""
 
     model: Literal["jkr"]
-    work: Annotated[float, reading("J/m^2", least=0.0)]
+    work: Annotated[float, BeforeValidator(Quantity("J/m^2", least=0.0))]
 
 
 def _known_variable(value: object) -> object:
@@ -68,7 +70,7 @@ class Output(Section):
     variables: Annotated[list[Annotated[str, BeforeValidator(_known_variable)]], Field(min_length=1)] = Field(
         default=list(DEFAULT)
     )
-    keep: Literal["curves"] = "curves"
+    keep: Literal["curves", "statistics"] = "curves"
 
     @field_validator("variables")
     @classmethod
@@ -79,7 +81,7 @@ class Output(Section):
 class Batch(Section):
     """[batch]: how many realisations."""
 
-    realizations: Annotated[int, whole_number(1, 1_000_000_000)] = 1
+    realizations: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))] = 1
 
 
 def _misfit(key: str, message: str) -> PydanticCustomError:
@@ -90,7 +92,7 @@ class Scene(Section):
     """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
 
     title: str
-    seed: Annotated[int, whole_number(0, 2**63 - 1)] = 0
+    seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
     material: Material
     counter: Body | None = None
     adhesion: Adhesion | None = None
@@ -98,16 +100,32 @@ class Scene(Section):
     path: Path
     output: Output = Output()
     batch: Batch = Batch()
+    sweep: InstanceOf[Sweep] | None = None
 
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
     _file: FilePath | None = PrivateAttr(default=None)
+    _cells: "tuple[Scene, ...]" = PrivateAttr(default=())
 
     @classmethod
-    def of(cls, table: dict[str, Any], file: FilePath | None) -> "Scene":
-        """The scene of a table, which was read from ``file`` if from one; pydantic's ValidationError if it is none."""
-        scene = cls.model_validate(table)
-        scene._table, scene._file = table, file
+    def of(
+        cls,
+        table: dict[str, Any],
+        file: FilePath | None,
+        ready: dict[str, Any] | None = None,
+        cells: "tuple[Scene, ...]" = (),
+    ) -> "Scene":
+        """The scene of a table, which was read from ``file`` if from one; pydantic's ValidationError if it is none.
+
+        ``ready`` are parts of it that are read already, ``cells`` what its sweep makes of it.
+        """
+        scene = cls.model_validate(table | (ready or {}))
+        scene._table, scene._file, scene._cells = table, file, cells
         return scene
+
+    @property
+    def cells(self) -> "tuple[Scene, ...]":
+        """The scenes without a sweep that this one stands for, the last swept key fastest; itself if it has none."""
+        return self._cells or (self,)
 
     @model_validator(mode="after")
     def _parts_fit(self) -> "Scene":

@@ -5,11 +5,10 @@ from dataclasses import fields
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
-
-Floats = NDArray[np.float64]
 
 
 class Shape(ABC):

@@ -1,55 +1,13 @@
 """The power laws f(r) = rise (r/width)^n: the cone (n = 1), the paraboloid (n = 2) and any exponent (H 12, 26)."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import njit
-from roughmdr.shapes.base import Floats, Shape, radii
-
-_EULER = (-1.0, 5.0, -61.0, 1385.0, -50521.0, 2702765.0, -199360981.0)  # E_2, E_4, ... E_14
-
-
-@njit
-def _log_gamma_step(z: float) -> Pair:
-    """ln[Gamma(z + 1/2)/Gamma(z)] for z > 0.
-
-    The asymptotic series in w = z - 1/4, ln(w)/2 - sum_k E_k/(2 k (4 w)^k), begun at z >= 24 where the first term left
-    out is below 1e-23 (NIST DLMF 5.11.8 at 3/4 and 1/4, with B_{k+1}(1/4) = -(k+1) E_k/4^(k+1) of 24.4.31).
-    """
-    lift = (1.0, 0.0)
-    top = (z, 0.0)
-    while top[0] < 24.0:
-        lift = extended.multiply(lift, extended.divide(top, extended.add(top, (0.5, 0.0))))
-        top = extended.add(top, (1.0, 0.0))
-    w = extended.add(top, (-0.25, 0.0))
-    tail = 0.0
-    for i in range(6, -1, -1):
-        k = 2.0 * (i + 1.0)
-        tail = (tail - _EULER[i] / (2.0 * k)) / (16.0 * w[0] * w[0])
-    half_log = extended.multiply(extended.log(w), (0.5, 0.0))
-    return extended.add(extended.add(half_log, (tail, 0.0)), extended.log(lift))
-
-
-@njit
-def log_kappa(exponent: float) -> Pair:
-    """ln kappa, kappa(n) = sqrt(pi)/2 n Gamma(n/2)/Gamma((n + 1)/2), the factor from f to g (H 26)."""
-    log_half_root_pi = extended.add(
-        extended.multiply(extended.LOG_PI, (0.5, 0.0)), extended.multiply(extended.LOG_2, (-1.0, 0.0))
-    )
-    step = extended.multiply(_log_gamma_step(0.5 * exponent), (-1.0, 0.0))
-    return extended.add(extended.add(log_half_root_pi, extended.log((exponent, 0.0))), step)
-
-
-@njit
-def kappa(exponent: float) -> float:
-    """The factor from f to g: 1 at n -> 0, pi/2 for the cone, 2 for the paraboloid, about sqrt(pi n/2) beyond."""
-    return math.exp(log_kappa(exponent)[0])
+from roughmdr.arguments import Floats
+from roughmdr.shapes.base import Shape, radii
 
 
 class _Power(Shape):
@@ -65,6 +23,8 @@ class _Power(Shape):
         return np.asarray(rise * (radii("r", r) / width) ** exponent)
 
     def g(self, x: ArrayLike) -> Floats:
+        from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
+
         return np.asarray(kappa(self._stretched()[2]) * self.f(radii("x", x)))
 
     def G(self, a: ArrayLike) -> Floats:
@@ -108,9 +68,10 @@ class Cone(_Power):
 
 @dataclass(frozen=True)
 class PowerLaw(_Power):
-    """f = c r^n (exponent n [1], coefficient c [m^(1-n)]) or f = H (r/l)^n (exponent, width l [m], rise H [m]).
+    """f = c r^n (exponent n [1], coefficient c) or f = H (r/l)^n (exponent n, width l [m], rise H [m]).
 
-    The second form keeps its numbers in range for steep exponents. ShapeError unless all of one form are given, > 0.
+    c is the number that it is in metres; its unit, m^(1-n), changes with n. The second form keeps its numbers in range
+    for steep exponents. ShapeError unless all of one form are given, > 0.
     """
 
     exponent: float
@@ -119,7 +80,7 @@ class PowerLaw(_Power):
     rise: float | None = None
 
     name: ClassVar[str] = "power_law"
-    units: ClassVar[dict[str, str]] = {"exponent": "1", "coefficient": "m^(1-n)", "width": "m", "rise": "m"}
+    units: ClassVar[dict[str, str]] = {"exponent": "1", "coefficient": "1", "width": "m", "rise": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (
         ("exponent", "coefficient"),
         ("exponent", "width", "rise"),

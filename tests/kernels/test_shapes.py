@@ -7,7 +7,7 @@ import pytest
 from twins import Real, kappa, mp
 
 import roughmdr as rm
-from roughmdr.shapes.power import kappa as kappa_of_package
+from roughmdr.shapes.kappa import kappa as kappa_of_package
 
 SHAPES = [
     rm.Paraboloid(radius=3.7e-9),

@@ -1,57 +1,56 @@
-"""Faults of a scene or a section in words: the dotted key, its value, and what would do."""
+"""What pydantic finds wrong with a scene or a section, in words: the dotted key, its value, and what would do."""
 
 import difflib
-from typing import Any, NamedTuple, get_args
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-
-class Complaint(NamedTuple):
-    """One fault."""
-
-    key: str
-    value: str
-    """As in the scene; empty where there is none to show."""
-    message: str
-
-    def __str__(self) -> str:
-        shown = f"{self.key} = {self.value}" if self.value else self.key
-        return f"{shown}: {self.message}" if shown else self.message
+from roughmdr.errors import Fault
+from roughmdr.quantities import EntryError
 
 
-def complaints(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Complaint]:
+def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
     """All faults that pydantic found in ``data``, which was read as ``declared``, a section or a union of sections."""
-    return [_complaint(fault, data, declared) for fault in error.errors(include_url=False)]
+    return [_fault(fault, data, declared) for fault in error.errors(include_url=False)]
 
 
-def _complaint(fault: Any, data: dict[str, Any], declared: Any) -> Complaint:
+def sections_of(annotation: Any) -> list[type[BaseModel]]:
+    """The sections among which an annotation chooses."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [section for part in get_args(annotation) for section in sections_of(part)]
+
+
+def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
     keys, holders, choices = _walk(fault["loc"], data, declared)
     context = fault.get("ctx", {})
-    value = _shown(fault["input"])
+    value = shown(fault["input"])
     match fault["type"]:
         case "misfit":
-            return Complaint(context["key"], "", context["message"])
+            return Fault(context["key"], "", context["message"])
         case "extra_forbidden":
             allowed = sorted({name for section in holders for name in section.model_fields})
-            return Complaint(".".join(keys), "", f"unknown key{_suggestion(keys[-1], allowed)}")
+            return Fault(".".join(keys), "", f"unknown key{suggestion(keys[-1], allowed)}")
         case "missing":
-            return Complaint(".".join(keys), "", "is missing")
+            return Fault(".".join(keys), "", "is missing")
         case "union_tag_not_found" | "union_tag_invalid":
             key = ".".join([*keys, context["discriminator"].strip("'")])
             if fault["type"] == "union_tag_not_found":
                 tags = _tags(choices, context["discriminator"].strip("'"))
-                return Complaint(key, "", f"is missing; it can be {', '.join(tags)}")
+                return Fault(key, "", f"is missing; it can be {', '.join(tags)}")
             tags = [tag.strip("'") for tag in context["expected_tags"].split(", ")]
-            return Complaint(key, repr(context["tag"]), f"not available{_suggestion(context['tag'], tags)}")
+            return Fault(key, repr(context["tag"]), f"not available{suggestion(context['tag'], tags)}")
         case "literal_error":
             allowed = [name.strip("'") for name in context["expected"].replace(" or ", ", ").split(", ")]
-            return Complaint(".".join(keys), value, f"not available{_suggestion(str(fault['input']), allowed)}")
+            return Fault(".".join(keys), value, f"not available{suggestion(str(fault['input']), allowed)}")
+        case "value_error" if isinstance(error := context["error"], EntryError):
+            return Fault(".".join([*keys, error.key]), shown(error.value), str(error))
         case "value_error":
-            return Complaint(".".join(keys), value, str(context["error"]))
+            return Fault(".".join(keys), value, str(context["error"]))
         case "model_type" | "dict_type" | "model_attributes_type":
-            return Complaint(".".join(keys), value, "must be a table")
+            return Fault(".".join(keys), value, "must be a table")
         case _:
-            return Complaint(".".join(keys), value, fault["msg"][0].lower() + fault["msg"][1:])
+            return Fault(".".join(keys), value, fault["msg"][0].lower() + fault["msg"][1:])
 
 
 def _walk(
@@ -62,11 +61,11 @@ def _walk(
     pydantic's location also names the choice taken in each union; those are no keys.
     """
     keys: list[str] = []
-    holders = inner = _sections(declared)
+    holders = inner = sections_of(declared)
     for position, item in enumerate(loc):
         last = position == len(loc) - 1
         if isinstance(data, dict) and (item in data or (last and any(item in s.model_fields for s in inner))):
-            keys.append(str(item))
+            keys.append(_printable(str(item)))
             holders = inner
             inner = [s for holder in holders if item in holder.model_fields for s in _field_sections(holder, str(item))]
             data = data.get(item)
@@ -80,13 +79,7 @@ def _walk(
 
 
 def _field_sections(section: type[BaseModel], name: str) -> list[type[BaseModel]]:
-    return _sections(section.model_fields[name].annotation)
-
-
-def _sections(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [section for part in get_args(annotation) for section in _sections(part)]
+    return sections_of(section.model_fields[name].annotation)
 
 
 def _tags(sections: list[type[BaseModel]], discriminator: str) -> list[str]:
@@ -94,13 +87,19 @@ def _tags(sections: list[type[BaseModel]], discriminator: str) -> list[str]:
     return sorted({str(tag) for field in fields for tag in get_args(field.annotation)})
 
 
-def _suggestion(given: str, allowed: list[str]) -> str:
+def suggestion(given: str, allowed: list[str]) -> str:
+    """The nearest of the allowed names, or else all of them, as the end of a message."""
     near = difflib.get_close_matches(given, allowed, n=1, cutoff=0.7)
     if near:
         return f"; did you mean {near[0]!r}?"
     return f"; it can be {', '.join(allowed)}"
 
 
-def _shown(value: object) -> str:
+def _printable(key: str) -> str:
+    return key if key.isprintable() else repr(key)
+
+
+def shown(value: object) -> str:
+    """A value as it stands in the scene, cut where it is long."""
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,134 @@
+"""Distributions as a scene gives them: a plain quantity, or a scipy.stats name with parameters."""
+
+import difflib
+import math
+from dataclasses import dataclass
+
+from roughmdr.ensemble.distributions import Distribution
+from roughmdr.ensemble.families import Family, find_family, known_families
+from roughmdr.errors import RoughmdrError
+from roughmdr.quantities import EntryError, Quantity
+from roughmdr.units import DIMENSIONLESS, quantity
+
+_FRIENDLY = {
+    "normal": "norm",
+    "lognormal": "lognorm",
+    "exponential": "expon",
+    "weibull": "weibull_min",
+}
+_LOCATION = ("loc", "scale", "mean", "std")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
+
+    The parameters are scipy's own (shape parameters, loc, scale) or mean and std; ``mean`` is their default mean.
+    Raises RoughmdrError, with the names that would do, where it cannot be read.
+    """
+
+    dimension: str
+    mean: float | None = None
+    positive: bool = False
+    """Whether every value that can be drawn must be above 0."""
+
+    def __call__(self, value: object) -> Distribution:
+        """The distribution in SI."""
+        if isinstance(value, dict):
+            distribution = self._from_table(value)
+        else:
+            distribution = Distribution("", (), quantity(value, self.dimension), 0.0)
+        if self.positive and not distribution.least > 0.0:
+            raise RoughmdrError(
+                f"can be as low as {distribution.least:.3g}; it must be above 0 (lognormal, for one, always is)"
+            )
+        return distribution
+
+    def parameters(self, value: object) -> list[str]:
+        """The names of the parameters that an entry can have."""
+        given = value.get("distribution") if isinstance(value, dict) else None
+        family = find_family(_FRIENDLY.get(given, given)) if isinstance(given, str) else None
+        return list(_LOCATION) if family is None else _parameters(family)
+
+    def parameter(self, name: str) -> Quantity:
+        """What reads one parameter of the table."""
+        return Quantity(self.dimension if name in _LOCATION else DIMENSIONLESS)
+
+    def _number(self, name: str, value: object) -> float:
+        try:
+            return self.parameter(name)(value)
+        except RoughmdrError as error:
+            raise EntryError(name, value, str(error)) from None
+
+    def _from_table(self, value: dict[str, object]) -> Distribution:
+        table = dict(value)
+        given = table.pop("distribution", None)
+        if not isinstance(given, str):
+            raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
+        name = _FRIENDLY.get(given, given)
+        family = find_family(name)
+        if family is None:
+            raise EntryError(
+                "distribution", given, f"unknown distribution{_near(given)}; any continuous one of scipy.stats will do"
+            )
+        allowed = _parameters(family)
+        for key, entry in table.items():
+            if key not in allowed:
+                raise EntryError(key, entry, f"{given} has no such parameter; it takes {', '.join(allowed)}")
+        numbers = {key: self._number(key, entry) for key, entry in table.items()}
+        try:
+            distribution = Distribution(name, *_located(family, given, numbers, self.mean))
+            ends = distribution.least, distribution.greatest
+        except (ArithmeticError, RuntimeError) as error:
+            raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
+        if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
+            raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
+        return distribution
+
+
+def _parameters(family: Family) -> list[str]:
+    return [*family.shapes, *_LOCATION]
+
+
+def _located(
+    family: Family, given: str, numbers: dict[str, float], default_mean: float | None
+) -> tuple[tuple[float, ...], float, float]:
+    """The family's own parameters, loc and scale, from mean and std where those are given."""
+    mean, std = numbers.get("mean"), numbers.get("std")
+    for key in ("std", "scale"):
+        if numbers.get(key, 1.0) <= 0.0:
+            raise EntryError(key, numbers[key], "must be above 0")
+    if std is not None and "scale" in numbers:
+        raise RoughmdrError(f"{given} takes std or scale, not both")
+    if mean is not None and "loc" in numbers:
+        raise RoughmdrError(f"{given} takes mean or loc, not both")
+    if given == "lognormal" and "s" not in numbers:
+        if mean is None or std is None or not mean > 0.0:
+            raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
+        variance = math.log1p((std / mean) ** 2)
+        return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
+    missing = [shape for shape in family.shapes if shape not in numbers]
+    if missing:
+        raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {', '.join(_parameters(family))}")
+    if std is None and "scale" not in numbers:
+        raise RoughmdrError(f"{given} needs a std or a scale")
+    own = {shape: numbers[shape] for shape in family.shapes}
+    if not family.defined(*own.values()):
+        raise RoughmdrError(f"{given} is not defined for {_listed(own)}")
+    unit_mean, unit_variance = family.moments(*own.values())
+    if mean is None and "loc" not in numbers and math.isfinite(unit_mean):
+        mean = default_mean
+    scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
+    loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean
+    if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
+        raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
+    return tuple(own.values()), loc, scale
+
+
+def _listed(numbers: dict[str, float]) -> str:
+    return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
+
+
+def _near(name: str) -> str:
+    near = difflib.get_close_matches(name, [*_FRIENDLY, *known_families()], n=3, cutoff=0.6)
+    return f"; did you mean {' or '.join(repr(other) for other in near)}?" if near else ""

@@ -1,0 +1,39 @@
+"""What is kept of many realisations instead of their curves: mean, standard error, least and greatest."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.arguments import Floats
+from roughmdr.labelled import Array
+from roughmdr.variables import LAW
+
+_INFINITE_VARIANCE = "not computed on unloading: contacts snap with k to minus infinity, so that it has no variance"
+
+
+def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[np.bool_]) -> dict[str, Array]:
+    """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable [..., realization, step] over dims without realization.
+
+    ``snaps`` are the steps at which contacts may snap off. NaN stands for a standard error that is not computed: that
+    of a single realisation, and of the stiffness where contacts snap, since its variance is infinite there.
+    """
+    variable, count = LAW[name], values.shape[-2]
+    mean = values.mean(axis=-2)
+    sem = np.full_like(mean, math.nan)
+    remark = {}
+    if count > 1:
+        sem = values.std(axis=-2, ddof=1) / math.sqrt(count)
+    if name == "stiffness" and snaps.any():
+        sem[..., snaps] = math.nan
+        remark = {"comment": _INFINITE_VARIANCE}
+
+    def array(numbers: Floats, what: str, **attrs: str) -> Array:
+        return Array(dims, numbers, {"units": variable.units, "long_name": f"{what} of {variable.long_name}", **attrs})
+
+    return {
+        f"{name}_mean": array(mean, "mean", cell_methods="realization: mean", ancillary_variables=f"{name}_sem"),
+        f"{name}_sem": array(sem, "standard error of the mean", **remark),
+        f"{name}_min": array(values.min(axis=-2), "least", cell_methods="realization: minimum"),
+        f"{name}_max": array(values.max(axis=-2), "greatest", cell_methods="realization: maximum"),
+    }
