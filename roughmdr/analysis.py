@@ -1,6 +1,5 @@
 """What a result says in a few numbers."""
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from roughmdr.arguments import Floats
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
+from roughmdr.statistics import mean_and_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,26 +29,10 @@ def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
     arrays = result.variables
     if "force" in arrays:
         lowest = np.minimum(np.min(arrays["force"].values, axis=-1), 0.0)
-        return PullOff(*_mean_and_error(lowest), of_the_mean=False)
+        return PullOff(*mean_and_error(lowest, axis=-1), of_the_mean=False)
     if "force_mean" in arrays:
         mean, error = arrays["force_mean"].values, arrays["force_sem"].values
         where = np.argmin(mean, axis=-1)[..., None]
         lowest, at = (np.take_along_axis(values, where, axis=-1)[..., 0] for values in (mean, error))
         return PullOff(np.minimum(lowest, 0.0), np.where(lowest < 0.0, at, 0.0), of_the_mean=True)
     raise StoreError("the result holds no force: add it to output.variables")
-
-
-def _mean_and_error(values: Floats) -> tuple[Floats, Floats]:
-    count = values.shape[-1]
-    mean = np.asarray(values.mean(axis=-1))
-    if count < 2:
-        return mean, np.full_like(mean, math.nan)
-    return mean, np.asarray(values.std(axis=-1, ddof=1)) / math.sqrt(count)
-
-
-def standard_error(values: "xr.DataArray") -> "xr.DataArray":
-    """Standard error of the mean over ``realization``; NaN for a single one."""
-    count = values.sizes["realization"]
-    if count < 2:
-        return values.isel(realization=0) * math.nan
-    return values.std("realization", ddof=1) / math.sqrt(count)

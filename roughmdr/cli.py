@@ -120,7 +120,7 @@ def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     from roughmdr.plots import plot
     from roughmdr.store import read
 
-    plot(read(result).to_xarray(), output, list(variables))
+    plot(read(result), output, list(variables))
     click.echo(f"picture      {output}")
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.analysis import PullOff, pull_off_force
+from roughmdr.curves import held_variables, swept_dimensions
 from roughmdr.labelled import Labelled
 
 if TYPE_CHECKING:
@@ -34,10 +35,10 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     """What a result holds; ``elapsed`` [s] is the time that it took in all."""
     attrs = result.attrs
     realizations, steps = realizations_of(result), result.sizes["step"]
-    held = [name for name, array in result.variables.items() if array.dims[-1:] == ("step",)]
+    swept = {name: result.sizes[name] for name in swept_dimensions(result)}
     lines = [
-        ("computed", f"{attrs['title']}: {_sizes(_swept(result), realizations, steps)}"),
-        ("variables", ", ".join(held)),
+        ("computed", f"{attrs['title']}: {_sizes(swept, realizations, steps)}"),
+        ("variables", ", ".join(held_variables(result))),
         *_pull_off(result, realizations),
         ("run time", _run_time(result, elapsed)),
         ("error", f"numerical error at most {_array(result, 'numerical_error').max():.1e} of the largest force"),
@@ -71,11 +72,6 @@ def _array(result: Labelled, name: str) -> np.ndarray:
     return result.variables[name].values
 
 
-def _swept(result: Labelled) -> dict[str, int]:
-    dims = [name for name in result.variables["status"].dims if name != "realization"]
-    return {name: result.sizes[name] for name in dims}
-
-
 def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
     parts = [f"{size} {name}" for name, size in swept.items()]
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
@@ -87,33 +83,44 @@ def _run_time(result: Labelled, elapsed: float | None) -> str:
 
 
 def _pull_off(result: Labelled, realizations: int) -> Iterator[tuple[str, str]]:
-    if result.variables.keys().isdisjoint({"force", "force_mean"}):
+    if "force" not in held_variables(result):
         return
     pull_off = pull_off_force(result)
-    note = "mean curve, standard error" if pull_off.of_the_mean else "mean and standard error"
-    cells = list(np.ndindex(pull_off.mean.shape))
-    for cell in cells[:_MOST_CELLS]:
-        where = f"  at {label}" if (label := _label(result, cell)) else ""
-        yield ("" if cell != cells[0] else "pull-off"), f"{_force(pull_off, cell, realizations, note)}{where}"
+    what = "at the lowest point of the mean curve" if pull_off.of_the_mean else "mean"
+    note = f"{what}, and its standard error over {realizations} realisations"
+    if realizations == 1:
+        note = "one realisation: no standard error"
+    cells = cells_of(result)
+    if len(cells) == 1:
+        yield "pull-off", f"{_force(pull_off, cells[0])} ({note})"
+        return
+    yield "pull-off", note
+    forces = [_force(pull_off, cell) for cell in cells[:_MOST_CELLS]]
+    width = max(map(len, forces))
+    for force, cell in zip(forces, cells, strict=False):
+        yield "", f"{force:<{width}}  {cell_label(result, cell)}"
     if len(cells) > _MOST_CELLS:
         yield "", f"... and {len(cells) - _MOST_CELLS} cells more"
 
 
-def _force(pull_off: PullOff, cell: tuple[int, ...], realizations: int, note: str) -> str:
+def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
     mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
     if mean == 0.0:
-        return "none: the force is never tensile on this path"
-    if math.isnan(error):
-        return f"{mean:.4g} N (one realisation: no standard error)"
-    return f"{mean:.4g} N ± {error:.2g} N ({note} over {realizations} realisations)"
+        return "none: the force is never tensile"
+    return f"{mean:.4g} N" if math.isnan(error) else f"{mean:.4g} N ± {error:.2g} N"
 
 
-def _label(result: Labelled, cell: tuple[int, ...]) -> str:
+def cells_of(result: Labelled) -> list[tuple[int, ...]]:
+    """The indices of each cell, the last swept dimension fastest; one, empty, without a sweep."""
+    return list(np.ndindex(*(result.sizes[name] for name in swept_dimensions(result))))
+
+
+def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     """The swept values of a cell."""
-    names = list(_swept(result))
+    names = swept_dimensions(result)
     parts = []
     for name, array in result.coordinates.items():
-        if name not in ("separation", "branch") and set(array.dims) <= set(names):
+        if name not in ("separation", "branch"):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
             unit = array.attrs.get("units", "1")
             shown = value if isinstance(value, str) else f"{value:.4g}"

@@ -12,28 +12,33 @@ from roughmdr.variables import LAW
 _INFINITE_VARIANCE = "not computed on unloading: contacts snap with k to minus infinity, so that it has no variance"
 
 
+def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
+    """Mean and its standard error over the realisations on an axis; the error of a single one is NaN."""
+    mean, count = np.asarray(values.mean(axis=axis)), values.shape[axis]
+    if count < 2:
+        return mean, np.full_like(mean, math.nan)
+    return mean, np.asarray(values.std(axis=axis, ddof=1) / math.sqrt(count))
+
+
 def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[np.bool_]) -> dict[str, Array]:
     """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable [..., realization, step] over dims without realization.
 
     ``snaps`` are the steps at which contacts may snap off. NaN stands for a standard error that is not computed: that
     of a single realisation, and of the stiffness where contacts snap, since its variance is infinite there.
     """
-    variable, count = LAW[name], values.shape[-2]
-    mean = values.mean(axis=-2)
-    sem = np.full_like(mean, math.nan)
+    variable = LAW[name]
+    mean, sem = mean_and_error(values, axis=-2)
     remark = {}
-    if count > 1:
-        sem = values.std(axis=-2, ddof=1) / math.sqrt(count)
     if name == "stiffness" and snaps.any():
         sem[..., snaps] = math.nan
         remark = {"comment": _INFINITE_VARIANCE}
 
-    def array(numbers: Floats, what: str, **attrs: str) -> Array:
+    def array(numbers: Floats, what: str, attrs: dict[str, str]) -> Array:
         return Array(dims, numbers, {"units": variable.units, "long_name": f"{what} of {variable.long_name}", **attrs})
 
     return {
-        f"{name}_mean": array(mean, "mean", cell_methods="realization: mean", ancillary_variables=f"{name}_sem"),
-        f"{name}_sem": array(sem, "standard error of the mean", **remark),
-        f"{name}_min": array(values.min(axis=-2), "least", cell_methods="realization: minimum"),
-        f"{name}_max": array(values.max(axis=-2), "greatest", cell_methods="realization: maximum"),
+        f"{name}_mean": array(mean, "mean", {"ancillary_variables": f"{name}_sem"}),
+        f"{name}_sem": array(sem, "standard error of the mean", remark),
+        f"{name}_min": array(values.min(axis=-2), "least", {}),
+        f"{name}_max": array(values.max(axis=-2), "greatest", {}),
     }

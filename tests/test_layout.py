@@ -18,7 +18,7 @@ LINES = (
     ("aggregate",),
     ("theory",),
     ("plan", "statistics", "store", "result", "progress", "runner", "estimate"),
-    ("analysis", "plots", "describe", "cli"),
+    ("curves", "analysis", "describe", "plots", "cli"),
 )
 LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
