@@ -8,6 +8,8 @@ from pydantic import BaseModel, ValidationError
 from roughmdr.errors import Fault
 from roughmdr.quantities import EntryError
 
+_NEAR = 0.7  # of difflib's ratio: one or two letters of a word
+
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
     """All faults that pydantic found in ``data``, which was read as ``declared``, a section or a union of sections."""
@@ -36,8 +38,7 @@ def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
         case "union_tag_not_found" | "union_tag_invalid":
             key = ".".join([*keys, context["discriminator"].strip("'")])
             if fault["type"] == "union_tag_not_found":
-                tags = _tags(choices, context["discriminator"].strip("'"))
-                return Fault(key, "", f"is missing; it can be {', '.join(tags)}")
+                return _missing_tag(keys, context["discriminator"].strip("'"), choices, fault["input"])
             tags = [tag.strip("'") for tag in context["expected_tags"].split(", ")]
             return Fault(key, repr(context["tag"]), f"not available{suggestion(context['tag'], tags)}")
         case "literal_error":
@@ -51,6 +52,13 @@ def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
             return Fault(".".join(keys), value, "must be a table")
         case _:
             return Fault(".".join(keys), value, fault["msg"][0].lower() + fault["msg"][1:])
+
+
+def _missing_tag(keys: list[str], name: str, choices: list[type[BaseModel]], table: dict[str, Any]) -> Fault:
+    misspelt = difflib.get_close_matches(name, table, n=1, cutoff=_NEAR)
+    if misspelt:
+        return Fault(".".join([*keys, _printable(misspelt[0])]), "", f"unknown key; did you mean {name!r}?")
+    return Fault(".".join([*keys, name]), "", f"is missing; it can be {', '.join(_tags(choices, name))}")
 
 
 def _walk(
@@ -89,7 +97,7 @@ def _tags(sections: list[type[BaseModel]], discriminator: str) -> list[str]:
 
 def suggestion(given: str, allowed: list[str]) -> str:
     """The nearest of the allowed names, or else all of them, as the end of a message."""
-    near = difflib.get_close_matches(given, allowed, n=1, cutoff=0.7)
+    near = difflib.get_close_matches(given, allowed, n=1, cutoff=_NEAR)
     if near:
         return f"; did you mean {near[0]!r}?"
     return f"; it can be {', '.join(allowed)}"

@@ -112,7 +112,7 @@ def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
             "height.sd = 1: normal has no such parameter; it takes loc, scale, mean, std",
         ),
         ({"height": {"distribution": "normal"}}, "needs a std or a scale"),
-        ({"height": {"distribution": "normal", "std": 0}}, "height.std = 0.0: must be above 0"),
+        ({"height": {"distribution": "normal", "std": 0}}, "height.std = 0: must be above 0"),
         ({"height": {"distribution": "gamma", "std": 1}}, "gamma needs a"),
         ({"height": {"distribution": "gamma", "a": -1, "std": 1}}, "not defined for a = -1"),
         ({"height": {"distribution": "normal", "std": 1, "scale": 1}}, "std or scale, not both"),

@@ -52,7 +52,9 @@ class Drawn:
 
     def parameter(self, name: str) -> Quantity:
         """What reads one parameter of the table."""
-        return Quantity(self.dimension if name in _LOCATION else DIMENSIONLESS)
+        return Quantity(
+            self.dimension if name in _LOCATION else DIMENSIONLESS, above=0.0 if name in ("std", "scale") else None
+        )
 
     def _number(self, name: str, value: object) -> float:
         try:
@@ -63,8 +65,13 @@ class Drawn:
     def _from_table(self, value: dict[str, object]) -> Distribution:
         table = dict(value)
         given = table.pop("distribution", None)
-        if not isinstance(given, str):
+        if given is None:
+            near = difflib.get_close_matches("distribution", table, n=1, cutoff=0.7)
+            if near:
+                raise EntryError(near[0], table[near[0]], "unknown key; did you mean 'distribution'?")
             raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
+        if not isinstance(given, str):
+            raise EntryError("distribution", given, 'must be a name, like "normal"')
         name = _FRIENDLY.get(given, given)
         family = find_family(name)
         if family is None:
@@ -95,16 +102,15 @@ def _located(
 ) -> tuple[tuple[float, ...], float, float]:
     """The family's own parameters, loc and scale, from mean and std where those are given."""
     mean, std = numbers.get("mean"), numbers.get("std")
-    for key in ("std", "scale"):
-        if numbers.get(key, 1.0) <= 0.0:
-            raise EntryError(key, numbers[key], "must be above 0")
     if std is not None and "scale" in numbers:
         raise RoughmdrError(f"{given} takes std or scale, not both")
     if mean is not None and "loc" in numbers:
         raise RoughmdrError(f"{given} takes mean or loc, not both")
     if given == "lognormal" and "s" not in numbers:
-        if mean is None or std is None or not mean > 0.0:
+        if mean is None or std is None:
             raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
+        if not mean > 0.0:
+            raise EntryError("mean", mean, "must be above 0 in a lognormal distribution")
         variance = math.log1p((std / mean) ** 2)
         return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
     missing = [shape for shape in family.shapes if shape not in numbers]

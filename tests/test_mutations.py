@@ -1,0 +1,215 @@
+"""Scenes with one thing wrong, made by walking the schema: each is refused at its key and line and writes nothing."""
+
+import copy
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from click.testing import CliRunner
+from pydantic import BaseModel
+from scenes import ASPERITIES, SCENE
+
+from roughmdr.cli import main
+from roughmdr.faults import sections_of
+from roughmdr.scene.keys import put, readers
+from roughmdr.scene.sections import Scene
+
+_DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
+BASES: dict[str, dict[str, Any]] = {
+    "every section": {
+        **SCENE,
+        "counter": {"modulus": "70 GPa", "poisson": 0.2},
+        "asperities": {**ASPERITIES, "placement": "hard_core", "min_distance": "1 um"},
+        "output": {"variables": ["force", "energy"], "keep": "statistics"},
+        "sweep": {"mode": "zip", "adhesion.work": ["1 mJ/m^2", "2 mJ/m^2"]},
+    },
+    "cones": {
+        **SCENE,
+        "material": {"effective_modulus": "4 MPa"},
+        "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
+    },
+    "power laws": {
+        **SCENE,
+        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "width": "10 um", "rise": "1 um"},
+    },
+    "power laws with coefficient": {
+        **SCENE,
+        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 10.0},
+    },
+    "a surface": {**SCENE, "asperities": {"source": "surface", "file": "map.nc", "shape": "paraboloid"}, "batch": {}},
+}
+MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
+NONSENSE: dict[str, object] = {
+    "unit": "3 parsec",
+    "no number": "three",
+    "list": [],
+    "table": {"a": 1},
+    "truth": True,
+    "nan": float("nan"),
+    "inf": float("inf"),
+    "-inf": float("-inf"),
+}
+
+
+class Mutation(NamedTuple):
+    """A scene with one thing wrong."""
+
+    base: str
+    key: str
+    """That is at fault."""
+    what: str
+    table: dict[str, Any]
+
+    def __str__(self) -> str:
+        return f"{self.base}-{self.key}-{self.what}"
+
+
+def value_of(table: dict[str, Any], key: str) -> Any:
+    for part in key.split("."):
+        table = table.get(part, {}) if isinstance(table, dict) else {}
+    return table
+
+
+def paths(table: dict[str, Any], at: str = "") -> Iterator[str]:
+    """Every key and table of a scene."""
+    for key, value in table.items():
+        if key != "sweep":
+            yield f"{at}{key}"
+            if isinstance(value, dict):
+                yield from paths(value, f"{at}{key}.")
+
+
+def mutated(base: str, key: str, what: str, value: object) -> Mutation:
+    table = copy.deepcopy(BASES[base])
+    put(table, key, value)
+    return Mutation(base, key, what, table)
+
+
+def misspelt(base: str, key: str) -> Mutation:
+    table = copy.deepcopy(BASES[base])
+    *outer, last = key.split(".")
+    inner = table
+    for part in outer:
+        inner = inner[part]
+    wrong = last[:-2] + last[-1] + last[-2] + "x"
+    inner[wrong] = inner.pop(last)
+    return Mutation(base, ".".join([*outer, wrong]), "misspelt", table)
+
+
+def mutations() -> Iterator[Mutation]:
+    for base, table in BASES.items():
+        for key in paths(table):
+            yield misspelt(base, key)
+        for key, reader in readers([Scene], table):
+            if value_of(table, key) == {}:
+                continue
+            if not reader.dimension:
+                yield mutated(base, key, "no name", 5)
+                if key != "title":
+                    yield mutated(base, key, "unknown name", "nonsens")
+                continue
+            for what, wrong in NONSENSE.items():
+                yield mutated(base, key, what, wrong)
+            yield mutated(base, key, "wrong dimension", "3 MPa" if reader.dimension != "Pa" else "3 um")
+            if key.rpartition(".")[2] not in MAY_BE_NEGATIVE or key == "asperities.radius.mean":
+                yield mutated(base, key, "negative", -1)
+        yield mutated(base, "path.unload", "no truth", "yes")
+    base = "every section"
+    yield mutated(base, "output.variables", "no list", "force")
+    for key, value in (("mode", "zap"), ("adhesion.wrok", [1]), ("adhesion.work", ["5 m"]), ("asperities.count", [0])):
+        table = copy.deepcopy(BASES[base])
+        table["sweep"] = {**table["sweep"], key: value}
+        yield Mutation(base, f"sweep.{key}", "sweep", table)
+
+
+ALL = list(mutations())
+
+
+def declared(section: type[BaseModel], at: str = "") -> Iterator[str]:
+    """Every key that the sections declare."""
+    for name, field in section.model_fields.items():
+        yield f"{at}{name}"
+        for inner in sections_of(field.annotation):
+            yield from declared(inner, f"{at}{name}.")
+
+
+def line_of(text: str, key: str) -> int:
+    """The line of a key in what tomli_w writes: a table has a header, anything else a line in its table."""
+    here = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.startswith("["):
+            here = line.strip("[]").replace('"', "")
+        name = line.partition(" = ")[0].replace('"', "")
+        if key in (here, f"{here}.{name}" if here else name):
+            return number
+    raise AssertionError(f"{key} is not in the text")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("mutations")
+    x = np.linspace(0.0, 1e-5, 40)
+    waves = 1e-7 * np.outer((1.0 + 1e5 * x) * np.cos(2e6 * x), np.cos(2e6 * x))
+    xr.Dataset({"height": (("x", "y"), waves)}, coords={"x": x, "y": x}).to_netcdf(made / "map.nc")
+    return made
+
+
+def refused(folder: Path, text: str | bytes) -> str:
+    """The message of a run that must be refused."""
+    scene = folder / "scene.toml"
+    scene.write_bytes(text if isinstance(text, bytes) else text.encode())
+    before = sorted(path.name for path in folder.iterdir())
+    done = CliRunner().invoke(main, ["run", str(scene), "-o", str(folder / "out.nc")])
+    assert done.exit_code == 2, (done.output, done.exception)
+    assert "Traceback" not in done.output
+    assert isinstance(done.exception, SystemExit)
+    assert sorted(path.name for path in folder.iterdir()) == before
+    return done.output
+
+
+def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> None:
+    known = {key for table in BASES.values() for key in paths(table)} | {"sweep"}
+    assert set(declared(Scene)) == {key for key in known if value_is_declared(key)}
+    assert len(ALL) > 400
+    for table in BASES.values():
+        (folder / "right.toml").write_text(tomli_w.dumps(table))
+        done = CliRunner().invoke(main, ["run", str(folder / "right.toml"), "-o", str(folder / "right.nc"), "--quiet"])
+        assert done.exit_code == 0, done.output
+    for made in ("right.toml", "right.nc"):
+        (folder / made).unlink()
+
+
+def value_is_declared(key: str) -> bool:
+    """Whether a key stands in the schema itself, and not in the table of a distribution."""
+    return not any(key.startswith(f"asperities.{name}.") for name in ("height", "radius"))
+
+
+@pytest.mark.parametrize("mutation", ALL, ids=str)
+def test_one_thing_wrong_is_refused_at_its_line(folder: Path, mutation: Mutation) -> None:
+    text = tomli_w.dumps(mutation.table)
+    output = refused(folder, text)
+    lines = [line for line in output.splitlines() if f"scene.toml:{line_of(text, mutation.key)}: " in line]
+    assert any(mutation.key in line for line in lines), output
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "material: is missing"),
+        (b"[material\n", "not valid TOML: .*line 1"),
+        (b"seed = 1\nseed = 2\n", "not valid TOML: .*line 2"),
+        (b"a = '''", "not valid TOML"),
+        (bytes(range(256)), "not a text file"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(100), "a netCDF file, but no result of roughmdr"),
+        (b"CDF\x01" + bytes(100), "a netCDF file, but no result of roughmdr"),
+        (b"x" * 100_000, "not valid TOML"),
+        (b"a = " + b"[" * 5000, "not valid TOML"),
+    ],
+)
+def test_what_is_no_scene_is_refused(folder: Path, content: bytes, says: str) -> None:
+    assert re.search(says, refused(folder, content))
