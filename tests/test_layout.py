@@ -6,6 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+import tomli_w
+from scenes import scene
+
+import roughmdr as rm
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
@@ -68,6 +72,45 @@ def test_importing_the_package_loads_nothing_heavy() -> None:
     loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
     for heavy in ("numpy", "numba", "scipy", "xarray", "dask", "matplotlib", "pydantic", "netCDF4"):
         assert f"'{heavy}'" not in loaded
+
+
+_LISTED = """
+import sys
+from roughmdr.cli import main
+try:
+    main({arguments!r})
+except SystemExit as end:
+    assert end.code in (0, 2), end.code
+print("loaded:", *sorted(name for name in sys.modules if "." not in name))
+"""
+_ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "may_load"),
+    [
+        (["--help"], set()),
+        (["--version"], set()),
+        (["new", "new.toml"], set()),
+        (["info", "out.nc"], set()),
+        (["run", "wrong.toml", "-o", "x.nc"], {"scipy"}),
+        (["generate", "small.toml", "-o", "x.nc"], {"scipy"}),
+        (["plan", "small.toml"], {"scipy", "numba"}),
+        (["run", "small.toml", "-o", "x.nc"], {"scipy", "numba"}),
+        (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
+        (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_a_command_loads_only_what_it_uses(tmp_path: Path, arguments: list[str], may_load: set[str]) -> None:
+    (tmp_path / "small.toml").write_text(tomli_w.dumps(scene()))
+    (tmp_path / "wrong.toml").write_text(tomli_w.dumps(scene(title=3)))
+    rm.run(scene(batch=None), tmp_path / "out.nc")
+    code = _LISTED.format(arguments=arguments)
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    loaded = set(done.stdout.splitlines()[-1].split()[1:])
+    assert loaded & _ALWAYS_HEAVY <= may_load
 
 
 def test_every_public_name_is_there() -> None:

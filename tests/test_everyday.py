@@ -1,0 +1,185 @@
+"""new, plan, info, generate, and messages on a terminal: in processes of their own."""
+
+import os
+import pty
+import re
+import resource
+import subprocess
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from pydantic import BaseModel
+from scenes import ASPERITIES, scene
+from test_cli import ROUGHMDR, roughmdr
+
+import roughmdr as rm
+from roughmdr.faults import sections_of
+from roughmdr.scene.sections import Scene
+from roughmdr.units import _BASES
+from roughmdr.variables import LAW
+
+UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "small.toml").write_text(tomli_w.dumps(scene()))
+    return tmp_path
+
+
+def keys_of(section: type[BaseModel]) -> set[str]:
+    return {
+        key
+        for name, field in section.model_fields.items()
+        for key in ({name} | {k for inner in sections_of(field.annotation) for k in keys_of(inner)})
+    }
+
+
+def test_the_starter_scene_runs_and_shows_every_choice(tmp_path: Path) -> None:
+    assert roughmdr("new", "mine.toml", cwd=tmp_path).returncode == 0
+    text = (tmp_path / "mine.toml").read_text()
+    for key in keys_of(Scene):
+        assert re.search(rf"\b{key}\b", text), f"{key} is not in the starter scene"
+    for name in (*LAW, *(base[0] for spellings in _BASES.values() for base in spellings if base[0] in ("m", "Pa"))):
+        assert name in text
+    done = roughmdr("run", "mine.toml", "-o", "out.nc", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    again = roughmdr("new", "mine.toml", cwd=tmp_path)
+    assert (again.returncode, (tmp_path / "mine.toml").read_text()) == (2, text)
+    assert "is there already" in again.stderr
+
+
+def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
+    text = (Path(rm.__file__).parent / "starter.toml").read_text()
+    sweep = text[text.index("# [sweep]") :].replace("\n# ", "\n").removeprefix("# ")
+    assert rm.run(tomllib.loads(text[: text.index("# [sweep]")] + sweep)).sizes["adhesion_work"] == 2
+    for line in ('placement = "hard_core"', 'min_distance = "1 um"', 'effective_modulus = "3.9 MPa"', "[counter]"):
+        assert f"# {line}" in text
+    chosen = text.replace('# placement = "hard_core"', 'placement = "hard_core"').replace("# min_d", "min_d")
+    chosen = (
+        chosen.replace("# [counter]", "[counter]").replace('# modulus = "70', 'modulus = "70').replace("# poi", "poi")
+    )
+    assert rm.run(tomllib.loads(chosen)).force.shape == (16, 400)
+
+
+def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
+    large = ["--set", "asperities.count=300000", "--set", "batch.realizations=6"]
+    done = roughmdr("plan", "small.toml", *large, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in folder.iterdir()] == ["small.toml"]
+    assert "6 realisations x 80 steps (6 runs)" in done.stdout
+    assert re.search(r"^time +about [\d.]+ s, of them [\d.]+ s to start$", done.stdout, re.MULTILINE)
+    size, unit = re.search(r"^memory +about ([\d.]+) (\w+),", done.stdout, re.MULTILINE).groups()  # type: ignore[union-attr]
+    assert roughmdr("run", "small.toml", "-o", "out.nc", *large, cwd=folder).returncode == 0
+    taken = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024.0
+    assert 0.5 < float(size) * UNITS[unit] / taken < 2.0
+    with xr.open_dataset(folder / "out.nc") as result:
+        for line in result.attrs["left_out"].splitlines():
+            assert line in done.stdout
+
+
+def test_info_says_what_a_result_holds(folder: Path) -> None:
+    sweep = ["--set", 'sweep.adhesion.work=["10 mJ/m^2","50 mJ/m^2"]']
+    assert roughmdr("run", "small.toml", "-o", "out.nc", *sweep, cwd=folder).returncode == 0
+    done = roughmdr("info", "out.nc", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(folder / "out.nc") as result:
+        lowest = result.force.min("step")
+        mean, error = lowest.mean("realization"), lowest.std("realization", ddof=1) / 4.0
+        for i, work in enumerate(("0.01", "0.05")):
+            shown = f"{float(mean[i]):.4g} N ± {float(error[i]):.2g} N"
+            assert re.search(rf"{re.escape(shown)} +adhesion_work = {work} J m-2$", done.stdout, re.MULTILINE)
+        texts = [
+            "A small scene: 2 adhesion_work x 16 realisations x 80 steps",
+            "seed         7",
+            "roughmdr 0",
+            "numpy 2",
+        ]
+        texts += [result.attrs["history"], result.attrs["left_out"].splitlines()[0], 'modulus = "3 MPa"', "kB"]
+    for text in texts:
+        assert text in done.stdout
+
+
+def test_generate_writes_the_asperities_of_a_run(folder: Path) -> None:
+    done = roughmdr("generate", "small.toml", "-o", "ensemble.nc", "--realization", 3, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(folder / "ensemble.nc") as ensemble:
+        expected = rm.generate(ASPERITIES, seed=7, realization=3)
+        np.testing.assert_array_equal(ensemble.height, expected.height)
+        np.testing.assert_array_equal(ensemble.radius, expected.radius)
+        assert ensemble.attrs["patch"] == 1e-3
+        assert ensemble.attrs["seed"] == 7
+        law = rm.load_separation(ensemble, separation=[1e-6], modulus=3e6)
+        assert float(law.force[0]) > 0.0
+    swept = roughmdr("generate", "small.toml", "-o", "x.nc", "--set", "sweep.asperities.count=[1,2]", cwd=folder)
+    assert swept.returncode == 2
+    assert "say which with --set asperities.count=VALUE" in swept.stderr
+
+
+def test_a_result_is_run_again_from_itself_alone(folder: Path) -> None:
+    assert roughmdr("run", "small.toml", "-o", "out.nc", cwd=folder).returncode == 0
+    (folder / "small.toml").unlink()
+    done = roughmdr("run", "out.nc", "-o", "again.nc", "--set", "seed=7", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(folder / "out.nc") as first, xr.open_dataset(folder / "again.nc") as again:
+        assert first.drop_vars("run_time").equals(again.drop_vars("run_time"))
+        assert first.attrs["scene"] == again.attrs["scene"]
+    over = roughmdr("run", "out.nc", "-o", "out.nc", cwd=folder)
+    assert over.returncode == 2
+    assert "is what the scene is read from" in over.stderr
+
+
+def on_a_terminal(*arguments: str, cwd: Path, **environment: str) -> str:
+    """What a command shows where its error stream is a terminal."""
+    leader, follower = pty.openpty()
+    with subprocess.Popen(
+        [*ROUGHMDR, *arguments], cwd=cwd, stdout=follower, stderr=follower, env={**os.environ, **environment}
+    ) as process:
+        os.close(follower)
+        shown = b""
+        while True:
+            try:
+                part = os.read(leader, 65536)
+            except OSError:  # the terminal is gone with the process
+                break
+            if not part:
+                break
+            shown += part
+    os.close(leader)
+    assert process.returncode == 2
+    return shown.decode()
+
+
+def test_messages_are_in_colour_on_a_terminal_and_plain_elsewhere(folder: Path) -> None:
+    wrong: dict[str, Any] = scene(asperities={**ASPERITIES, "hieght": 1}, adhesion={"model": "jkr", "work": "5 m"})
+    (folder / "wrong.toml").write_text(tomli_w.dumps(wrong))
+    command = ("run", "wrong.toml", "-o", "out.nc")
+    plain = roughmdr(*command, cwd=folder).stderr
+    assert "\x1b" not in plain
+    assert "did you mean 'height'?" in plain
+    coloured = on_a_terminal(*command, cwd=folder)
+    assert "\x1b[" in coloured
+    bare = re.sub(r"\x1b\[[0-9;]*m", "", coloured).replace("\r\n", "\n")
+    assert bare == plain
+    assert "\x1b" not in on_a_terminal(*command, cwd=folder, NO_COLOR="1")
+
+
+@pytest.mark.parametrize("home", ["missing", "read-only"])
+def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, home: str) -> None:
+    """Without a folder for compiled code it compiles anew; root may write anywhere, so a file stands in the way."""
+    place = folder / "home"
+    if home == "read-only":
+        place.mkdir()
+        (place / ".cache").write_text("no folder")
+    environment = {**os.environ, "HOME": str(place / "none" if home == "missing" else place), "XDG_CACHE_HOME": ""}
+    if home == "missing":
+        place.write_text("no folder")
+    command = [*ROUGHMDR, "run", "small.toml", "-o", "out.nc", "--set", "adhesion.work=0"]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (folder / "out.nc").exists()
