@@ -89,17 +89,12 @@ def test_info_says_what_a_result_holds(folder: Path) -> None:
     done = roughmdr("info", "out.nc", cwd=folder)
     assert done.returncode == 0, done.stderr
     with xr.open_dataset(folder / "out.nc") as result:
-        lowest = result.force.min("step")
+        lowest = result.force.min("step").clip(max=0.0)
         mean, error = lowest.mean("realization"), lowest.std("realization", ddof=1) / 4.0
         for i, work in enumerate(("0.01", "0.05")):
             shown = f"{float(mean[i]):.4g} N ± {float(error[i]):.2g} N"
             assert re.search(rf"{re.escape(shown)} +adhesion_work = {work} J m-2$", done.stdout, re.MULTILINE)
-        texts = [
-            "A small scene: 2 adhesion_work x 16 realisations x 80 steps",
-            "seed         7",
-            "roughmdr 0",
-            "numpy 2",
-        ]
+        texts = ["A small scene: 2 adhesion_work x 16 realisations x 80 steps", "seed         7", "numpy"]
         texts += [result.attrs["history"], result.attrs["left_out"].splitlines()[0], 'modulus = "3 MPa"', "kB"]
     for text in texts:
         assert text in done.stdout
