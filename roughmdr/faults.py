@@ -1,14 +1,12 @@
 """What pydantic finds wrong with a scene or a section, in words: the dotted key, its value, and what would do."""
 
-import difflib
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from roughmdr.errors import Fault
 from roughmdr.quantities import EntryError
-
-_NEAR = 0.7  # of difflib's ratio: one or two letters of a word
+from roughmdr.wording import near, printable, shown, suggestion
 
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
@@ -55,9 +53,9 @@ def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
 
 
 def _missing_tag(keys: list[str], name: str, choices: list[type[BaseModel]], table: dict[str, Any]) -> Fault:
-    misspelt = difflib.get_close_matches(name, table, n=1, cutoff=_NEAR)
+    misspelt = near(name, table)
     if misspelt:
-        return Fault(".".join([*keys, _printable(misspelt[0])]), "", f"unknown key; did you mean {name!r}?")
+        return Fault(".".join([*keys, printable(misspelt[0])]), "", f"unknown key; did you mean {name!r}?")
     return Fault(".".join([*keys, name]), "", f"is missing; it can be {', '.join(_tags(choices, name))}")
 
 
@@ -73,7 +71,7 @@ def _walk(
     for position, item in enumerate(loc):
         last = position == len(loc) - 1
         if isinstance(data, dict) and (item in data or (last and any(item in s.model_fields for s in inner))):
-            keys.append(_printable(str(item)))
+            keys.append(printable(str(item)))
             holders = inner
             inner = [s for holder in holders if item in holder.model_fields for s in _field_sections(holder, str(item))]
             data = data.get(item)
@@ -93,21 +91,3 @@ def _field_sections(section: type[BaseModel], name: str) -> list[type[BaseModel]
 def _tags(sections: list[type[BaseModel]], discriminator: str) -> list[str]:
     fields = [section.model_fields[discriminator] for section in sections if discriminator in section.model_fields]
     return sorted({str(tag) for field in fields for tag in get_args(field.annotation)})
-
-
-def suggestion(given: str, allowed: list[str]) -> str:
-    """The nearest of the allowed names, or else all of them, as the end of a message."""
-    near = difflib.get_close_matches(given, allowed, n=1, cutoff=_NEAR)
-    if near:
-        return f"; did you mean {near[0]!r}?"
-    return f"; it can be {', '.join(allowed)}"
-
-
-def _printable(key: str) -> str:
-    return key if key.isprintable() else repr(key)
-
-
-def shown(value: object) -> str:
-    """A value as it stands in the scene, cut where it is long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -150,7 +150,6 @@ def test_both_spellings_of_a_swept_key_and_a_key_that_the_scene_leaves_out() -> 
     table["adhesion"] = {"model": "jkr"}
     table["counter"] = {"poisson": 0.3}
     asked = read(table)
-    assert asked.sweep is not None
     assert list(asked.sweep.sizes) == ["adhesion_work", "counter_modulus"]
     assert [cell.work for cell in asked.cells] == [0.01, 0.01, 0.05, 0.05]
     dotted = swept({"adhesion.work": [0.01, 0.05], "counter.modulus": ["1 GPa", "2 GPa"]})
@@ -160,14 +159,12 @@ def test_both_spellings_of_a_swept_key_and_a_key_that_the_scene_leaves_out() -> 
 def test_a_change_makes_a_swept_key_single_or_sweeps_another() -> None:
     table = swept({"adhesion.work": [0.01, 0.05], "asperities.count": [5, 6]})
     fixed = read(table, ["adhesion.work=0.02"])
-    assert fixed.sweep is not None
     assert [axis.key for axis in fixed.sweep.axes] == ["asperities.count"]
     assert {cell.work for cell in fixed.cells} == {0.02}
     alone = read(table, ["adhesion.work=0.02", "asperities.count=7"])
-    assert alone.sweep is None
+    assert alone.sweep.sizes == {}
     assert alone.cells == (alone,)
     more = read(table, ['sweep.asperities.patch=["1 mm","2 mm","3 mm"]', 'sweep."adhesion.work"=[0.03]'])
-    assert more.sweep is not None
     assert more.sweep.sizes == {"adhesion_work": 1, "asperities_count": 2, "asperities_patch": 3}
     assert read(more).toml == more.toml
 
@@ -193,7 +190,6 @@ def test_values_between_two_ends(first: float, last: float, num: int, kind: str)
         return
     kind = "linspace" if kind in "lin" else "logspace"
     asked = read(swept({"adhesion.work": {kind: [first, last], "num": num}}))
-    assert asked.sweep is not None
     values = asked.sweep.axes[0].values
     exact = np.linspace(first, last, num) if kind == "linspace" else np.geomspace(first, last, num)
     assert (values[0], values[-1]) == (first, last)
@@ -203,7 +199,6 @@ def test_values_between_two_ends(first: float, last: float, num: int, kind: str)
 def test_values_between_are_the_round_numbers_that_they_look_like() -> None:
     def values(entry: object, key: str = "adhesion.work") -> list[Any]:
         asked = read(swept({key: entry}))
-        assert asked.sweep is not None
         return list(asked.sweep.axes[0].values)
 
     assert values({"linspace": [0.1, 0.5], "num": 5}) == [0.1, 0.2, 0.3, 0.4, 0.5]
@@ -244,8 +239,8 @@ def test_values_between_are_the_round_numbers_that_they_look_like() -> None:
         ({"asperities.height.distribution": ["normal", "norml"]}, "sweep.asperities.height.dist.*did you mean"),
         ({"asperities.height.distribution": ["normal", "gamma"]}, r"gamma needs a.* \(where asperities.height.distrib"),
         ({"adhesion.model": ["jkr", "jkrr"]}, "sweep.adhesion.model = 'jkrr': not available"),
-        ({"asperities.count": {"linspace": [1, 1001], "num": 1001}, "adhesion.work": {"linspace": [1, 2], "num": 1000}},
-         "sweep: has 1001000 cells; at most 1000000"),
+        ({"asperities.count": {"linspace": [1, 1001], "num": 1001}, "adhesion.work": {"linspace": [1, 2], "num": 100}},
+         "sweep: has 100100 cells; at most 100000"),
     ],
 )  # fmt: skip
 def test_a_wrong_sweep_is_refused(axes: dict[str, Any], says: str) -> None:

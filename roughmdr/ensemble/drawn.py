@@ -1,6 +1,5 @@
 """Distributions as a scene gives them: a plain quantity, or a scipy.stats name with parameters."""
 
-import difflib
 import math
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ from roughmdr.ensemble.families import Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
 from roughmdr.quantities import EntryError, Quantity
 from roughmdr.units import DIMENSIONLESS, quantity
+from roughmdr.wording import near
 
 _FRIENDLY = {
     "normal": "norm",
@@ -66,9 +66,8 @@ class Drawn:
         table = dict(value)
         given = table.pop("distribution", None)
         if given is None:
-            near = difflib.get_close_matches("distribution", table, n=1, cutoff=0.7)
-            if near:
-                raise EntryError(near[0], table[near[0]], "unknown key; did you mean 'distribution'?")
+            for meant in near("distribution", table):
+                raise EntryError(meant, table[meant], "unknown key; did you mean 'distribution'?")
             raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
         if not isinstance(given, str):
             raise EntryError("distribution", given, 'must be a name, like "normal"')
@@ -76,7 +75,9 @@ class Drawn:
         family = find_family(name)
         if family is None:
             raise EntryError(
-                "distribution", given, f"unknown distribution{_near(given)}; any continuous one of scipy.stats will do"
+                "distribution",
+                given,
+                f"not known{_suggestion(given)}; any continuous one of scipy.stats will do",
             )
         allowed = _parameters(family)
         for key, entry in table.items():
@@ -135,6 +136,6 @@ def _listed(numbers: dict[str, float]) -> str:
     return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
 
 
-def _near(name: str) -> str:
-    near = difflib.get_close_matches(name, [*_FRIENDLY, *known_families()], n=3, cutoff=0.6)
-    return f"; did you mean {' or '.join(repr(other) for other in near)}?" if near else ""
+def _suggestion(name: str) -> str:
+    meant = near(name, [*_FRIENDLY, *known_families()], count=3)
+    return f"; did you mean {' or '.join(map(repr, meant))}?" if meant else ""

@@ -34,8 +34,9 @@ def _normal(uniform: Floats) -> Floats:
 
 
 def _log_normal_moments(s: float) -> tuple[float, float]:
-    spread = np.exp(s * s)
-    return float(np.sqrt(spread)), float(spread * (spread - 1.0))
+    with np.errstate(over="ignore"):
+        spread = np.exp(s * s)
+        return float(np.sqrt(spread)), float(spread * (spread - 1.0))
 
 
 _LEAN = {

@@ -1,7 +1,7 @@
 """Dotted keys: which ones a scene can have, what reads the number or name under each, and how to set one in a table."""
 
 from collections.abc import Iterator
-from typing import Any, Literal, NamedTuple, cast, get_args, get_origin
+from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator
 
@@ -68,8 +68,8 @@ def _is_literal(section: type[BaseModel], name: str) -> bool:
 def _reader(declared: tuple[Any, ...]) -> Reader | None:
     """What reads a field, from its annotation and metadata."""
     for part in declared:
-        if isinstance(part, BeforeValidator):
-            return cast(Reader, part.func)
+        if isinstance(part, BeforeValidator) and isinstance(part.func, Reader):
+            return part.func
     for part in declared:
         if part is str or get_origin(part) is Literal:
             return Name()

@@ -1,10 +1,13 @@
 """From a TOML file, a result or a dictionary to a validated scene; every fault is found before anything is computed."""
 
-import copy
 import tomllib
 from collections.abc import Iterable
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
@@ -25,20 +28,21 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     ``changes`` are KEY=VALUE with dotted keys; a value is TOML, or else a string; a key that is set is no longer swept.
     SceneError names every fault by file, line, key, value and what is allowed.
     """
+    changes = list(changes)
     if isinstance(source, Scene):
-        source = tomllib.loads(source.toml)
-    if isinstance(source, dict):
-        path, label, text, table = None, "scene", "", copy.deepcopy(source)
+        if not changes:
+            return source
+        path, label, text, table = source.file, "scene", "", tomllib.loads(source.toml)
+    elif isinstance(source, dict):
+        path, label, text, table = None, "scene", "", _plain(source)
     else:
         path, label, text = Path(source), str(source), _text(Path(source))
         try:
             table = tomllib.loads(text)
         except (ValueError, RecursionError) as error:
             raise SceneError(f"{label}: not valid TOML: {error}") from None
-    if "sweep" in table:
-        table["sweep"] = flatten(table["sweep"])
-    _resolve_paths(table, path.parent if path else Path())
-    changed = _change(table, changes)
+    _settle(table, path.parent if path else Path())
+    changed = {_change(table, change) for change in changes}
     table.setdefault("title", path.stem if path else "scene")
     scene, faults = validate(table, path)
     if faults or scene is None:
@@ -71,27 +75,28 @@ def _scene_of_result(path: Path) -> str:
         raise SceneError(f"{path}: a netCDF file, but no result of roughmdr: it holds no scene ({error})") from None
 
 
-def _change(table: dict[str, Any], changes: Iterable[str]) -> set[str]:
-    changed = set()
-    for change in changes:
-        key, equals, value = change.partition("=")
-        parts = [part.strip().strip("\"'") for part in key.split(".")]
-        if not equals or not all(parts):
-            raise SceneError(f"--set {change}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
-        dotted = ".".join(parts)
-        try:
-            if parts[0] == "sweep" and len(parts) > 1:
-                table["sweep"] = flatten(table.get("sweep", {}))
-                table["sweep"][".".join(parts[1:])] = _value(value)
-            else:
-                put(table, dotted, _value(value))
-                _no_longer_swept(table, dotted)
-        except (RoughmdrError, TypeError) as error:
-            raise SceneError(f"--set {change}: {error}") from None
-        if tuple(parts[-2:]) in _PATHS:
-            _resolve_paths(table, Path())
-        changed.add(dotted)
-    return changed
+def _change(table: dict[str, Any], change: str) -> str:
+    """Make one change; its dotted key."""
+    key, equals, value = change.partition("=")
+    parts = [part.strip().strip("\"'") for part in key.split(".")]
+    if not equals or not all(parts):
+        raise SceneError(f"--set {change}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
+    dotted = ".".join(parts)
+    alone: dict[str, Any] = {}
+    put(alone, dotted, _value(value))
+    _settle(alone, Path())
+    try:
+        if parts[0] == "sweep":
+            sweep = {} if parts == ["sweep"] else table.get("sweep", {})
+            if not isinstance(sweep, dict) or not isinstance(alone["sweep"], dict):
+                raise RoughmdrError("sweep is no table")
+            table["sweep"] = {**sweep, **alone["sweep"]}
+        else:
+            put(table, dotted, reduce(getitem, parts, alone))
+            _no_longer_swept(table, dotted)
+    except RoughmdrError as error:
+        raise SceneError(f"--set {change}: {error}") from None
+    return dotted
 
 
 def _no_longer_swept(table: dict[str, Any], key: str) -> None:
@@ -110,17 +115,30 @@ def _value(text: str) -> Any:
     return table["value"] if len(table) == 1 else text
 
 
-def _resolve_paths(table: dict[str, Any], folder: Path) -> None:
-    def resolved(name: Any) -> Any:
+def _plain(value: Any) -> Any:
+    """What a scene in Python holds, as TOML would hold it: arrays and tuples as lists, numpy's numbers as Python's."""
+    if isinstance(value, dict):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
+
+
+def _settle(table: dict[str, Any], folder: Path) -> None:
+    """Dot the keys of a sweep, and make the names of files absolute, which are relative to ``folder``."""
+
+    def absolute(name: Any) -> Any:
         return str((folder / name).absolute()) if isinstance(name, str) else name
 
+    if "sweep" in table:
+        table["sweep"] = flatten(table["sweep"])
     for section, key in _PATHS:
         inner, sweep = table.get(section), table.get("sweep")
         if isinstance(inner, dict) and key in inner:
-            inner[key] = resolved(inner[key])
+            inner[key] = absolute(inner[key])
         swept = f"{section}.{key}"
         if isinstance(sweep, dict) and isinstance(sweep.get(swept), list):
-            sweep[swept] = [resolved(name) for name in sweep[swept]]
+            sweep[swept] = [absolute(name) for name in sweep[swept]]
 
 
 def _located(fault: Fault, label: str, lines: dict[str, int], changed: set[str]) -> Fault:

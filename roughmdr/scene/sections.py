@@ -100,7 +100,7 @@ class Scene(Section):
     path: Path
     output: Output = Output()
     batch: Batch = Batch()
-    sweep: InstanceOf[Sweep] | None = None
+    sweep: InstanceOf[Sweep] = Sweep()
 
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
     _file: FilePath | None = PrivateAttr(default=None)
@@ -164,6 +164,11 @@ class Scene(Section):
     def work(self) -> float:
         """Work of adhesion [J/m^2]; 0 without adhesion."""
         return 0.0 if self.adhesion is None else self.adhesion.work
+
+    @property
+    def file(self) -> FilePath | None:
+        """The file that the scene was read from, if from one."""
+        return self._file
 
     @property
     def inputs(self) -> tuple[FilePath, ...]:

@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.faults import shown, suggestion
 from roughmdr.labelled import Array
-from roughmdr.quantities import Reader, WholeNumber
+from roughmdr.quantities import EntryError, Reader, WholeNumber
 from roughmdr.scene.path import Separation
 from roughmdr.units import DIMENSIONLESS, udunits
+from roughmdr.wording import shown, suggestion
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities")
 _PATH = ("path.separation.start", "path.separation.stop")
 _FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
 _NUM = WholeNumber(2, 100_000)
-_MOST_CELLS = 1_000_000
+_MOST_CELLS = 100_000
 _DIGITS = 15  # of the values between two ends, so that 0.3 is 0.3 and can be selected
 
 
@@ -41,13 +41,21 @@ class Axis(NamedTuple):
         """Of its coordinate."""
         return self.key.replace(".", "_")
 
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers, and not names."""
+        return self.values.dtype.kind != "U"
+
 
 @dataclass(frozen=True)
 class Sweep:
-    """The cells of a sweep: all combinations of the axes' values, or the first of each, the second of each, ..."""
+    """The cells of a sweep: all combinations of the axes' values, or the first of each, the second of each, ...
 
-    mode: Literal["product", "zip"]
-    axes: tuple[Axis, ...]
+    Without axes it has one cell and no dimension.
+    """
+
+    mode: Literal["product", "zip"] = "product"
+    axes: tuple[Axis, ...] = ()
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -67,10 +75,15 @@ class Sweep:
         """The swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
-            unit = {"units": udunits(axis.unit)} if axis.unit else {}
+            unit = {"units": udunits(axis.unit)} if axis.numeric else {}
             dimension = "cell" if self.mode == "zip" else axis.name
             coordinates[axis.name] = Array((dimension,), axis.values, {**unit, "long_name": axis.long_name})
         return coordinates
+
+
+def in_words(cell: dict[str, object]) -> str:
+    """What stands under the swept keys of a cell."""
+    return ", ".join(f"{key} = {value}" for key, value in cell.items())
 
 
 def flatten(table: object) -> object:
@@ -105,28 +118,23 @@ def read_sweep(table: object, known: dict[str, Reader]) -> tuple[Sweep | None, l
             continue
         try:
             axes.append(_axis(key, value, allowed, ordered=mode == "product"))
-        except _Faulty as error:
-            faults.append(error.fault)
+        except EntryError as error:
+            value_shown = "" if error.value is None else shown(error.value)
+            faults.append(Fault(f"sweep.{error.key}", value_shown, str(error)))
     faults += _misfits(mode, axes) if axes else []
     if not axes and not faults:
         faults.append(Fault("sweep", "", 'names no key to sweep, like "adhesion.work" = ["10 mJ/m^2", "50 mJ/m^2"]'))
     return (None, faults) if faults else (Sweep(mode, tuple(axes)), [])
 
 
-class _Faulty(Exception):  # noqa: N818 - it carries the fault
-    def __init__(self, key: str, value: object, message: str) -> None:
-        super().__init__(message)
-        self.fault = Fault(f"sweep.{key}", "" if value is None else shown(value), message)
-
-
 def _axis(key: str, value: object, allowed: dict[str, Reader], *, ordered: bool) -> Axis:
     reader = allowed.get(key)
     if reader is None:
         hint = suggestion(key, sorted(allowed))
-        raise _Faulty(key, None, f"is no number or name of the scene that can be swept{hint}")
+        raise EntryError(key, None, f"is no number or name of the scene that can be swept{hint}")
     entries = _between(key, value, reader) if isinstance(value, dict) else value
     if not isinstance(entries, list) or not entries:
-        raise _Faulty(key, value, _FORMS)
+        raise EntryError(key, value, _FORMS)
     numbers, in_sigma = _numbers(key, entries, reader)
     unit, long_name = reader.dimension, f"swept {key}"
     if in_sigma:
@@ -134,9 +142,9 @@ def _axis(key: str, value: object, allowed: dict[str, Reader], *, ordered: bool)
     if not ordered:
         return Axis(key, tuple(entries), np.array(numbers), unit, long_name)
     if len(set(numbers)) < len(numbers):
-        raise _Faulty(key, value, "holds a value twice; a dimension needs each once")
+        raise EntryError(key, value, "holds a value twice; a dimension needs each once")
     order = list(range(len(numbers)))
-    if unit and numbers != sorted(numbers, reverse=True):
+    if not isinstance(numbers[0], str) and numbers != sorted(numbers, reverse=True):
         order.sort(key=numbers.__getitem__)  # a coordinate rises or falls (CF-1.11, section 1.3)
     return Axis(key, tuple(entries[i] for i in order), np.array([numbers[i] for i in order]), unit, long_name)
 
@@ -150,11 +158,11 @@ def _numbers(key: str, entries: list[object], reader: Reader) -> tuple[list[Any]
                 raise RoughmdrError("expected a number or a name")
             number = reader(entry)
         except RoughmdrError as error:
-            raise _Faulty(f"{key}[{i}]", entry, str(error)) from None
+            raise EntryError(f"{key}[{i}]", entry, str(error)) from None
         in_sigma.add(isinstance(number, Separation) and number.in_sigma)
         numbers.append(number.value if isinstance(number, Separation) else getattr(number, "constant", number))
     if len(in_sigma) > 1:
-        raise _Faulty(key, entries, "must be all in metres or all in sigma")
+        raise EntryError(key, entries, "must be all in metres or all in sigma")
     return numbers, in_sigma.pop()
 
 
@@ -162,26 +170,26 @@ def _between(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
     """The entries that linspace or logspace stand for; both ends as they were given."""
     kind = next((kind for kind in ("linspace", "logspace") if kind in table), None)
     if kind is None or table.keys() - {kind, "num"}:
-        raise _Faulty(key, table, _FORMS)
+        raise EntryError(key, table, _FORMS)
     ends = table[kind]
     if not isinstance(ends, list) or len(ends) != 2 or not reader.dimension:
-        raise _Faulty(f"{key}.{kind}", ends, "must be two numbers, [first, last]")
+        raise EntryError(f"{key}.{kind}", ends, "must be two numbers, [first, last]")
     if "num" not in table:
-        raise _Faulty(f"{key}.num", None, "is missing")
+        raise EntryError(f"{key}.num", None, "is missing")
     try:
         num = _NUM(table["num"])
     except RoughmdrError as error:
-        raise _Faulty(f"{key}.num", table["num"], str(error)) from None
+        raise EntryError(f"{key}.num", table["num"], str(error)) from None
     (first, last), in_sigma = _numbers(f"{key}.{kind}", ends, reader)
     if kind == "logspace" and not (first > 0.0 and last > 0.0):
-        raise _Faulty(f"{key}.{kind}", ends, "must be above 0")
+        raise EntryError(f"{key}.{kind}", ends, "must be above 0")
     if not math.isfinite(last - first):
-        raise _Faulty(f"{key}.{kind}", ends, "are too far apart")
+        raise EntryError(f"{key}.{kind}", ends, "are too far apart")
     space = np.linspace(first, last, num) if kind == "linspace" else np.geomspace(first, last, num)
     inner: list[Any] = [float(f"{value:.{_DIGITS}g}") for value in space[1:-1]]
     if isinstance(reader, WholeNumber):
         if any(not value.is_integer() for value in inner):
-            raise _Faulty(key, table, "must give whole numbers")
+            raise EntryError(key, table, "must give whole numbers")
         inner = [int(value) for value in inner]
     if in_sigma:
         inner = [f"{value!r} sigma" for value in inner]

@@ -1,0 +1,31 @@
+"""Small parts of messages: values as they stand in a scene, and names that may have been meant."""
+
+from collections.abc import Iterable
+
+_NEAR = 0.7  # of difflib's ratio: one or two letters of a word
+
+
+def near(given: str, allowed: Iterable[str], count: int = 1) -> list[str]:
+    """Those of the allowed names that are most like a given one."""
+    import difflib
+
+    return difflib.get_close_matches(given, list(allowed), n=count, cutoff=_NEAR)
+
+
+def suggestion(given: str, allowed: list[str]) -> str:
+    """The nearest of the allowed names, or else all of them, as the end of a message."""
+    meant = near(given, allowed)
+    if meant:
+        return f"; did you mean {meant[0]!r}?"
+    return f"; it can be {', '.join(allowed)}"
+
+
+def printable(key: str) -> str:
+    """A key on one line, with nothing that a terminal would act on."""
+    return key if key.isprintable() else repr(key)
+
+
+def shown(value: object) -> str:
+    """A value as it stands in the scene, cut where it is long."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
