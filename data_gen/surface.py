@@ -5,6 +5,8 @@
 The spectrum is C(q) ~ q^(-2 (1 + H)) between the long- and the short-wave cut-off; phases and amplitudes are random.
 """
 
+import shlex
+import sys
 from pathlib import Path
 
 import click
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.labelled import Labelled
-from roughmdr.store import write
+from roughmdr.store import provenance, write
 from roughmdr.units import quantity
 
 
@@ -60,11 +62,14 @@ def main(
     try:
         side = _length(size)
         height = self_affine(points, side, _length(rms), hurst, _length(long_wave), _length(short_wave), seed)
-        at = ((np.arange(points) + 0.5) * side / points, {"units": "m"})
+        at = ((np.arange(points) + 0.5) * side / points, {"units": "m", "long_name": "position"})
         dataset = xr.Dataset(
             {"height": (("x", "y"), height, {"units": "m", "long_name": "surface height"})},
             coords={"x": ("x", *at), "y": ("y", *at)},
-            attrs={"title": f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}"},
+            attrs=provenance(
+                f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}",
+                f"surface.py {shlex.join(sys.argv[1:])}",
+            ),
         )
         output.parent.mkdir(parents=True, exist_ok=True)
         write(Labelled.of(dataset), output)

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.arguments import Floats
 from roughmdr.errors import StoreError
@@ -14,25 +15,42 @@ if TYPE_CHECKING:
 
 
 class PullOff(NamedTuple):
-    """The pull-off force [N] of each cell of a result: the largest tension along the path, 0 where there is none."""
+    """The pull-off force [N] of each cell of a result: the largest tension while the flat retracts, 0 where none is."""
 
     mean: Floats
-    """Over the realisations."""
+    """Over the realisations; of the mean curve, where the realisations were not kept."""
     standard_error: Floats
     """NaN for a single realisation, which has none."""
-    of_the_mean: bool
-    """Whether it is the lowest point of the mean curve, since the realisations were not kept."""
+    change: Floats
+    """By how much, on average, the force changes there to the next step of the path: how well the path resolves it."""
+    tensile: NDArray[np.int64]
+    """How many of the curves are tensile at all."""
+    curves: int
+    """How many curves there are: the realisations, or one."""
 
 
 def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
-    """The pull-off force of a result, over its swept dimensions. StoreError without a force."""
-    arrays = result.variables
-    if "force" in arrays:
-        lowest = np.minimum(np.min(arrays["force"].values, axis=-1), 0.0)
-        return PullOff(*mean_and_error(lowest, axis=-1), of_the_mean=False)
-    if "force_mean" in arrays:
-        mean, error = arrays["force_mean"].values, arrays["force_sem"].values
-        where = np.argmin(mean, axis=-1)[..., None]
-        lowest, at = (np.take_along_axis(values, where, axis=-1)[..., 0] for values in (mean, error))
-        return PullOff(np.minimum(lowest, 0.0), np.where(lowest < 0.0, at, 0.0), of_the_mean=True)
-    raise StoreError("the result holds no force: add it to output.variables")
+    """The pull-off force of a result, over its swept dimensions.
+
+    StoreError where the result holds no force, or where its flat never retracts.
+    """
+    data = result if isinstance(result, Labelled) else Labelled.of(result)
+    held = data.coordinates | data.variables
+    retracting = np.flatnonzero(held["branch"].values == "unloading")
+    if not retracting.size:
+        raise StoreError("the flat never retracts, so that nothing is pulled off: add path.unload = true")
+    if "force" in held:
+        force = held["force"].values[..., retracting]
+    elif "force_mean" in held:
+        force = held["force_mean"].values[..., None, retracting]
+    else:
+        raise StoreError("the result holds no force: add it to output.variables")
+    where = np.argmin(force, axis=-1)[..., None]
+    lowest = np.take_along_axis(force, where, axis=-1)[..., 0]
+    mean, error = mean_and_error(np.minimum(lowest, 0.0), axis=-1)
+    if "force" not in held:
+        at_lowest = np.take_along_axis(held["force_sem"].values[..., None, retracting], where, axis=-1)
+        error = np.where(mean < 0.0, at_lowest[..., 0, 0], 0.0)
+    steps = np.abs(np.diff(force, axis=-1, append=force[..., -1:], prepend=force[..., :1]))
+    beside = np.maximum(*(np.take_along_axis(steps, where + i, axis=-1)[..., 0] for i in (0, 1)))
+    return PullOff(mean, error, beside.mean(axis=-1), (lowest < 0.0).sum(axis=-1), force.shape[-2])

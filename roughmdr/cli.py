@@ -163,8 +163,11 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
     from roughmdr.store import check_writable, provenance, write
 
     asked = read(scene, changes)
-    if asked.sweep is not None and (keys := [axis.key for axis in asked.sweep.axes if "asperities" in axis.key]):
-        raise SceneError(f"sweep: changes {keys[0]} from cell to cell; say which with --set {keys[0]}=VALUE")
+    for axis in asked.sweep.axes:
+        if axis.key.startswith("asperities."):
+            raise SceneError(f"sweep: changes {axis.key} from cell to cell; say which with --set {axis.key}=VALUE")
+    if realization > 0 and not asked.asperities.drawn:
+        raise SceneError(f"--realization {realization}: a measured surface has only one, 0")
     check_writable(output, asked.inputs)
     made = asked.asperities.ensemble(asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)

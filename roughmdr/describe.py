@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.analysis import PullOff, pull_off_force
-from roughmdr.curves import held_variables, swept_dimensions
 from roughmdr.labelled import Labelled
+from roughmdr.views import cell_label, cells_of, held_variables, realizations_of, swept_sizes
 
 if TYPE_CHECKING:
     from roughmdr.estimate import Estimate
     from roughmdr.plan import Plan
 
-_MOST_CELLS = 20
+_MOST_CELLS = 30
 
 
 def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
@@ -22,7 +22,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
     steps = plan.cells[0].route.separation.size
     lines = [
         ("scene", plan.scene.title),
-        ("runs", f"{_sizes(plan.sizes, plan.scene.batch.realizations, steps)} ({plan.runs} runs)"),
+        ("runs", f"{_sizes(plan.sizes, plan.scene.batch.realizations, steps)}: {plan.runs} in all"),
         ("output", f"{', '.join(plan.scene.output.variables)}; {plan.scene.output.keep}; {_bytes(estimate.file)}"),
         ("tasks", f"{len(plan.tasks)} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {_seconds(estimate.seconds)}, of them {_seconds(estimate.start_up)} to start"),
@@ -35,11 +35,11 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     """What a result holds; ``elapsed`` [s] is the time that it took in all."""
     attrs = result.attrs
     realizations, steps = realizations_of(result), result.sizes["step"]
-    swept = {name: result.sizes[name] for name in swept_dimensions(result)}
     lines = [
-        ("computed", f"{attrs['title']}: {_sizes(swept, realizations, steps)}"),
+        ("computed", f"{attrs['title']}: {_sizes(swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(held_variables(result))),
-        *_pull_off(result, realizations),
+        *_pull_off(result),
+        *_open_ends(result),
         ("run time", _run_time(result, elapsed)),
         ("error", f"numerical error at most {_array(result, 'numerical_error').max():.1e} of the largest force"),
     ]
@@ -61,13 +61,6 @@ def describe_origin(result: Labelled, size: float) -> str:
     return _table([*lines, *_several("scene", tuple(attrs["scene"].strip().splitlines()))])
 
 
-def realizations_of(result: Labelled) -> int:
-    """How many realisations a result is made from."""
-    if "realization_count" in result.variables:
-        return int(_array(result, "realization_count").max())
-    return result.sizes["realization"]
-
-
 def _array(result: Labelled, name: str) -> np.ndarray:
     return result.variables[name].values
 
@@ -78,54 +71,52 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
 
 
 def _run_time(result: Labelled, elapsed: float | None) -> str:
-    inside = f"{_seconds(float(_array(result, 'run_time').sum()))} in the realisations"
-    return inside if elapsed is None else f"{_seconds(elapsed)}, of them {inside}"
+    inside = f"{_seconds(float(_array(result, 'run_time').sum()))} of work in the realisations"
+    return inside if elapsed is None else f"{_seconds(elapsed)}; {inside}, over all workers"
 
 
-def _pull_off(result: Labelled, realizations: int) -> Iterator[tuple[str, str]]:
+def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
+    """The pull-off force of each cell, and what it is."""
     if "force" not in held_variables(result):
         return
-    pull_off = pull_off_force(result)
-    what = "at the lowest point of the mean curve" if pull_off.of_the_mean else "mean"
-    note = f"{what}, and its standard error over {realizations} realisations"
-    if realizations == 1:
-        note = "one realisation: no standard error"
-    cells = cells_of(result)
-    if len(cells) == 1:
-        yield "pull-off", f"{_force(pull_off, cells[0])} ({note})"
+    if "unloading" not in result.coordinates["branch"].values:
+        yield "pull-off", "none: the flat never retracts"
         return
-    yield "pull-off", note
+    pull_off = pull_off_force(result)
+    cells = cells_of(result)
     forces = [_force(pull_off, cell) for cell in cells[:_MOST_CELLS]]
     width = max(map(len, forces))
-    for force, cell in zip(forces, cells, strict=False):
-        yield "", f"{force:<{width}}  {cell_label(result, cell)}"
+    for number, (force, cell) in enumerate(zip(forces, cells, strict=False)):
+        yield "" if number else "pull-off", f"{force:<{width}}  {cell_label(result, cell)}".rstrip()
     if len(cells) > _MOST_CELLS:
         yield "", f"... and {len(cells) - _MOST_CELLS} cells more"
+    what = "largest tension of each realisation on the way back, or 0: mean ± standard error"
+    if "force" not in result.variables:
+        what = "largest tension of the mean curve on the way back ± its standard error there"
+    elif realizations_of(result) == 1:
+        what = "largest tension on the way back; one realisation has no standard error"
+    yield "", f"({what}; in brackets its change to the next step of the path)"
 
 
 def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
     mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
-    if mean == 0.0:
-        return "none: the force is never tensile"
-    return f"{mean:.4g} N" if math.isnan(error) else f"{mean:.4g} N ± {error:.2g} N"
+    tensile = int(pull_off.tensile[cell])
+    if tensile == 0:
+        return "none: never tensile"
+    some = "" if tensile == pull_off.curves else f", {tensile} of {pull_off.curves} tensile"
+    return f"{mean:.4g} N{'' if math.isnan(error) else f' ± {error:.2g} N'} [{pull_off.change[cell]:.1g} N]{some}"
 
 
-def cells_of(result: Labelled) -> list[tuple[int, ...]]:
-    """The indices of each cell, the last swept dimension fastest; one, empty, without a sweep."""
-    return list(np.ndindex(*(result.sizes[name] for name in swept_dimensions(result))))
-
-
-def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
-    """The swept values of a cell."""
-    names = swept_dimensions(result)
-    parts = []
-    for name, array in result.coordinates.items():
-        if name not in ("separation", "branch"):
-            value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
-            unit = array.attrs.get("units", "1")
-            shown = value if isinstance(value, str) else f"{value:.4g}"
-            parts.append(f"{name} = {shown}{'' if unit == '1' else f' {unit}'}")
-    return ", ".join(parts)
+def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:
+    """A remark where the path begins or ends with contacts."""
+    name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
+    if name not in result.variables:
+        return
+    count = result.variables[name].values
+    first, last = (int((count[..., step] > 0.0).sum()) for step in (0, -1))
+    if first or last:
+        curves = count[..., 0].size
+        yield "note", f"in contact at the first step in {first}, at the last in {last} of {curves} curves"
 
 
 def _several(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:

@@ -3,37 +3,32 @@
 import os
 import subprocess
 import sys
+import tempfile
 import time
 import tracemalloc
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import tomli_w
 
-from roughmdr.aggregate import Route, compute, prepare
-from roughmdr.ensemble import RandomAsperities
-from roughmdr.plan import Cell, Plan, kinds
+from roughmdr.aggregate import Route, compute
+from roughmdr.errors import RoughmdrError
+from roughmdr.plan import Cell, Plan, prepare_all
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
 _STEPS = 500
 _CELLS = 12
+_REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
 
-# What a run loads, in a process of its own: the compiled sum, the workers, the file format.
-_START = """
-import roughmdr.cli, roughmdr.runner, dask.threaded, dask.callbacks, netCDF4, sys
-from roughmdr.aggregate import prepare
-for kind in sys.argv[1:]:
-    shape, adhesive = kind.split(":")
-    prepare(shape, adhesive=adhesive == "True")
-try:
-    import resource
-except ImportError:
-    print(0)
-else:
-    unit = 1 if sys.platform == "darwin" else 1024
-    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
-"""
+# As little as a run can be; all else that it takes is to start.
+_SMALLEST = {
+    "material": {"effective_modulus": 1e6},
+    "asperities": {"source": "random", "shape": "paraboloid", "count": 1, "patch": 1.0, "height": 0.0, "radius": 1.0},
+    "path": {"separation": [0.0]},
+}
 
 
 class Estimate(NamedTuple):
@@ -57,21 +52,21 @@ class _Cost(NamedTuple):
 
 
 def estimate(plan: Plan, workers: int) -> Estimate:
-    """The cost of a plan, from single runs of a few of its cells and from starting Python once."""
-    for shape, adhesive in kinds(plan):
-        prepare(shape, adhesive=adhesive)
-    start_up, resident = _start_up(plan)
+    """The cost of a plan, from single runs of a few of its cells and from a run of next to nothing."""
+    prepare_all(plan)
+    start_up, resident = _start_up(), _resident()
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
     costs = [_cost(plan, plan.cells[i]) for i in sorted(chosen.tolist())]
     busy = min(workers, len(plan.tasks), _cores())
-    numbers = plan.cells[0].route.separation.size * len(plan.scene.output.variables)
-    curves = _NUMBER * numbers * plan.runs
-    one = curves / len(plan.scene.output.variables)  # the parts of a variable are put together beside them
-    kept = curves if plan.scene.output.keep == "curves" else 4 * _NUMBER * numbers * len(plan.cells)
+    variables = plan.scene.output.variables
+    one = _NUMBER * plan.cells[0].route.separation.size  # curve
+    curves = one * len(variables) * plan.runs
+    kept = curves if plan.scene.output.keep == "curves" else 4 * one * len(variables) * len(plan.cells)
+    beside = one * plan.runs  # the parts of a variable are put together beside all
     return Estimate(
         seconds=start_up + float(np.mean([cost.seconds for cost in costs])) * plan.runs / busy + kept / _DISK,
         start_up=start_up,
-        memory=resident + curves + one + min(workers, len(plan.tasks)) * max(cost.memory for cost in costs),
+        memory=resident + curves + beside + min(workers, len(plan.tasks)) * max(cost.memory for cost in costs),
         resident=resident,
         file=kept,
     )
@@ -79,11 +74,8 @@ def estimate(plan: Plan, workers: int) -> Estimate:
 
 def _cost(plan: Plan, cell: Cell) -> _Cost:
     """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
-    scene, route, part = cell.scene, cell.route, 1.0
-    section = scene.asperities
-    if isinstance(section, RandomAsperities) and section.count > _SAMPLE:
-        part = section.count / _SAMPLE
-        section = section.model_copy(update={"count": _SAMPLE})
+    scene, route = cell.scene, cell.route
+    section = scene.asperities.sampled(_SAMPLE)
     steps = route.separation.size
     if steps > _STEPS:
         some = np.linspace(0, steps - 1, _STEPS).astype(int)
@@ -100,16 +92,31 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     run()
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    making, adding = min(run() for _ in range(2))
+    making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
+    part = scene.asperities.count / section.count
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 
 
-def _start_up(plan: Plan) -> tuple[float, float]:
-    """Seconds and bytes of a run before it begins."""
-    command = [sys.executable, "-c", _START, *(f"{shape}:{adhesive}" for shape, adhesive in kinds(plan))]
-    started = time.perf_counter()
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return time.perf_counter() - started, float(done.stdout)
+def _start_up() -> float:
+    """Seconds that a run of next to nothing takes."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene = Path(folder) / "scene.toml"
+        scene.write_text(tomli_w.dumps(_SMALLEST))
+        command = [sys.executable, "-P", "-m", "roughmdr", "run", str(scene), "-o", str(scene.with_suffix(".nc"))]
+        started = time.perf_counter()
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise RoughmdrError(f"a run of next to nothing does not work here: {done.stderr.strip()}")
+    return time.perf_counter() - started
+
+
+def _resident() -> float:
+    """Bytes of this process at most so far; it has loaded nearly all that a run loads."""
+    try:
+        import resource
+    except ImportError:  # no Unix
+        return 0.0
+    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024))
 
 
 def _cores() -> int:

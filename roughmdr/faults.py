@@ -24,7 +24,7 @@ def sections_of(annotation: Any) -> list[type[BaseModel]]:
 def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
     keys, holders, choices = _walk(fault["loc"], data, declared)
     context = fault.get("ctx", {})
-    value = shown(fault["input"])
+    value = "" if isinstance(fault["input"], dict) and fault["type"] == "value_error" else shown(fault["input"])
     match fault["type"]:
         case "misfit":
             return Fault(context["key"], "", context["message"])

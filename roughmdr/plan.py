@@ -2,15 +2,16 @@
 
 from collections import Counter
 from collections.abc import Iterator
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import Route
-from roughmdr.ensemble import RandomAsperities
+from roughmdr.aggregate import Route, prepare
 from roughmdr.errors import SceneError
 from roughmdr.labelled import Array
 from roughmdr.scene import Scene
+from roughmdr.scene.sweep import in_words
 from roughmdr.variables import COORDINATES, LAW
 
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
@@ -45,35 +46,47 @@ class Plan(NamedTuple):
     @property
     def sizes(self) -> dict[str, int]:
         """The swept dimensions, in their order."""
-        return {} if self.scene.sweep is None else self.scene.sweep.sizes
+        return self.scene.sweep.sizes
 
     def run(self, number: int) -> tuple[Cell, int]:
         """The cell and the realisation of a run."""
         cell, realization = divmod(number, self.scene.batch.realizations)
         return self.cells[cell], realization
 
+    def name_of(self, number: int) -> str:
+        """A run in words."""
+        cell, realization = divmod(number, self.scene.batch.realizations)
+        values = next(islice(self.scene.sweep.cells(), cell, None))
+        return ", ".join([*([in_words(values)] if values else []), f"realisation {realization}"])
+
     def coordinates(self) -> dict[str, Array]:
         """The swept values, the separation over those of them that change it, and the branch."""
-        swept = {} if self.scene.sweep is None else self.scene.sweep.coordinates()
-        separation = np.array([cell.route.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
-        dims: list[str] = []
-        for axis, name in reversed(list(enumerate(self.sizes))):
-            first = separation.take([0], axis)
-            if (separation == first).all():
-                separation = first.squeeze(axis)
-            else:
-                dims.insert(0, name)
         return {
-            **swept,
-            "separation": Array((*dims, "step"), separation, COORDINATES["separation"].attrs),
+            **self.scene.sweep.coordinates(),
+            "separation": self._separation(),
             "branch": self.cells[0].route.branch(),
         }
+
+    def _separation(self) -> Array:
+        first = self.cells[0].route
+        if all(cell.route is first for cell in self.cells):
+            return Array(("step",), first.separation, COORDINATES["separation"].attrs)
+        separation = np.array([cell.route.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
+        dims = ["step"]
+        for axis, name in reversed(list(enumerate(self.sizes))):
+            one = separation.take([0], axis)
+            if (separation == one).all():
+                separation = one.squeeze(axis)
+            else:
+                dims.insert(0, name)
+        return Array(tuple(dims), separation, COORDINATES["separation"].attrs)
 
 
 def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
     """The plan of a scene; ``chunk`` runs a task, by default as many as make a task worth its overhead.
 
-    SceneError where the way of the flat cannot be laid out, or where two cells go different ways, in and out.
+    SceneError where a map cannot be read, the way of the flat cannot be laid out, or two cells go different ways, in
+    and out.
     """
     cells = tuple(_cells(scene))
     runs = len(cells) * scene.batch.realizations
@@ -83,17 +96,18 @@ def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
 
 def _cells(scene: Scene) -> Iterator[Cell]:
     known: dict[tuple[bytes, bool], Route] = {}
-    first: Route | None = None
-    for cell in scene.cells:
+    branches: list[str] = []
+    for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         way_in = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = way_in.tobytes(), cell.work > 0.0
         if key not in known:
             known[key] = Route.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
-        route = known[key]
-        first = first or route
-        if route is not first and route.branch().values.tolist() != first.branch().values.tolist():
-            raise SceneError("sweep: the flat comes closer in some cells where it goes away in others")
-        yield Cell(cell, route)
+            found = known[key].branch().values.tolist()
+            branches = branches or found
+            if found != branches:
+                other = f"sweep: with {in_words(values)} the flat goes another way, in or out,"
+                raise SceneError(f"{other} than in the first cell")
+        yield Cell(cell, known[key])
 
 
 def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
@@ -114,14 +128,13 @@ def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
 
 
 def _seconds(cell: Cell) -> float:
-    section = cell.scene.asperities
-    count = section.count if isinstance(section, RandomAsperities) else 1000
-    return count * (_DRAW + _VISIT * cell.route.separation.size)
+    return cell.scene.asperities.count * (_DRAW + _VISIT * cell.route.separation.size)
 
 
-def kinds(plan: Plan) -> list[tuple[str, bool]]:
-    """The shapes that a plan adds up, each without and with adhesion as the cells have it."""
-    return sorted({(cell.scene.asperities.shape, cell.scene.work > 0.0) for cell in plan.cells})
+def prepare_all(plan: Plan) -> None:
+    """Compile the sums that a plan needs, once, before several threads or a clock need them."""
+    for shape, adhesive in {(cell.scene.asperities.shape, cell.scene.work > 0.0) for cell in plan.cells}:
+        prepare(shape, adhesive=adhesive)
 
 
 def left_out(scene: Scene) -> list[str]:
@@ -138,12 +151,12 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "adhesion: adhesion.work is 0"
     if scene.work == 0.0:
         yield "hysteresis: without adhesion a contact has no memory"
-    if isinstance(scene.asperities, RandomAsperities):
+    if scene.asperities.drawn:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in LAW if name not in scene.output.variables]
     if unasked:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
-        yield "curves of the realisations: output.keep is 'statistics'"
+        yield "curves of the realisations: not stored, output.keep is 'statistics'"
     yield "asperities out of reach: not visited"

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.curves import Curve, curves, held_variables
-from roughmdr.describe import cell_label, cells_of, realizations_of
+from roughmdr.curves import Curve, curves
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.store import replacing
 from roughmdr.variables import LAW
+from roughmdr.views import cell_label, cells_of, held_variables, realizations_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,8 +38,8 @@ def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> No
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     cells = cells_of(result)
-    beside = 3.2 if len(cells) > 1 else 0.0
-    figure = Figure(figsize=(5.2 * columns + beside, 3.6 * rows + 0.4), layout="constrained")
+    below = 0.2 * min(len(cells), _MOST_LABELS) if len(cells) > 1 else 0.0
+    figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + below), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     labels = [cell_label(result, cell) for cell in cells]
     for ax, name in zip(axes.flat, names, strict=False):
@@ -47,11 +47,15 @@ def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> No
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     if len(cells) > 1:
-        figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside right upper", frameon=False, fontsize=8)
+        handles, shown = axes.flat[0].get_legend_handles_labels()
+        figure.legend(handles, shown, loc="outside lower left", frameon=False, fontsize=8)
     else:
         axes.flat[0].legend(frameon=False)
     count = realizations_of(result)
     note = f"{count} realisations, mean ± 2 standard errors" if count > 1 else "one realisation"
+    if len(cells) > 1:
+        note += ", unloading dashed"
+        note += f", {len(shown)} of {len(cells)} cells named" if len(shown) < len(cells) else ""
     figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11, parse_math=False)
     suffix = path.suffix.lstrip(".").lower() or "png"
     if suffix not in figure.canvas.get_supported_filetypes():
@@ -70,7 +74,8 @@ def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str]) -> None:
         style = _style(curve, labels)
         if len(labels) == 1 and curve.runs.size:
             ax.plot(h, curve.runs.T / scale, color=style["color"], lw=0.3, alpha=0.25)
-        ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=style["color"], alpha=0.3, lw=0)
+        if name != "stiffness" or curve.branch == "loading":  # where contacts let go its variance is infinite
+            ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=style["color"], alpha=0.3, lw=0)
         ax.plot(h, mean, lw=1.8 if len(labels) == 1 else 1.2, **style)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)

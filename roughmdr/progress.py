@@ -10,7 +10,7 @@ _SECONDS_BETWEEN_LINES = 10.0
 
 
 class Advance(Protocol):
-    """Tells that ``count`` more realisations are done."""
+    """Tells that ``count`` more runs are done."""
 
     def __call__(self, count: int) -> None:
         """Count on."""
@@ -18,7 +18,7 @@ class Advance(Protocol):
 
 @contextmanager
 def progress(title: str, total: int, *, quiet: bool) -> Iterator[Advance]:
-    """A display on the standard error stream for ``total`` realisations."""
+    """A display on the standard error stream for ``total`` runs."""
     if quiet:
         yield lambda count: None
     elif sys.stderr.isatty():
@@ -48,6 +48,6 @@ def _lines(title: str, total: int) -> Advance:
         now = time.monotonic()
         if done == total or now - said >= _SECONDS_BETWEEN_LINES:
             said = now
-            print(f"{title}: {done} of {total} realisations", file=sys.stderr, flush=True)
+            print(f"{title}: {done} of {total} runs", file=sys.stderr, flush=True)
 
     return advance

@@ -30,9 +30,7 @@ def assemble(plan: Plan, variables: dict[str, Floats], run_time: Floats, error: 
         data = {name: Array((*dims, "step"), values, LAW[name].attrs) for name, values in curves.items()}
     else:
         dims, count = swept, float(scene.batch.realizations)
-        snaps = coordinates["branch"].values == "unloading"
-        if not any(cell.scene.work > 0.0 for cell in plan.cells):
-            snaps[:] = False
+        snaps = np.array([cell.route.snaps() for cell in plan.cells]).reshape(*shape[:-1], -1)
         for name in list(curves):
             data |= summarise(name, (*dims, "step"), curves.pop(name), snaps)
         data["realization_count"] = Array(dims, np.full(shape[:-1], count), RUN["realization_count"].attrs)

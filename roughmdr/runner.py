@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import compute, prepare
+from roughmdr.aggregate import compute
 from roughmdr.arguments import Floats
 from roughmdr.errors import RoughmdrError
 from roughmdr.labelled import Labelled
-from roughmdr.plan import Plan, kinds, make_plan
+from roughmdr.plan import Plan, make_plan, prepare_all
 from roughmdr.progress import Advance, progress
 from roughmdr.result import assemble
 from roughmdr.scene import Scene, read
@@ -56,8 +56,7 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
     """Do what a plan says; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
     if target is not None:
         check_writable(target, plan.scene.inputs)
-    for shape, adhesive in kinds(plan):
-        prepare(shape, adhesive=adhesive)
+    prepare_all(plan)
     with progress(plan.scene.title, plan.runs, quiet=quiet) as advance:
         shards = _over_threads(plan, workers, advance) if len(plan.tasks) > 1 else _here(plan, advance)
     variables = {
@@ -107,7 +106,10 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
         (scene, route), realization = plan.run(number)
         started = time.perf_counter()
         ensemble = scene.asperities.ensemble(scene.seed, realization)
-        result = compute(ensemble, route, modulus=scene.modulus, work=scene.work, variables=names)
+        try:
+            result = compute(ensemble, route, modulus=scene.modulus, work=scene.work, variables=names)
+        except RoughmdrError as error:
+            raise type(error)(f"{plan.name_of(number)}: {error}") from None
         for name in names:
             shard.variables[name][row] = result.variables[name]
         shard.numerical_error[row] = result.numerical_error

@@ -9,7 +9,7 @@ from roughmdr.arguments import Floats
 from roughmdr.labelled import Array
 from roughmdr.variables import LAW
 
-_INFINITE_VARIANCE = "not computed on unloading: contacts snap with k to minus infinity, so that it has no variance"
+_INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"
 
 
 def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
@@ -23,14 +23,14 @@ def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
 def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[np.bool_]) -> dict[str, Array]:
     """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable [..., realization, step] over dims without realization.
 
-    ``snaps`` are the steps at which contacts may snap off. NaN stands for a standard error that is not computed: that
-    of a single realisation, and of the stiffness where contacts snap, since its variance is infinite there.
+    ``snaps`` [..., step] says where contacts may be at the point of letting go. NaN stands for a standard error that is
+    not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
     """
     variable = LAW[name]
     mean, sem = mean_and_error(values, axis=-2)
     remark = {}
     if name == "stiffness" and snaps.any():
-        sem[..., snaps] = math.nan
+        sem[snaps] = math.nan
         remark = {"comment": _INFINITE_VARIANCE}
 
     def array(numbers: Floats, what: str, attrs: dict[str, str]) -> Array:

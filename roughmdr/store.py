@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     import netCDF4
 
 
+_IN_EVERY_RESULT = (
+    *("separation", "branch", "status", "run_time", "numerical_error"),
+    *("title", "source", "history", "seed", "scene", "packages", "left_out"),
+)
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 
 
@@ -131,8 +135,9 @@ def read(path: Path) -> Labelled:
             data = _read_netcdf(file)
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         raise StoreError(f"{path}: not a netCDF file that can be read ({error})") from None
-    if "step" not in data.sizes or "scene" not in data.attrs:
-        raise StoreError(f"{path}: not a result of roughmdr: it has no dimension step, or no attribute scene")
+    held = {*data.variables, *data.coordinates, *data.attrs}
+    if missing := [name for name in _IN_EVERY_RESULT if name not in held]:
+        raise StoreError(f"{path}: not a result of roughmdr: it holds no {', '.join(missing)}")
     return data
 
 

@@ -8,7 +8,14 @@ from roughmdr.arguments import check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
-_ALONE = {"m": {"angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")}, "J/m^2": {"erg/cm^2": Decimal("1e-3")}}
+_LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
+_ALONE = {
+    "m": {
+        **{f"{prefix}met{end}": Decimal(10) ** power for prefix, power in _LENGTHS.items() for end in ("er", "re")},
+        **{"micron": Decimal("1e-6"), "angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")},
+    },
+    "J/m^2": {"erg/cm^2": Decimal("1e-3")},
+}
 
 # Each dimension is spelled as in ``variables``; its units are the scalable one and the exponent that the prefix takes.
 _BASES: dict[str, tuple[tuple[str, int], ...]] = {

@@ -29,7 +29,7 @@ def test_run_and_plot(small: Path) -> None:
     assert done.returncode == 0, done.stderr
     for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "left out", "out.nc"):
         assert text in done.stdout
-    assert done.stderr.strip() == "A small scene: 3 of 3 realisations"
+    assert done.stderr.strip() == "A small scene: 3 of 3 runs"
     with xr.open_dataset(small / "out.nc") as result:
         assert result.sizes["realization"] == 3
         assert "--set batch.realizations=3" in result.attrs["history"]

@@ -13,7 +13,7 @@ import roughmdr as rm
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
-    ("errors", "arguments", "variables", "labelled", "units", "quantities", "faults", "_jit", "_extended"),
+    ("errors", "arguments", "variables", "labelled", "units", "wording", "quantities", "faults", "_jit", "_extended"),
     ("shapes",),
     ("kernels",),
     ("asperity",),
@@ -22,7 +22,7 @@ LINES = (
     ("aggregate",),
     ("theory",),
     ("plan", "statistics", "store", "result", "progress", "runner", "estimate"),
-    ("curves", "analysis", "describe", "plots", "cli"),
+    ("views", "curves", "analysis", "describe", "plots", "cli", "__main__"),
 )
 LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
 from roughmdr.arguments import Floats
@@ -25,6 +26,11 @@ class Route(NamedTuple):
     def branch(self) -> Array:
         """The branch of each step."""
         return Array(("step",), np.array(branches(self.separation)), {"long_name": COORDINATES["branch"].long_name})
+
+    def snaps(self) -> NDArray[np.bool_]:
+        """Whether contacts may be at the very point of letting go: the flat is as high as ever since it was lower."""
+        last = self.memory.first[1:] - 1
+        return np.asarray((self.memory.top[last] == self.separation) & (self.memory.bottom[last] < self.separation))
 
 
 def branches(separation: Floats) -> list[str]:

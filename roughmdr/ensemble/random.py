@@ -1,7 +1,7 @@
 """source = "random": heights and shape parameters drawn from distributions, independent of each other."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
@@ -19,6 +19,9 @@ _FIRST_PARAMETER_STREAM = 2  # 1 is kept for positions
 
 class RandomAsperities(Section):
     """[asperities] with source = "random": ``count`` asperities on a square of side ``patch``."""
+
+    drawn: ClassVar[bool] = True
+    """Whether realisations differ."""
 
     source: Literal["random"]
     shape: str
@@ -47,6 +50,10 @@ class RandomAsperities(Section):
         """The distribution of each shape parameter that was given."""
         entries = {name: getattr(self, name) for name in SHAPES[self.shape].units}
         return {name: entry for name, entry in entries.items() if entry is not None}
+
+    def sampled(self, count: int) -> "RandomAsperities":
+        """The same with at most ``count`` asperities."""
+        return self.model_copy(update={"count": min(count, self.count)})
 
     @property
     def inputs(self) -> tuple[Path, ...]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from pydantic import field_validator
@@ -24,6 +24,9 @@ _UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular gri
 class SurfaceAsperities(Section):
     """[asperities] with source = "surface": ``file`` is a netCDF map, height(x, y)."""
 
+    drawn: ClassVar[bool] = False
+    """Whether realisations differ."""
+
     source: Literal["surface"]
     file: str
     shape: Literal["paraboloid"] = "paraboloid"
@@ -41,6 +44,15 @@ class SurfaceAsperities(Section):
         if not Path(value).is_file():
             raise RoughmdrError("no such file")
         return value
+
+    @property
+    def count(self) -> int:
+        """How many summits there are."""
+        return self.summits.height.size
+
+    def sampled(self, count: int) -> "SurfaceAsperities":
+        """The same: a map has the summits that it has."""
+        return self
 
     @property
     def inputs(self) -> tuple[Path, ...]:

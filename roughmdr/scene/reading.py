@@ -1,5 +1,6 @@
 """From a TOML file, a result or a dictionary to a validated scene; every fault is found before anything is computed."""
 
+import re
 import tomllib
 from collections.abc import Iterable
 from functools import reduce
@@ -40,7 +41,7 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
         try:
             table = tomllib.loads(text)
         except (ValueError, RecursionError) as error:
-            raise SceneError(f"{label}: not valid TOML: {error}") from None
+            raise SceneError(f"{label}: not valid TOML: {error}{_hint(str(error), text)}") from None
     _settle(table, path.parent if path else Path())
     changed = {_change(table, change) for change in changes}
     table.setdefault("title", path.stem if path else "scene")
@@ -63,6 +64,14 @@ def _text(path: Path) -> str:
         return content.decode("utf-8")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text file; a scene is TOML in UTF-8") from None
+
+
+def _hint(message: str, text: str) -> str:
+    """What may be wrong on the line that a message of tomllib names."""
+    number = re.search(r"line (\d+)", message)
+    line = text.splitlines()[int(number[1]) - 1] if number else ""
+    bare = re.search(r"=\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?\s*[A-Za-zµμ%/][^#,}\]]*)", line)
+    return f'; a number with a unit stands in quotes: "{bare[1].strip()}"' if bare else ""
 
 
 def _scene_of_result(path: Path) -> str:

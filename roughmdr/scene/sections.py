@@ -131,9 +131,9 @@ class Scene(Section):
     def _parts_fit(self) -> "Scene":
         if self.counter is not None and self.material.effective_modulus is not None:
             raise _misfit("counter", "does not go with material.effective_modulus, which holds both bodies already")
+        if not self.asperities.drawn and self.batch.realizations > 1:
+            raise _misfit("batch.realizations", "must be 1 with a measured surface: there is only one")
         if isinstance(self.asperities, SurfaceAsperities):
-            if self.batch.realizations > 1:
-                raise _misfit("batch.realizations", "must be 1 with a measured surface: there is only one")
             return self
         sigma = self.asperities.sigma
         if self.path.uses_sigma and not 0.0 < sigma < math.inf:

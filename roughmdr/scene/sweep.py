@@ -169,7 +169,9 @@ def _numbers(key: str, entries: list[object], reader: Reader) -> tuple[list[Any]
 def _between(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
     """The entries that linspace or logspace stand for; both ends as they were given."""
     kind = next((kind for kind in ("linspace", "logspace") if kind in table), None)
-    if kind is None or table.keys() - {kind, "num"}:
+    for other in table.keys() - {kind, "num"} if kind else ():
+        raise EntryError(f"{key}.{other}", None, f"unknown key{suggestion(other, ['num'])}")
+    if kind is None:
         raise EntryError(key, table, _FORMS)
     ends = table[kind]
     if not isinstance(ends, list) or len(ends) != 2 or not reader.dimension:

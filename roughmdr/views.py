@@ -1,0 +1,44 @@
+"""How a result is laid out: its variables, its cells, its realisations."""
+
+import numpy as np
+
+from roughmdr.labelled import Labelled
+
+
+def held_variables(result: Labelled) -> list[str]:
+    """The variables whose curves, or their statistics, a result holds."""
+    return [
+        name.removesuffix("_mean")
+        for name, array in result.variables.items()
+        if array.dims[-1:] == ("step",) and not name.endswith(("_sem", "_min", "_max"))
+    ]
+
+
+def realizations_of(result: Labelled) -> int:
+    """How many realisations a result is made from."""
+    if "realization_count" in result.variables:
+        return int(result.variables["realization_count"].values.max())
+    return result.sizes["realization"]
+
+
+def swept_sizes(result: Labelled) -> dict[str, int]:
+    """The dimensions of a result's cells."""
+    return {name: result.sizes[name] for name in result.variables["status"].dims if name != "realization"}
+
+
+def cells_of(result: Labelled) -> list[tuple[int, ...]]:
+    """The indices of each cell, the last swept dimension fastest; one, empty, without a sweep."""
+    return list(np.ndindex(*swept_sizes(result).values()))
+
+
+def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
+    """The swept values of a cell."""
+    names = list(swept_sizes(result))
+    parts = []
+    for name, array in result.coordinates.items():
+        if name not in ("separation", "branch"):
+            value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
+            unit = array.attrs.get("units", "1")
+            shown = value if isinstance(value, str) else f"{value:.4g}"
+            parts.append(f"{name} = {shown}{'' if unit == '1' else f' {unit}'}")
+    return ", ".join(parts)
