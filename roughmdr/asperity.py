@@ -35,9 +35,8 @@ class Contact(NamedTuple):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         modulus = check_number("modulus", modulus, "Pa")
         work = check_number("work", work, "J/m^2", zero=True)
-        columns = shape.stretch({name: np.array([value]) for name, value in shape.parameters.items()})
-        width, rise, form = (float(column[0]) for column in columns)
-        law = choose(shape.name, work, columns[2])
+        width, rise, form = shape.stretched()
+        law = choose(shape.name, work, np.array([form]))
         contact = cls(law, (modulus, work, width, rise, form), *law.natural(modulus, work, width, rise, form))
         contact._check(
             indentation=contact.depth[0],

@@ -50,7 +50,7 @@ def _coloured(fault: Fault) -> str:
 
 def _command() -> str:
     """What goes into a file's history."""
-    return "roughmdr " + shlex.join(sys.argv[1:])
+    return f"roughmdr {shlex.join(sys.argv[1:])}".encode("utf-8", "replace").decode()
 
 
 @click.group(cls=_Group, context_settings={"help_option_names": ["-h", "--help"]})
@@ -91,7 +91,7 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
     result = execute(make_plan(asked), output, workers=workers, quiet=quiet, command=_command())
     if not quiet:
         click.echo(describe_result(result, time.perf_counter() - started))
-        click.echo(f"result       {output}")
+        click.echo(f"result       {click.format_filename(output)}")
 
 
 @main.command()
@@ -118,10 +118,11 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
 def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
     """Draw the load-separation law in RESULT."""
     from roughmdr.plots import plot
-    from roughmdr.store import read
+    from roughmdr.store import check_writable, read
 
+    check_writable(output, [result])
     plot(read(result), output, list(variables))
-    click.echo(f"picture      {output}")
+    click.echo(f"picture      {click.format_filename(output)}")
 
 
 @main.command()
@@ -143,19 +144,22 @@ def new(scene: Path) -> None:
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.store import replacing
+    from roughmdr.store import check_writable, replacing
 
+    check_writable(scene)
     if scene.exists():
         raise StoreError(f"{scene}: is there already; give a new name")
     with replacing(scene) as temporary:
         temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
-    click.echo(f"scene        {scene}")
+    click.echo(f"scene        {click.format_filename(scene)}")
 
 
 @main.command()
 @click.argument("scene", type=_FILE)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
-@click.option("--realization", type=click.IntRange(min=0), default=0, show_default=True, help="Which of the ensembles.")
+@click.option(
+    "--realization", type=click.IntRange(0, 999_999_999), default=0, show_default=True, help="Which of the ensembles."
+)
 @_changes
 def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ...]) -> None:
     """Write the asperities that a run of SCENE presses on."""
@@ -172,4 +176,4 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
     made = asked.asperities.ensemble(asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
     click.echo(f"asperities   {made.sizes['asperity']} of shape {made.attrs['shape']}")
-    click.echo(f"ensemble     {output}")
+    click.echo(f"ensemble     {click.format_filename(output)}")

@@ -9,6 +9,7 @@ import numpy as np
 from roughmdr.analysis import PullOff, pull_off_force
 from roughmdr.labelled import Labelled
 from roughmdr.views import cell_label, cells_of, held_variables, realizations_of, swept_sizes
+from roughmdr.wording import printable
 
 if TYPE_CHECKING:
     from roughmdr.estimate import Estimate
@@ -21,7 +22,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
     """What a run will do, how long it will take and how much memory."""
     steps = plan.cells[0].route.separation.size
     lines = [
-        ("scene", plan.scene.title),
+        ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, plan.scene.batch.realizations, steps)}: {plan.runs} in all"),
         ("output", f"{', '.join(plan.scene.output.variables)}; {plan.scene.output.keep}; {_bytes(estimate.file)}"),
         ("tasks", f"{len(plan.tasks)} on {workers} worker{'s' * (workers > 1)}"),
@@ -36,7 +37,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     attrs = result.attrs
     realizations, steps = realizations_of(result), result.sizes["step"]
     lines = [
-        ("computed", f"{attrs['title']}: {_sizes(swept_sizes(result), realizations, steps)}"),
+        ("computed", f"{printable(attrs['title'])}: {_sizes(swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(held_variables(result))),
         *_pull_off(result),
         *_open_ends(result),

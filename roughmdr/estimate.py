@@ -6,6 +6,7 @@ import sys
 import tempfile
 import time
 import tracemalloc
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -112,11 +113,14 @@ def _start_up() -> float:
 
 def _resident() -> float:
     """Bytes of this process at most so far; it has loaded nearly all that a run loads."""
-    try:
+    # Where it is there, since getrusage counts what the process was forked from too.
+    with suppress(OSError, StopIteration), open("/proc/self/status") as status:
+        return next(1024.0 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
+    with suppress(ImportError):
         import resource
-    except ImportError:  # no Unix
-        return 0.0
-    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024))
+
+        return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
+    return 0.0
 
 
 def _cores() -> int:

@@ -1,5 +1,8 @@
 """What pydantic finds wrong with a scene or a section, in words: the dotted key, its value, and what would do."""
 
+import copy
+from functools import reduce
+from operator import getitem
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -12,6 +15,28 @@ from roughmdr.wording import near, printable, shown, suggestion
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
     """All faults that pydantic found in ``data``, which was read as ``declared``, a section or a union of sections."""
     return [_fault(fault, data, declared) for fault in error.errors(include_url=False)]
+
+
+def with_likely_names(error: ValidationError, data: dict[str, Any], declared: Any) -> dict[str, Any] | None:
+    """The data with the names that choose a section replaced by what was probably meant, to find what else is wrong.
+
+    None where there is no such name at fault.
+    """
+    likely = copy.deepcopy(data)
+    renamed = False
+    for fault in error.errors(include_url=False):
+        if not fault["type"].startswith("union_tag"):
+            continue
+        keys, _, choices = _walk(fault["loc"], data, declared)
+        name = fault["ctx"]["discriminator"].strip("'")
+        table = reduce(getitem, keys, likely)
+        given = [name] if name in table else near(name, table)
+        tags = _tags(choices, name)
+        for key in given:
+            tag = str(table.pop(key))
+            table[name] = (near(tag, tags) or tags)[0]
+            renamed = True
+    return likely if renamed else None
 
 
 def sections_of(annotation: Any) -> list[type[BaseModel]]:

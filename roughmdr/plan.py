@@ -1,5 +1,6 @@
 """From a scene to tasks: which runs go together, and what is left out and why."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
@@ -119,12 +120,14 @@ def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
         yield range(runs)
         return
     enough = min(_TASK_SECONDS, in_all / _TASKS_AT_LEAST)
-    begin, filled = 0, 0.0
-    for number in range(runs):
-        filled += seconds[number // realizations]
-        if filled >= enough or number == runs - 1:
-            yield range(begin, number + 1)
-            begin, filled = number + 1, 0.0
+    begin, number, filled = 0, 0, 0.0
+    for cell, each in enumerate(seconds, start=1):
+        while number < cell * realizations:
+            taken = min(max(math.ceil((enough - filled) / each), 1), cell * realizations - number)
+            number, filled = number + taken, filled + taken * each
+            if filled >= enough or number == runs:
+                yield range(begin, number)
+                begin, filled = number, 0.0
 
 
 def _seconds(cell: Cell) -> float:

@@ -41,7 +41,7 @@ def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> No
     below = 0.2 * min(len(cells), _MOST_LABELS) if len(cells) > 1 else 0.0
     figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + below), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
-    labels = [cell_label(result, cell) for cell in cells]
+    labels = [cell_label(result, cell).replace("$", r"\$") for cell in cells]  # no mathematics
     for ax, name in zip(axes.flat, names, strict=False):
         _draw(ax, name, list(curves(result, name)), labels)
     for ax in axes.flat[len(names) :]:
@@ -58,8 +58,8 @@ def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> No
         note += f", {len(shown)} of {len(cells)} cells named" if len(shown) < len(cells) else ""
     figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11, parse_math=False)
     suffix = path.suffix.lstrip(".").lower() or "png"
-    if suffix not in figure.canvas.get_supported_filetypes():
-        raise StoreError(f"{path}: cannot draw a .{suffix}; try .png, .pdf or .svg")
+    if suffix not in ("png", "pdf", "svg"):
+        raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=160, format=suffix)
 

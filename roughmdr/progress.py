@@ -3,7 +3,7 @@
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Protocol
 
 _SECONDS_BETWEEN_LINES = 10.0
@@ -19,7 +19,7 @@ class Advance(Protocol):
 @contextmanager
 def progress(title: str, total: int, *, quiet: bool) -> Iterator[Advance]:
     """A display on the standard error stream for ``total`` runs."""
-    if quiet:
+    if quiet or sys.stderr is None:
         yield lambda count: None
     elif sys.stderr.isatty():
         with _bar(title, total) as advance:
@@ -48,6 +48,7 @@ def _lines(title: str, total: int) -> Advance:
         now = time.monotonic()
         if done == total or now - said >= _SECONDS_BETWEEN_LINES:
             said = now
-            print(f"{title}: {done} of {total} runs", file=sys.stderr, flush=True)
+            with suppress(OSError):  # nobody listens
+                print(f"{title}: {done} of {total} runs", file=sys.stderr, flush=True)
 
     return advance

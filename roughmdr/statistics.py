@@ -14,10 +14,13 @@ _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to mi
 
 def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
     """Mean and its standard error over the realisations on an axis; the error of a single one is NaN."""
-    mean, count = np.asarray(values.mean(axis=axis)), values.shape[axis]
+    count = values.shape[axis]
+    _, power = np.frexp(np.max(np.abs(values)))  # so that no square leaves the range of a float
+    scaled = np.ldexp(values, -power)
+    mean = np.asarray(np.ldexp(scaled.mean(axis=axis), power))
     if count < 2:
         return mean, np.full_like(mean, math.nan)
-    return mean, np.asarray(values.std(axis=axis, ddof=1) / math.sqrt(count))
+    return mean, np.asarray(np.ldexp(scaled.std(axis=axis, ddof=1) / math.sqrt(count), power))
 
 
 def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[np.bool_]) -> dict[str, Array]:

@@ -14,15 +14,16 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Array, Labelled
+from roughmdr.variables import LAW
 
 if TYPE_CHECKING:
     import netCDF4
 
 
-_IN_EVERY_RESULT = (
-    *("separation", "branch", "status", "run_time", "numerical_error"),
-    *("title", "source", "history", "seed", "scene", "packages", "left_out"),
-)
+# What every result holds.
+_ARRAYS = ("separation", "branch", "status", "run_time", "numerical_error", "seed")
+_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
+_TEMPORARY = ".roughmdr."
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 
 
@@ -41,16 +42,16 @@ def provenance(title: str, command: str) -> dict[str, str]:
 
 def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
     """StoreError where a file cannot be put at ``path``, or would take the place of an input; leaves nothing behind."""
-    if path.is_dir():
-        raise StoreError(f"{path}: is a folder; the output must be a file")
-    if path.exists() and not path.is_file():
-        raise StoreError(f"{path}: is no ordinary file; the output must be one")
-    if path.exists() and any(other.exists() and path.samefile(other) for other in inputs):
-        raise StoreError(f"{path}: is what the scene is read from; the output must be another file")
-    if not path.parent.is_dir():
-        raise StoreError(f"{path}: the folder {path.parent} does not exist")
     try:
-        descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        if path.is_dir():
+            raise StoreError(f"{path}: is a folder; the output must be a file")
+        if path.exists() and not path.is_file():
+            raise StoreError(f"{path}: is no ordinary file; the output must be one")
+        if path.exists() and any(other.exists() and path.samefile(other) for other in inputs):
+            raise StoreError(f"{path}: is read from; the output must be another file")
+        if not path.parent.is_dir():
+            raise StoreError(f"{path}: the folder {path.parent} does not exist")
+        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY, dir=path.parent)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror}") from None
     os.close(descriptor)
@@ -61,7 +62,7 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary name beside ``path`` to write to; it takes the place of ``path`` when all is written and on disk."""
     check_writable(path)
-    with tempfile.NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent, delete=False) as made:
+    with tempfile.NamedTemporaryFile(prefix=_TEMPORARY, suffix=".part", dir=path.parent, delete=False) as made:
         temporary = Path(made.name)
     try:
         yield temporary
@@ -127,18 +128,37 @@ def read(path: Path) -> Labelled:
     """A result file, loaded; StoreError where it is none."""
     import netCDF4
 
-    if not path.is_file():
-        raise StoreError(f"{path}: no such file")
     try:
+        if not path.is_file():
+            raise StoreError(f"{path}: no such file")
         with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             data = _read_netcdf(file)
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        if isinstance(error, StoreError):
+            raise
         raise StoreError(f"{path}: not a netCDF file that can be read ({error})") from None
-    held = {*data.variables, *data.coordinates, *data.attrs}
-    if missing := [name for name in _IN_EVERY_RESULT if name not in held]:
-        raise StoreError(f"{path}: not a result of roughmdr: it holds no {', '.join(missing)}")
+    if fault := _what_is_wrong(data):
+        raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
     return data
+
+
+def _what_is_wrong(data: Labelled) -> str:
+    """Why arrays are no result; empty where they are."""
+    held = {*data.variables, *data.coordinates, *data.attrs}
+    if missing := [name for name in (*_ARRAYS, *_TEXTS) if name not in held]:
+        return f"it holds no {', '.join(missing)}"
+    if changed := [name for name in _TEXTS if not isinstance(data.attrs[name], str)]:
+        return f"the attribute {changed[0]} is no text"
+    if "realization" not in data.sizes and "realization_count" not in data.variables:
+        return "it has neither a dimension realization nor a realization_count"
+    if not all(data.sizes.values()):
+        return "a dimension has no length"
+    cells = data.variables["status"].dims
+    for name, array in data.variables.items():
+        if name.removesuffix("_mean") in LAW and array.dims != (*cells, "step"):
+            return f"{name} lies over {', '.join(array.dims)}; it must lie over {', '.join((*cells, 'step'))}"
+    return ""
 
 
 def _read_netcdf(file: "netCDF4.Dataset") -> Labelled:

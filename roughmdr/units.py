@@ -66,9 +66,12 @@ def quantity(value: object, dimension: str) -> float:
         if match is None:
             raise RoughmdrError(f"expected {wanted}")
         try:
-            number = float(Decimal(match[1]) * unit_factor(match[2], dimension))
+            exact = Decimal(match[1]) * unit_factor(match[2], dimension)
+            number = float(exact)
         except ArithmeticError:
             raise RoughmdrError("expected a number that a float can hold") from None
+        if number == 0.0 and exact != 0:
+            raise RoughmdrError("expected a number that a float can hold; this is too near to 0")
     else:
         try:
             number = float(value)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from roughmdr.labelled import Labelled
+from roughmdr.variables import LAW
 
 
 def held_variables(result: Labelled) -> list[str]:
@@ -10,7 +11,7 @@ def held_variables(result: Labelled) -> list[str]:
     return [
         name.removesuffix("_mean")
         for name, array in result.variables.items()
-        if array.dims[-1:] == ("step",) and not name.endswith(("_sem", "_min", "_max"))
+        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW
     ]
 
 
@@ -39,6 +40,6 @@ def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
         if name not in ("separation", "branch"):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
             unit = array.attrs.get("units", "1")
-            shown = value if isinstance(value, str) else f"{value:.4g}"
+            shown = f"{value:.6g}" if array.values.dtype.kind == "f" else str(value)
             parts.append(f"{name} = {shown}{'' if unit == '1' else f' {unit}'}")
     return ", ".join(parts)

@@ -27,5 +27,8 @@ def printable(key: str) -> str:
 
 def shown(value: object) -> str:
     """A value as it stands in the scene, cut where it is long."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables without end
+        return "..."
     return text if len(text) <= 60 else text[:57] + "..."

@@ -3,8 +3,8 @@
 import os
 import pty
 import re
-import resource
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -67,17 +67,29 @@ def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
     assert rm.run(tomllib.loads(chosen)).force.shape == (16, 400)
 
 
+# Not from getrusage: a child begins with the peak of the process that it was forked from.
+_PEAK = """
+from roughmdr.cli import main
+main({arguments!r}, standalone_mode=False)
+with open("/proc/self/status") as status:
+    print(next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM")))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of a process is read from /proc")
 def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
     large = ["--set", "asperities.count=300000", "--set", "batch.realizations=6"]
     done = roughmdr("plan", "small.toml", *large, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["small.toml"]
-    assert "6 realisations x 80 steps (6 runs)" in done.stdout
+    assert "6 realisations x 80 steps: 6 in all" in done.stdout
     assert re.search(r"^time +about [\d.]+ s, of them [\d.]+ s to start$", done.stdout, re.MULTILINE)
     size, unit = re.search(r"^memory +about ([\d.]+) (\w+),", done.stdout, re.MULTILINE).groups()  # type: ignore[union-attr]
-    assert roughmdr("run", "small.toml", "-o", "out.nc", *large, cwd=folder).returncode == 0
-    taken = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024.0
-    assert 0.5 < float(size) * UNITS[unit] / taken < 2.0
+    command = ["run", "small.toml", "-o", "out.nc", *large]
+    taken = subprocess.run(
+        [sys.executable, "-c", _PEAK.format(arguments=command)], cwd=folder, capture_output=True, text=True, check=True
+    ).stdout
+    assert 0.5 < float(size) * UNITS[unit] / float(taken.split()[-1]) < 2.0
     with xr.open_dataset(folder / "out.nc") as result:
         for line in result.attrs["left_out"].splitlines():
             assert line in done.stdout
@@ -93,7 +105,9 @@ def test_info_says_what_a_result_holds(folder: Path) -> None:
         mean, error = lowest.mean("realization"), lowest.std("realization", ddof=1) / 4.0
         for i, work in enumerate(("0.01", "0.05")):
             shown = f"{float(mean[i]):.4g} N ± {float(error[i]):.2g} N"
-            assert re.search(rf"{re.escape(shown)} +adhesion_work = {work} J m-2$", done.stdout, re.MULTILINE)
+            assert re.search(
+                rf"{re.escape(shown)} \[.* N\].* +adhesion_work = {work} J m-2$", done.stdout, re.MULTILINE
+            )
         texts = ["A small scene: 2 adhesion_work x 16 realisations x 80 steps", "seed         7", "numpy"]
         texts += [result.attrs["history"], result.attrs["left_out"].splitlines()[0], 'modulus = "3 MPa"', "kB"]
     for text in texts:
@@ -126,7 +140,7 @@ def test_a_result_is_run_again_from_itself_alone(folder: Path) -> None:
         assert first.attrs["scene"] == again.attrs["scene"]
     over = roughmdr("run", "out.nc", "-o", "out.nc", cwd=folder)
     assert over.returncode == 2
-    assert "is what the scene is read from" in over.stderr
+    assert "is read from" in over.stderr
 
 
 def on_a_terminal(*arguments: str, cwd: Path, **environment: str) -> str:

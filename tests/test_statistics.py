@@ -47,13 +47,23 @@ def test_they_are_the_statistics_of_the_curves(sweep: dict[str, Any] | None) -> 
     assert "curves of the realisations" in statistics.attrs["left_out"]
 
 
-def test_the_stiffness_has_no_standard_error_where_contacts_snap() -> None:
-    sticky = kept("statistics")
-    unloading = (sticky.branch == "unloading").to_numpy()
-    assert np.isnan(sticky.stiffness_sem[unloading]).all()
-    assert np.isfinite(sticky.stiffness_sem[~unloading]).all()
-    assert "variance" in sticky.stiffness_sem.attrs["comment"]
-    assert np.isfinite(kept("statistics", adhesion=None).stiffness_sem).all()
+def test_the_stiffness_has_no_standard_error_where_contacts_let_go() -> None:
+    """With adhesion, wherever the flat is as high as ever since it was lower; whatever the branch is called."""
+    path = {"separation": ["3 um", "0 um", "0.5 um", "0.5 um", "0.2 um", "0.5 um", "0.6 um", "-1 um"]}
+    snaps = [False, False, True, True, False, True, True, False]
+    for sweep, cells in ((None, [snaps]), ({"adhesion.work": [0.0, 0.05]}, [[False] * 8, snaps])):
+        sticky = kept("statistics", path=path, sweep=sweep)
+        np.testing.assert_array_equal(np.isnan(sticky.stiffness_sem).to_numpy().reshape(-1, 8), cells)
+        assert "variance" in sticky.stiffness_sem.attrs["comment"]
+    assert np.isfinite(kept("statistics", adhesion=None, path=path).stiffness_sem).all()
+
+
+@pytest.mark.parametrize("modulus", [1e-170, 1e180])
+def test_they_stay_in_the_range_of_a_float(modulus: float) -> None:
+    tiny = kept("statistics", material={"effective_modulus": modulus}, adhesion=None)
+    plain = kept("statistics", material={"effective_modulus": 1.0}, adhesion=None)
+    for what in ("mean", "sem", "max"):
+        np.testing.assert_allclose(tiny[f"force_{what}"] / modulus, plain[f"force_{what}"], rtol=1e-10)
 
 
 def test_one_realisation_has_no_standard_error() -> None:
@@ -76,8 +86,17 @@ def test_the_pull_off_force_of_curves_and_of_the_mean_curve(tmp_path: Path) -> N
     np.testing.assert_allclose(found.standard_error, lowest.std("realization", ddof=1) / 4.0, rtol=1e-12)
     assert (found.mean[0] == 0.0).all()
     assert (found.mean[1] < 0.0).all()
+    np.testing.assert_array_equal(found.tensile, (curves.force.min("step") < 0.0).sum("realization"))
     of_mean = pull_off_force(statistics)
-    assert of_mean.of_the_mean
+    assert (found.curves, of_mean.curves) == (16, 1)
     np.testing.assert_allclose(of_mean.mean, curves.force.mean("realization").min("step").clip(max=0.0), rtol=1e-12)
+    at = curves.force[1, 1, :, 40:]
+    change = [
+        max(abs(run[m] - run[m - 1]) if m else 0.0, abs(run[m + 1] - run[m]) if m < 39 else 0.0)
+        for run, m in zip(at.to_numpy(), at.argmin("step").to_numpy(), strict=True)
+    ]
+    assert found.change[1, 1] == pytest.approx(np.mean(change), rel=1e-12)
+    with pytest.raises(rm.StoreError, match="never retracts"):
+        pull_off_force(kept("curves", path={"separation": ["3 um", "0 um"]}))
     with pytest.raises(rm.StoreError, match="holds no force"):
         pull_off_force(curves.drop_vars("force"))

@@ -71,7 +71,10 @@ def compute(
     )
     results = {name: totals[_ROW[name]] for name in names}
     for name in _PER_AREA.intersection(names):
-        results[name] = results[name] / ensemble.nominal_area
+        with np.errstate(over="ignore"):  # refused below
+            results[name] = results[name] / ensemble.nominal_area
+        if not np.isfinite(results[name]).all():
+            raise OutOfRange(f"{name} is not representable on a nominal area of {ensemble.nominal_area:g} m2")
     largest = float(np.max(np.abs(totals[loop.FORCE])))
     error = float(np.max(totals[loop.ERROR]))
     return LoadSeparation(results, error / largest if largest > 0.0 else 0.0, visits)

@@ -9,7 +9,7 @@ from roughmdr.ensemble.distributions import Distribution, uniforms
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import Length, Section, WholeNumber
+from roughmdr.quantities import Length, Quantity, Section, WholeNumber
 from roughmdr.shapes import SHAPES, Shape
 
 # Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
@@ -26,7 +26,7 @@ class RandomAsperities(Section):
     source: Literal["random"]
     shape: str
     count: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))]
-    patch: Length
+    patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
     height: Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]

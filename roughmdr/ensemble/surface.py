@@ -41,7 +41,11 @@ class SurfaceAsperities(Section):
     @field_validator("file")
     @classmethod
     def _is_there(cls, value: str) -> str:
-        if not Path(value).is_file():
+        try:
+            there = Path(value).is_file()
+        except OSError as error:
+            raise RoughmdrError(f"cannot be read: {error.strerror}") from None
+        if not there:
             raise RoughmdrError("no such file")
         return value
 

@@ -2,13 +2,15 @@
 
 import copy
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.faults import find_faults
+from roughmdr.faults import find_faults, with_likely_names
+from roughmdr.quantities import Reader
 from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import in_words, read_sweep
@@ -19,37 +21,56 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
     if "sweep" not in table:
         return _read(table, path, {})
     plain = {key: value for key, value in copy.deepcopy(table).items() if key != "sweep"}
-    sweep, faults = read_sweep(table["sweep"], dict(readers([Scene], plain)))
-    if sweep is not None:
-        faults += _fill(plain, next(sweep.cells()))
-    base, found = _read(plain, path, {})
-    faults += found
+    sweep, faults = read_sweep(table["sweep"], _known(plain, table["sweep"]))
+    first = {} if sweep is None else next(sweep.cells())
+    filled, found = _fill(plain, first)
+    base, faults_of_base = _read(plain, path, {})
+    # What is wrong with a value that was only filled in is for the cells to find.
+    faults += found + [fault for fault in faults_of_base if fault.key not in filled]
+    if base is None and not faults:
+        base, faults = _read_cell(plain, first, path, {})
     if base is None or sweep is None or faults:
         return None, faults
     parts = {name: getattr(base, name) for name in base.model_fields_set}
-    cells, faults_of_cells, first = [], Counter[Fault](), dict[Fault, str]()
+    cells, faults_of_cells, where = [], Counter[Fault](), dict[Fault, str]()
     for values in sweep.cells():
         cell, found = _read_cell(plain, values, path, parts)
         for fault in found:
             faults_of_cells[fault] += 1
-            first.setdefault(fault, in_words(values))
+            where.setdefault(fault, in_words(values))
         if cell is not None:
             cells.append(cell)
     if faults_of_cells:
-        return None, [_counted(fault, count, first[fault]) for fault, count in faults_of_cells.items()]
+        return None, [_counted(fault, count, where[fault]) for fault, count in faults_of_cells.items()]
     return Scene.of(table, path, {"sweep": sweep, **parts}, tuple(cells)), []
+
+
+def _known(plain: dict[str, Any], sweep: object) -> dict[str, Reader]:
+    """The keys that a scene can have; those of every distribution that is swept too."""
+    known = dict(readers([Scene], plain))
+    for key, entries in sweep.items() if isinstance(sweep, dict) else ():
+        if key in known and key.endswith(".distribution") and isinstance(entries, list):
+            for entry in entries:
+                other = copy.deepcopy(plain)
+                with suppress(RoughmdrError):
+                    put(other, key, entry)
+                known |= dict(readers([Scene], other))
+    return known
 
 
 def _read(table: dict[str, Any], path: Path | None, ready: dict[str, Any]) -> tuple[Scene | None, list[Fault]]:
     try:
         return Scene.of(table, path, ready), []
     except ValidationError as error:
-        return None, find_faults(error, table, Scene)
+        faults = find_faults(error, table, Scene)
+        likely = with_likely_names(error, table, Scene)
+        more = [] if likely is None else _read(likely, path, ready)[1]
+        return None, faults + [fault for fault in more if fault not in faults]
 
 
-def _fill(plain: dict[str, Any], first: dict[str, object]) -> list[Fault]:
-    """Put the first value of each swept key that the scene itself leaves out."""
-    faults = []
+def _fill(plain: dict[str, Any], first: dict[str, object]) -> tuple[set[str], list[Fault]]:
+    """Put the first value of each swept key that the scene itself leaves out; which these are, and what is wrong."""
+    filled, faults = set(), []
     for key, value in first.items():
         inner: Any = plain
         for part in key.split("."):
@@ -57,9 +78,10 @@ def _fill(plain: dict[str, Any], first: dict[str, object]) -> list[Fault]:
         if inner is None:
             try:
                 put(plain, key, value)
+                filled.add(key)
             except RoughmdrError as error:
                 faults.append(Fault(f"sweep.{key}", "", str(error)))
-    return faults
+    return filled, faults
 
 
 def _read_cell(

@@ -42,10 +42,13 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
             table = tomllib.loads(text)
         except (ValueError, RecursionError) as error:
             raise SceneError(f"{label}: not valid TOML: {error}{_hint(str(error), text)}") from None
-    _settle(table, path.parent if path else Path())
-    changed = {_change(table, change) for change in changes}
-    table.setdefault("title", path.stem if path else "scene")
-    scene, faults = validate(table, path)
+    try:
+        _settle(table, path.parent if path else Path())
+        changed = {_change(table, change) for change in changes}
+        table.setdefault("title", path.stem if path else "scene")
+        scene, faults = validate(table, path)
+    except RecursionError:
+        raise SceneError(f"{label}: its tables are nested too deeply") from None
     if faults or scene is None:
         lines = key_lines(text)
         faults = sorted(faults, key=lambda fault: line_of(fault.key, lines) or 0)
@@ -88,6 +91,8 @@ def _change(table: dict[str, Any], change: str) -> str:
     """Make one change; its dotted key."""
     key, equals, value = change.partition("=")
     parts = [part.strip().strip("\"'") for part in key.split(".")]
+    if not change.isprintable() and change.encode("utf-8", "replace").decode() != change:
+        raise SceneError(f"--set {change!r}: is not UTF-8")
     if not equals or not all(parts):
         raise SceneError(f"--set {change}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
     dotted = ".".join(parts)
@@ -109,11 +114,15 @@ def _change(table: dict[str, Any], change: str) -> str:
 
 
 def _no_longer_swept(table: dict[str, Any], key: str) -> None:
+    """Take out what is swept of a key, of a part of it, or of the whole that it is a part of."""
     sweep = table.get("sweep")
-    if isinstance(sweep, dict) and key in sweep:
-        del sweep[key]
-        if not sweep.keys() - {"mode"}:
-            del table["sweep"]
+    if not isinstance(sweep, dict):
+        return
+    fixed = [swept for swept in sweep if f"{swept}.".startswith(f"{key}.") or f"{key}.".startswith(f"{swept}.")]
+    for swept in fixed:
+        del sweep[swept]
+    if fixed and not sweep.keys() - {"mode"}:
+        del table["sweep"]
 
 
 def _value(text: str) -> Any:

@@ -16,7 +16,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from roughmdr.ensemble import Asperities, SurfaceAsperities
-from roughmdr.errors import RoughmdrError
+from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.quantities import Quantity, Section, WholeNumber
 from roughmdr.scene.path import Path
 from roughmdr.scene.sweep import Sweep
@@ -131,6 +131,10 @@ class Scene(Section):
     def _parts_fit(self) -> "Scene":
         if self.counter is not None and self.material.effective_modulus is not None:
             raise _misfit("counter", "does not go with material.effective_modulus, which holds both bodies already")
+        try:
+            _ = self.modulus
+        except OutOfRange as error:
+            raise _misfit("material.modulus", str(error)) from None
         if not self.asperities.drawn and self.batch.realizations > 1:
             raise _misfit("batch.realizations", "must be 1 with a measured surface: there is only one")
         if isinstance(self.asperities, SurfaceAsperities):
@@ -174,7 +178,7 @@ class Scene(Section):
     def inputs(self) -> tuple[FilePath, ...]:
         """The files that the scene is read from."""
         own = () if self._file is None else (self._file,)
-        return (*own, *self.asperities.inputs)
+        return (*own, *{file for cell in self.cells for file in cell.asperities.inputs})
 
     @property
     def toml(self) -> str:

@@ -9,12 +9,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.errors import Fault, RoughmdrError
+from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.labelled import Array
 from roughmdr.quantities import EntryError, Reader, WholeNumber
 from roughmdr.scene.path import Separation
 from roughmdr.units import DIMENSIONLESS, udunits
-from roughmdr.wording import shown, suggestion
+from roughmdr.wording import printable, shown, suggestion
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities")
 _PATH = ("path.separation.start", "path.separation.stop")
@@ -87,7 +87,7 @@ def in_words(cell: dict[str, object]) -> str:
 
 
 def flatten(table: object) -> object:
-    """[sweep] with its keys dotted, whether they came so or as tables within tables."""
+    """[sweep] with its keys dotted, whether they came so or as tables within tables; SceneError if one came twice."""
     if not isinstance(table, dict):
         return table
     flat: dict[str, object] = {}
@@ -96,6 +96,8 @@ def flatten(table: object) -> object:
         for name, value in inner.items():
             if isinstance(value, dict) and value and value.keys().isdisjoint({"linspace", "logspace", "num"}):
                 walk(value, f"{at}{name}.")
+            elif f"{at}{name}" in flat:
+                raise SceneError.of([Fault(f"sweep.{printable(at + name)}", "", "is given twice")])
             else:
                 flat[f"{at}{name}"] = value
 
@@ -120,7 +122,7 @@ def read_sweep(table: object, known: dict[str, Reader]) -> tuple[Sweep | None, l
             axes.append(_axis(key, value, allowed, ordered=mode == "product"))
         except EntryError as error:
             value_shown = "" if error.value is None else shown(error.value)
-            faults.append(Fault(f"sweep.{error.key}", value_shown, str(error)))
+            faults.append(Fault(f"sweep.{printable(error.key)}", value_shown, str(error)))
     faults += _misfits(mode, axes) if axes else []
     if not axes and not faults:
         faults.append(Fault("sweep", "", 'names no key to sweep, like "adhesion.work" = ["10 mJ/m^2", "50 mJ/m^2"]'))

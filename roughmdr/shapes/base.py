@@ -57,6 +57,12 @@ class Shape(ABC):
         values = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in values.items() if value is not None}
 
+    def stretched(self) -> tuple[float, float, float]:
+        """Width [m], rise [m] and form [1] of this one."""
+        columns = self.stretch({name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()})
+        width, rise, form = (float(column[0]) for column in columns)
+        return width, rise, form
+
     def __post_init__(self) -> None:
         parameters = self.parameters
         type(self).spelling(set(parameters))

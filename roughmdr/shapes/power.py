@@ -13,23 +13,18 @@ from roughmdr.shapes.base import Shape, radii
 class _Power(Shape):
     """The power laws' f, g and G, from width, rise and exponent."""
 
-    def _stretched(self) -> tuple[float, float, float]:
-        columns = self.stretch({name: np.array([value]) for name, value in self.parameters.items()})
-        width, rise, exponent = (float(column[0]) for column in columns)
-        return width, rise, exponent
-
     def f(self, r: ArrayLike) -> Floats:
-        width, rise, exponent = self._stretched()
+        width, rise, exponent = self.stretched()
         return np.asarray(rise * (radii("r", r) / width) ** exponent)
 
     def g(self, x: ArrayLike) -> Floats:
         from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
 
-        return np.asarray(kappa(self._stretched()[2]) * self.f(radii("x", x)))
+        return np.asarray(kappa(self.stretched()[2]) * self.f(radii("x", x)))
 
     def G(self, a: ArrayLike) -> Floats:
         radius = radii("a", a)
-        return np.asarray(radius * self.g(radius) / (self._stretched()[2] + 1.0))
+        return np.asarray(radius * self.g(radius) / (self.stretched()[2] + 1.0))
 
 
 @dataclass(frozen=True)
