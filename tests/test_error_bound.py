@@ -9,7 +9,7 @@ from scenes import ensemble
 from twins import Twin, mp
 
 import roughmdr as rm
-from roughmdr.aggregate import loop
+from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import no_memory
 from roughmdr.kernels.laws import choose
 from roughmdr.shapes.base import Shape
@@ -71,10 +71,10 @@ def test_blocks_are_added_without_loss() -> None:
     columns = tuple(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0))
     h = np.array([0.0])
     total, _ = loop.add_asperities(
-        choose("paraboloid", 0.0, columns[2]), z, columns, E, 0.0, h, no_memory(h), {loop.FORCE}
+        choose("paraboloid", 0.0, columns[2]), z, columns, E, 0.0, h, no_memory(h), {totals.FORCE}
     )
     terms = 4.0 / 3.0 * E * math.sqrt(5e-5) * z**1.5
-    assert total[loop.FORCE, 0] == pytest.approx(math.fsum(terms), rel=4e-16)
+    assert total[totals.FORCE, 0] == pytest.approx(math.fsum(terms), rel=4e-16)
 
 
 def test_equal_heights_in_any_order_give_the_same_bits() -> None:

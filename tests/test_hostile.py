@@ -254,3 +254,27 @@ def test_a_huge_batch_is_planned_at_once() -> None:
     assert plan.tasks[0].start == 0
     assert plan.tasks[-1].stop == 1_000_000_000
     assert all(a.stop == b.start for a, b in zip(plan.tasks[:-1], plan.tasks[1:], strict=True))
+
+
+def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None:
+    (folder / "many.toml").write_text(
+        '[material]\neffective_modulus = "3 MPa"\n[asperities]\nsource = "randm"\nshaep = "paraboloid"\ncount = 1.5\n'
+        'patch = "1 s"\nheight = { distribution = "norml", std = "1 um" }\n'
+        'radius = { distribution = "lognormal", sdt = 1 }\n'
+        '[path]\nseparation = [0]\n[sweep]\n"asperities.raduis" = [1]\n"material.effective_modulus" = 3\n'
+    )
+    with pytest.raises(rm.SceneError) as caught:
+        read(folder / "many.toml")
+    expected = [
+        (4, "asperities.source = 'randm': not available; did you mean 'random'?"),
+        (5, "asperities.shaep: unknown key; did you mean 'shape'?"),
+        (6, "asperities.count = 1.5: expected a whole number"),
+        (7, "asperities.patch = '1 s': unknown unit 's'"),
+        (8, "asperities.height.distribution = 'norml': not known; did you mean 'normal'"),
+        (9, "asperities.radius.sdt = 1: lognormal has no such parameter"),
+        (13, "sweep.asperities.raduis: is no number or name"),
+        (14, "sweep.material.effective_modulus = 3: must be a list"),
+    ]
+    assert len(caught.value.faults) == len(expected), str(caught.value)
+    for fault, (line, text) in zip(caught.value.faults, expected, strict=True):
+        assert str(fault).startswith(f"{folder / 'many.toml'}:{line}: {text}")

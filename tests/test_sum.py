@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scenes import ensemble
 
 import roughmdr as rm
-from roughmdr.aggregate import loop
+from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.law import Route, compute
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.laws import choose
@@ -164,10 +164,10 @@ def test_only_the_asked_totals_are_computed() -> None:
     route = Route.along(np.array([0.0]), unload=False, adhesive=True)
     columns = asperities.columns()
     law = choose("paraboloid", W, columns[2])
-    totals, _ = loop.add_asperities(law, asperities.height, columns, E, W, *route, rows={loop.RADIUS})
-    assert totals[loop.RADIUS, 0] > 0.0
-    others = [row for row in range(loop.ROWS) if row != loop.RADIUS]
-    assert not totals[others].any()
+    total, _ = loop.add_asperities(law, asperities.height, columns, E, W, *route, rows={totals.RADIUS})
+    assert total[totals.RADIUS, 0] > 0.0
+    others = [row for row in range(totals.ROWS) if row != totals.RADIUS]
+    assert not total[others].any()
 
 
 def test_a_loop_of_the_path_dissipates_and_its_memory_fades() -> None:

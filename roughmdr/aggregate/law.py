@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.aggregate import loop
+from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.route import Route
 from roughmdr.aggregate.staircase import no_memory
 from roughmdr.arguments import Floats, check_number, check_values
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ROW = {
-    "force": loop.FORCE,
-    "pressure": loop.FORCE,
-    "contact_area": loop.AREA,
-    "contact_fraction": loop.AREA,
-    "contact_count": loop.COUNT,
-    "contact_radius_sum": loop.RADIUS,
-    "stiffness": loop.STIFFNESS,
-    "energy": loop.ENERGY,
-    "dissipated_energy": loop.DISSIPATED,
+    "force": totals.FORCE,
+    "pressure": totals.FORCE,
+    "contact_area": totals.AREA,
+    "contact_fraction": totals.AREA,
+    "contact_count": totals.COUNT,
+    "contact_radius_sum": totals.RADIUS,
+    "stiffness": totals.STIFFNESS,
+    "energy": totals.ENERGY,
+    "dissipated_energy": totals.DISSIPATED,
 }
 _PER_AREA = {"pressure", "contact_fraction"}
 
@@ -59,7 +59,7 @@ def compute(
     columns = ensemble.columns()
     law = choose(ensemble.shape, work, columns[2])
 
-    totals, visits = loop.add_asperities(
+    total, visits = loop.add_asperities(
         law,
         ensemble.height,
         columns,
@@ -67,16 +67,16 @@ def compute(
         work,
         route.separation,
         route.memory,
-        {loop.ERROR, loop.FORCE, *(_ROW[name] for name in names)},
+        {totals.ERROR, totals.FORCE, *(_ROW[name] for name in names)},
     )
-    results = {name: totals[_ROW[name]] for name in names}
+    results = {name: total[_ROW[name]] for name in names}
     for name in _PER_AREA.intersection(names):
         with np.errstate(over="ignore"):  # refused below
             results[name] = results[name] / ensemble.nominal_area
         if not np.isfinite(results[name]).all():
             raise OutOfRange(f"{name} is not representable on a nominal area of {ensemble.nominal_area:g} m2")
-    largest = float(np.max(np.abs(totals[loop.FORCE])))
-    error = float(np.max(totals[loop.ERROR]))
+    largest = float(np.max(np.abs(total[totals.FORCE])))
+    error = float(np.max(total[totals.ERROR]))
     return LoadSeparation(results, error / largest if largest > 0.0 else 0.0, visits)
 
 

@@ -1,0 +1,56 @@
+"""How far the sum of the forces of a block can be off."""
+
+import math
+from collections.abc import Callable
+
+from roughmdr.aggregate.block import least
+from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
+from roughmdr.arguments import Floats
+
+_UNIT = 2.0**-53  # the largest relative error of one rounding
+_KERNEL_ERROR = 1e-13  # of the force of a contact over its natural scale, as the kernels are tested
+
+# Names that ``specialise`` fills with the kernels of a law.
+_adhesive: bool
+_state: Callable[..., float]
+_force: Callable[..., float]
+_stiffness: Callable[..., float]
+
+
+def bound(
+    count: int,
+    z: Floats,
+    form: Floats,
+    mixed: bool,
+    h: float,
+    retracted: bool,
+    greatest: Floats,
+    held: Floats,
+    state: Floats,
+    terms: Floats,
+) -> float:
+    """A bound on the error [N] of what the first ``count`` asperities of a block add to the force.
+
+    Each force is off by |k| times the rounding of z - h and of the fold, and by what its kernel is off. k grows along
+    the branch, so that |k| is largest in the least or the greatest state: two calls bound a block of one form. Only
+    a retraction brings a state below that of first touch, x = 1.
+    """
+    deepest = greatest[DEPTH] if _adhesive else 0.0
+    high = _state(((z[0] - h) + deepest) * greatest[PER_DEPTH], form[0])
+    low = high
+    if _adhesive:
+        low = _state(1.0, form[0])
+        if retracted:
+            for i in range(count):
+                terms[i] = state[i] if held[i] > 0.0 else math.inf
+            low = max(min(low, least(terms, count)), _UNIT)
+    slope = max(abs(_stiffness(low, form[0])), abs(_stiffness(high, form[0])))
+    least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
+    push = max(least_push, abs(_force(high, form[0])))
+    if mixed:
+        for i in range(count):
+            slope = max(slope, abs(_stiffness(max(state[i], low), form[i])))
+            push = max(push, abs(_force(state[i], form[i])))
+    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
+    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
+    return float(count * each)
