@@ -6,6 +6,7 @@ Kernels are compiled with ``njit`` from here. A loop that is to be handed its ke
 import hashlib
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import FunctionType
@@ -30,12 +31,14 @@ def _cache_folder() -> str | None:
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(package.rglob("*.py")):
         digest.update(source.read_bytes())
-    folder = Path(platformdirs.user_cache_dir("roughmdr")) / digest.hexdigest()[:16]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return None
-    return str(folder) if os.access(folder, os.W_OK) else None
+    for base in (platformdirs.user_cache_dir("roughmdr"), _config.CACHE_DIR):  # the second is NUMBA_CACHE_DIR
+        folder = Path(base) / digest.hexdigest()[:16]
+        with suppress(OSError):
+            if base:
+                folder.mkdir(parents=True, exist_ok=True)
+                if os.access(folder, os.W_OK):
+                    return str(folder)
+    return None
 
 
 def njit(function: _Function, *, inline: bool = False) -> _Function:
