@@ -116,8 +116,8 @@ def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:
     count = result.variables[name].values
     first, last = (int((count[..., step] > 0.0).sum()) for step in (0, -1))
     if first or last:
-        curves = count[..., 0].size
-        yield "note", f"in contact at the first step in {first}, at the last in {last} of {curves} curves"
+        what = f"{count[..., 0].size} {'runs' if name == 'contact_count' else 'cells'}"
+        yield "note", f"in contact at the first step in {first}, at the last in {last} of {what}"
 
 
 def _several(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:

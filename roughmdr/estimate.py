@@ -16,6 +16,7 @@ import tomli_w
 from roughmdr.aggregate import Route, compute
 from roughmdr.errors import RoughmdrError
 from roughmdr.plan import Cell, Plan, prepare_all
+from roughmdr.shapes import SHAPES
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
 _STEPS = 500
@@ -23,13 +24,6 @@ _CELLS = 12
 _REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
-
-# As little as a run can be; all else that it takes is to start.
-_SMALLEST = {
-    "material": {"effective_modulus": 1e6},
-    "asperities": {"source": "random", "shape": "paraboloid", "count": 1, "patch": 1.0, "height": 0.0, "radius": 1.0},
-    "path": {"separation": [0.0]},
-}
 
 
 class Estimate(NamedTuple):
@@ -55,7 +49,7 @@ class _Cost(NamedTuple):
 def estimate(plan: Plan, workers: int) -> Estimate:
     """The cost of a plan, from single runs of a few of its cells and from a run of next to nothing."""
     prepare_all(plan)
-    start_up, resident = _start_up(), _resident()
+    start_up, resident = _start_up(plan.cells[0]), _resident()
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
     costs = [_cost(plan, plan.cells[i]) for i in sorted(chosen.tolist())]
     busy = min(workers, len(plan.tasks), _cores())
@@ -98,11 +92,19 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 
 
-def _start_up() -> float:
-    """Seconds that a run of next to nothing takes."""
+def _start_up(cell: Cell) -> float:
+    """Seconds of a run that is as little as a run of the cell's kind can be: all of it is to start."""
+    shape = SHAPES[cell.scene.asperities.shape]
+    asperities = {"source": "random", "shape": shape.name, "count": 1, "patch": 1.0, "height": 0.0}
+    smallest = {
+        "material": {"effective_modulus": 1.0},
+        "adhesion": {"model": "jkr", "work": cell.scene.work and 1.0},
+        "asperities": {**asperities, **dict.fromkeys(shape.spellings[0], 1.0)},
+        "path": {"separation": [0.0]},
+    }
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "scene.toml"
-        scene.write_text(tomli_w.dumps(_SMALLEST))
+        scene.write_text(tomli_w.dumps(smallest))
         command = [sys.executable, "-P", "-m", "roughmdr", "run", str(scene), "-o", str(scene.with_suffix(".nc"))]
         started = time.perf_counter()
         done = subprocess.run(command, capture_output=True, text=True, check=False)
