@@ -203,3 +203,10 @@ def test_no_leaf_takes_nonsense_in_silence(leaf: tuple[str, ...], value: object)
 def test_a_path_beyond_all_floats_is_refused() -> None:
     with pytest.raises(rm.SceneError, match="largest float"):
         rm.run(scene(path={"separation": {"start": "1e308 m", "stop": "-1e308 m", "steps": 3}}))
+
+
+def test_the_scene_of_a_sweep() -> None:
+    asked = read(SCENES / "work_and_roughness.toml")
+    assert asked.sweep.sizes == {"adhesion_work": 3, "asperities_height_std": 5}
+    assert len(asked.cells) == 15
+    assert asked.cells[1].asperities.sigma == pytest.approx(10.0**-6.5)
