@@ -22,7 +22,7 @@ class PullOff(NamedTuple):
     standard_error: Floats
     """NaN for a single realisation, which has none."""
     change: Floats
-    """By how much, on average, the force changes there to the next step of the path: how well the path resolves it."""
+    """By how much, on average, the force changes there from step to step of the path: how well the path resolves it."""
     tensile: NDArray[np.int64]
     """How many of the curves are tensile at all."""
     curves: int
@@ -40,17 +40,18 @@ def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
     if not retracting.size:
         raise StoreError("the flat never retracts, so that nothing is pulled off: add path.unload = true")
     if "force" in held:
-        force = held["force"].values[..., retracting]
+        whole = held["force"].values
     elif "force_mean" in held:
-        force = held["force_mean"].values[..., None, retracting]
+        whole = held["force_mean"].values[..., None, :]
     else:
         raise StoreError("the result holds no force: add it to output.variables")
+    force = whole[..., retracting]
     where = np.argmin(force, axis=-1)[..., None]
     lowest = np.take_along_axis(force, where, axis=-1)[..., 0]
     mean, error = mean_and_error(np.minimum(lowest, 0.0), axis=-1)
     if "force" not in held:
         at_lowest = np.take_along_axis(held["force_sem"].values[..., None, retracting], where, axis=-1)
         error = np.where(mean < 0.0, at_lowest[..., 0, 0], 0.0)
-    steps = np.abs(np.diff(force, axis=-1, append=force[..., -1:], prepend=force[..., :1]))
-    beside = np.maximum(*(np.take_along_axis(steps, where + i, axis=-1)[..., 0] for i in (0, 1)))
+    steps = np.abs(np.diff(whole, axis=-1, append=whole[..., -1:], prepend=whole[..., :1]))
+    beside = np.maximum(*(np.take_along_axis(steps, retracting[where] + i, axis=-1)[..., 0] for i in (0, 1)))
     return PullOff(mean, error, beside.mean(axis=-1), (lowest < 0.0).sum(axis=-1), force.shape[-2])

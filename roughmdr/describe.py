@@ -96,7 +96,7 @@ def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
         what = "largest tension of the mean curve on the way back ± its standard error there"
     elif realizations_of(result) == 1:
         what = "largest tension on the way back; one realisation has no standard error"
-    yield "", f"({what}; in brackets its change to the next step of the path)"
+    yield "", f"({what}; in brackets its change there from step to step of the path)"
 
 
 def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:

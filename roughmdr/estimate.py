@@ -24,6 +24,7 @@ _CELLS = 12
 _REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
+_STEP = 70  # bytes of a step of the path itself: its separation, and the name of its branch
 
 
 class Estimate(NamedTuple):
@@ -57,6 +58,7 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     one = _NUMBER * plan.cells[0].route.separation.size  # curve
     curves = one * len(variables) * plan.runs
     kept = curves if plan.scene.output.keep == "curves" else 4 * one * len(variables) * len(plan.cells)
+    kept += _STEP * plan.cells[0].route.separation.size
     beside = one * plan.runs  # the parts of a variable are put together beside all
     return Estimate(
         seconds=start_up + float(np.mean([cost.seconds for cost in costs])) * plan.runs / busy + kept / _DISK,

@@ -7,8 +7,10 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate import Route, prepare
+from roughmdr.aggregate.route import branches
 from roughmdr.errors import SceneError
 from roughmdr.labelled import Array
 from roughmdr.scene import Scene
@@ -97,15 +99,15 @@ def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
 
 def _cells(scene: Scene) -> Iterator[Cell]:
     known: dict[tuple[bytes, bool], Route] = {}
-    branches: list[str] = []
+    first: NDArray[np.str_] | None = None
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         way_in = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = way_in.tobytes(), cell.work > 0.0
         if key not in known:
             known[key] = Route.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            found = known[key].branch().values.tolist()
-            branches = branches or found
-            if found != branches:
+            found = branches(known[key].separation)
+            first = found if first is None else first
+            if not np.array_equal(found, first):
                 other = f"sweep: with {in_words(values)} the flat goes another way, in or out,"
                 raise SceneError(f"{other} than in the first cell")
         yield Cell(cell, known[key])

@@ -15,8 +15,8 @@ _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to mi
 def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
     """Mean and its standard error over the realisations on an axis; the error of a single one is NaN."""
     count = values.shape[axis]
-    _, power = np.frexp(np.max(np.abs(values)))  # so that no square leaves the range of a float
-    scaled = np.ldexp(values, -power)
+    _, powers = np.frexp(np.max(np.abs(values), axis=axis, keepdims=True))  # no square may leave the range of a float
+    scaled, power = np.ldexp(values, -powers), powers.squeeze(axis)
     mean = np.asarray(np.ldexp(scaled.mean(axis=axis), power))
     if count < 2:
         return mean, np.full_like(mean, math.nan)

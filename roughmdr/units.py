@@ -11,8 +11,12 @@ _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k"
 _LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
 _ALONE = {
     "m": {
-        **{f"{prefix}met{end}": Decimal(10) ** power for prefix, power in _LENGTHS.items() for end in ("er", "re")},
-        **{"micron": Decimal("1e-6"), "angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")},
+        **{
+            f"{prefix}met{end}": Decimal(10) ** power
+            for prefix, power in _LENGTHS.items()
+            for end in ("er", "re", "ers", "res")
+        },
+        **{"micron": Decimal("1e-6"), "microns": Decimal("1e-6"), "angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")},
     },
     "J/m^2": {"erg/cm^2": Decimal("1e-3")},
 }
@@ -84,6 +88,7 @@ def quantity(value: object, dimension: str) -> float:
 
 def unit_factor(unit: str, dimension: str) -> Decimal:
     """What one ``unit`` is in SI; no unit means SI. RoughmdrError where it is no unit of the dimension."""
+    unit = unit.strip()
     if unit in ("", dimension):
         return Decimal(1)
     if dimension == DIMENSIONLESS:

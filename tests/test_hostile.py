@@ -14,6 +14,7 @@ from scenes import ASPERITIES, ensemble, scene
 from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
+from roughmdr.analysis import pull_off_force
 from roughmdr.cli import main
 from roughmdr.plan import make_plan
 from roughmdr.scene import read
@@ -278,3 +279,79 @@ def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None
     assert len(caught.value.faults) == len(expected), str(caught.value)
     for fault, (line, text) in zip(caught.value.faults, expected, strict=True):
         assert str(fault).startswith(f"{folder / 'many.toml'}:{line}: {text}")
+
+
+def test_the_resolution_of_a_pull_off_counts_the_step_before_the_first_on_the_way_back() -> None:
+    result = rm.run(scene(path={"separation": ["4 sigma", "-1 sigma", "2 sigma"]}, batch=None))
+    force = result.force[0].to_numpy()
+    assert pull_off_force(result).change == pytest.approx(abs(force[2] - force[1]), rel=1e-14)
+
+
+@pytest.mark.parametrize("title", ["\ud800", "a\x00b", "\x1b[31mred", "two\nlines", 3])
+def test_a_title_is_one_line_that_can_be_printed(title: object) -> None:
+    with pytest.raises(rm.SceneError, match=r"title = .*: must be a text on one line"):
+        read(scene(title=title))
+
+
+def test_a_scene_in_a_file_with_an_odd_name_or_a_byte_order_mark(folder: Path) -> None:
+    text = tomli_w.dumps(scene(title=None, asperities=SMALL))
+    raw = os.fsencode(folder) + b"/a\xff.toml"
+    with open(raw, "w") as file:
+        file.write(text)
+    done = subprocess.run([*ROUGHMDR, "run", raw, "-o", "x.nc"], cwd=folder, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert read_result(folder / "x.nc").attrs["title"] == "a?"
+    (folder / "mark.toml").write_bytes(b"\xef\xbb\xbf" + text.encode())
+    assert read(folder / "mark.toml").title == "mark"
+
+
+def test_lines_are_counted_as_toml_counts_them(folder: Path) -> None:
+    (folder / "odd.toml").write_text("# \u2028 \u0085\n[material]\nmodulus = 3\npoisson = 0.7\n", encoding="utf-8")
+    with pytest.raises(rm.SceneError, match=r"odd\.toml:4: material\.poisson"):
+        read(folder / "odd.toml")
+
+
+def test_a_part_of_a_swept_range_can_be_changed() -> None:
+    table = scene(sweep={"adhesion.work": {"linspace": [0.01, 0.02], "num": 3}})
+    assert read(table, ["sweep.adhesion.work.num=5"]).sweep.sizes == {"adhesion_work": 5}
+    ends = read(table, ["sweep.adhesion.work.logspace=[0.01, 0.04]"]).sweep.axes[0].values
+    np.testing.assert_allclose(ends, [0.01, 0.02, 0.04])
+    both = ["sweep.adhesion.work.linspace=[0.1,0.2]", "sweep.adhesion.work.num=2"]
+    assert read(scene(), both).sweep.sizes == {"adhesion_work": 2}
+
+
+def test_a_map_without_summits_is_named(folder: Path) -> None:
+    wave(folder / "flat.nc", 0.0)
+    for height in (0.0, 1e300, 1e-300):
+        wave(folder / "flat.nc", height)
+        done = roughmdr(
+            "run", "maps.toml", "-o", "x.nc", "--set", "sweep.asperities.file=['m1.nc','flat.nc']", cwd=folder
+        )
+        assert done.returncode == 2
+        assert "flat.nc: the map has no summit" in done.stderr
+        assert "Warning" not in done.stderr
+
+
+def test_sets_and_paths_in_a_scene_in_python(folder: Path) -> None:
+    surface = {"source": "surface", "file": folder / "m1.nc"}
+    result = rm.run(scene(asperities=surface, output={"variables": {"force", "energy"}}, batch=None))
+    assert {"force", "energy"} <= set(result.data_vars)
+
+
+@pytest.mark.parametrize("unit", ["meters", "metres", "micrometers", "microns", " m "])
+def test_units_of_a_map_as_others_spell_them(folder: Path, unit: str) -> None:
+    with xr.open_dataset(folder / "m1.nc") as data:
+        data["height"].attrs["units"] = unit
+        data.to_netcdf(folder / "spelt.nc")
+    asked = read(scene(asperities={"source": "surface", "file": str(folder / "spelt.nc")}, batch=None))
+    assert asked.asperities.count > 0
+
+
+def test_statistics_of_cells_that_are_far_apart_are_those_of_single_runs() -> None:
+    base = {"adhesion": None, "output": {"keep": "statistics"}, "batch": {"realizations": 5}}
+    values = [1e-200, 1.0, 1e200]
+    swept = rm.run(scene(material={"effective_modulus": 1}, sweep={"material.effective_modulus": values}, **base))
+    for i, modulus in enumerate(values):
+        alone = rm.run(scene(material={"effective_modulus": modulus}, **base))
+        for name in ("force_mean", "force_sem", "stiffness_sem"):
+            np.testing.assert_array_equal(swept[name][i], alone[name])

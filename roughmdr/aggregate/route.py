@@ -25,7 +25,7 @@ class Route(NamedTuple):
 
     def branch(self) -> Array:
         """The branch of each step."""
-        return Array(("step",), np.array(branches(self.separation)), {"long_name": COORDINATES["branch"].long_name})
+        return Array(("step",), branches(self.separation), {"long_name": COORDINATES["branch"].long_name})
 
     def snaps(self) -> NDArray[np.bool_]:
         """Whether contacts may be at the very point of letting go: the flat is as high as ever since it was lower."""
@@ -33,15 +33,11 @@ class Route(NamedTuple):
         return np.asarray((self.memory.top[last] == self.separation) & (self.memory.bottom[last] < self.separation))
 
 
-def branches(separation: Floats) -> list[str]:
+def branches(separation: Floats) -> NDArray[np.str_]:
     """The branch of each step: unloading where the flat rises, or stands at the turning point for the second time."""
-    names: list[str] = []
-    ahead = np.inf  # the next separation that is another one
-    values = separation.tolist()
-    for m in range(len(values) - 1, -1, -1):
-        h = values[m]
-        before = values[m - 1] if m else np.inf
-        if m + 1 < len(values) and values[m + 1] != h:
-            ahead = values[m + 1]
-        names.append("unloading" if h > before or (h == before and ahead > h) else "loading")
-    return names[::-1]
+    before = np.concatenate([[np.inf], separation[:-1]])
+    changes = np.flatnonzero(separation[1:] != separation[:-1]) + 1
+    following = np.searchsorted(changes, np.arange(separation.size), side="right")
+    ahead = np.append(separation[changes], np.inf)[following]  # the next separation that is another one
+    rises = (separation > before) | ((separation == before) & (ahead > separation))
+    return np.where(rises, "unloading", "loading")

@@ -36,7 +36,10 @@ class SurfaceAsperities(Section):
         """The asperities of the map; SceneError where it cannot be read or has none."""
         height, dx, dy = read_map(Path(self.file))
         noise = _ROUNDING * float(np.max(np.abs(height)))
-        return find_summits(remove_quadratic(height), dx, dy, noise)
+        try:
+            return find_summits(remove_quadratic(height), dx, dy, noise)
+        except SceneError as error:
+            raise SceneError(f"{self.file}: {error}") from None
 
     @field_validator("file")
     @classmethod
@@ -157,7 +160,8 @@ def find_summits(height: Floats, dx: float, dy: float, noise: float = 0.0) -> En
     C = 0.6 * moment(0, 2) - 0.4 * moment(2, 0)
     B = moment(1, 1) / 4.0
 
-    determinant = A * C - B * B
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # what no float can hold is no dome
+        determinant = A * C - B * B
     domed = (determinant > 0.0) & (A < 0.0)
     if not domed.any():
         raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")

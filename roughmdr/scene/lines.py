@@ -12,7 +12,7 @@ def key_lines(text: str) -> dict[str, int]:
     """The line, from 1, of every dotted key and table of a text."""
     lines: dict[str, int] = {}
     table = current = ""
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(text.split("\n"), start=1):
         if header := _HEADER.match(line):
             table = current = _plain(header[1])
             lines.setdefault(table, number)

@@ -16,6 +16,7 @@ from roughmdr.scene.keys import put
 from roughmdr.scene.lines import key_lines, line_of
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
+from roughmdr.wording import printable
 
 _PATHS = (("asperities", "file"),)
 """Keys that name a file: in a scene relative to the scene, in --set to the current folder."""
@@ -45,7 +46,8 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     try:
         _settle(table, path.parent if path else Path())
         changed = {_change(table, change) for change in changes}
-        table.setdefault("title", path.stem if path else "scene")
+        stem = path.stem if path else "scene"
+        table.setdefault("title", "".join(letter if letter.isprintable() else "?" for letter in stem))
         scene, faults = validate(table, path)
     except RecursionError:
         raise SceneError(f"{label}: its tables are nested too deeply") from None
@@ -64,7 +66,7 @@ def _text(path: Path) -> str:
     if content.startswith(_NETCDF):
         return _scene_of_result(path)
     try:
-        return content.decode("utf-8")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text file; a scene is TOML in UTF-8") from None
 
@@ -72,7 +74,7 @@ def _text(path: Path) -> str:
 def _hint(message: str, text: str) -> str:
     """What may be wrong on the line that a message of tomllib names."""
     number = re.search(r"line (\d+)", message)
-    line = text.splitlines()[int(number[1]) - 1] if number else ""
+    line = text.split("\n")[int(number[1]) - 1] if number else ""
     bare = re.search(r"=\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?\s*[A-Za-zµμ%/][^#,}\]]*)", line)
     return f'; a number with a unit stands in quotes: "{bare[1].strip()}"' if bare else ""
 
@@ -94,7 +96,7 @@ def _change(table: dict[str, Any], change: str) -> str:
     if not change.isprintable() and change.encode("utf-8", "replace").decode() != change:
         raise SceneError(f"--set {change!r}: is not UTF-8")
     if not equals or not all(parts):
-        raise SceneError(f"--set {change}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
+        raise SceneError(f"--set {printable(change)}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
     dotted = ".".join(parts)
     alone: dict[str, Any] = {}
     put(alone, dotted, _value(value))
@@ -104,13 +106,21 @@ def _change(table: dict[str, Any], change: str) -> str:
             sweep = {} if parts == ["sweep"] else table.get("sweep", {})
             if not isinstance(sweep, dict) or not isinstance(alone["sweep"], dict):
                 raise RoughmdrError("sweep is no table")
-            table["sweep"] = {**sweep, **alone["sweep"]}
+            table["sweep"] = {**sweep, **{key: _merged(sweep.get(key), entry) for key, entry in alone["sweep"].items()}}
         else:
             put(table, dotted, reduce(getitem, parts, alone))
             _no_longer_swept(table, dotted)
     except RoughmdrError as error:
-        raise SceneError(f"--set {change}: {error}") from None
+        raise SceneError(f"--set {printable(change)}: {error}") from None
     return dotted
+
+
+def _merged(before: Any, after: Any) -> Any:
+    """A range of a sweep with a part of it changed; anything else as it is after the change."""
+    if not isinstance(before, dict) or not isinstance(after, dict):
+        return after
+    kept = before if after.keys() <= {"num"} else {key: entry for key, entry in before.items() if key == "num"}
+    return {**kept, **after}
 
 
 def _no_longer_swept(table: dict[str, Any], key: str) -> None:
@@ -134,9 +144,13 @@ def _value(text: str) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """What a scene in Python holds, as TOML would hold it: arrays and tuples as lists, numpy's numbers as Python's."""
+    """What a scene in Python holds, as TOML would: arrays, tuples and sets as lists, numpy's numbers as Python's."""
     if isinstance(value, dict):
         return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, set | frozenset):
+        return sorted(map(_plain, value), key=repr)
+    if isinstance(value, Path):
+        return str(value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value

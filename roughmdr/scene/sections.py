@@ -88,10 +88,16 @@ def _misfit(key: str, message: str) -> PydanticCustomError:
     return PydanticCustomError("misfit", "{message}", {"key": key, "message": message})
 
 
+def _one_line(value: object) -> str:
+    if not isinstance(value, str) or not value.isprintable():
+        raise RoughmdrError("must be a text on one line, of characters that can be printed")
+    return value
+
+
 class Scene(Section):
     """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
 
-    title: str
+    title: Annotated[str, BeforeValidator(_one_line)]
     seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
     material: Material
     counter: Body | None = None
