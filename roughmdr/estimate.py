@@ -24,7 +24,8 @@ _CELLS = 12
 _REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
-_STEP = 70  # bytes of a step of the path itself: its separation, and the name of its branch
+# A step of the path itself: its separation, and the name of its branch, which is text.
+_STEP, _STEP_SECONDS = 70, 3e-6  # bytes, seconds
 
 
 class Estimate(NamedTuple):
@@ -58,12 +59,20 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     one = _NUMBER * plan.cells[0].route.separation.size  # curve
     curves = one * len(variables) * plan.runs
     kept = curves if plan.scene.output.keep == "curves" else 4 * one * len(variables) * len(plan.cells)
-    kept += _STEP * plan.cells[0].route.separation.size
+    steps = plan.cells[0].route.separation.size
+    kept += _STEP * steps
     beside = one * plan.runs  # the parts of a variable are put together beside all
     return Estimate(
-        seconds=start_up + float(np.mean([cost.seconds for cost in costs])) * plan.runs / busy + kept / _DISK,
+        seconds=start_up
+        + float(np.mean([cost.seconds for cost in costs])) * plan.runs / busy
+        + kept / _DISK
+        + _STEP_SECONDS * steps,
         start_up=start_up,
-        memory=resident + curves + beside + min(workers, len(plan.tasks)) * max(cost.memory for cost in costs),
+        memory=resident
+        + curves
+        + beside
+        + _STEP * steps
+        + min(workers, len(plan.tasks)) * max(cost.memory for cost in costs),
         resident=resident,
         file=kept,
     )
