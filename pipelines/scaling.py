@@ -1,4 +1,4 @@
-"""What the sum costs: time a visited asperity and step, beside NumPy and SciPy; two workers; a million; plans.
+"""What the sum costs: time a visited asperity and step, beside NumPy and SciPy; two workers; a million.
 
     python pipelines/scaling.py -o results/studies
 
@@ -172,63 +172,6 @@ def million(count: int) -> tuple[float, float]:
     return float(seconds), float(size)
 
 
-_FORESEE = """
-import sys
-from roughmdr.estimate import estimate
-from roughmdr.plan import make_plan
-from roughmdr.scene import read
-foreseen = estimate(make_plan(read(sys.argv[1], sys.argv[2:])), 2)
-print(foreseen.seconds, foreseen.memory)
-"""
-_TAKE = """
-import sys
-from roughmdr.cli import main
-changes = [part for change in sys.argv[2:] for part in ("--set", change)]
-main(["run", sys.argv[1], "-o", sys.argv[1] + ".nc", "--quiet", *changes], standalone_mode=False)
-with open("/proc/self/status") as status:
-    print(next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM")))
-"""
-FORESEEN = {
-    "16 x 1000": [],
-    "256 x 2000": ["batch.realizations=256", "asperities.count=2000"],
-    "sweep": [
-        *("batch.realizations=32", "asperities.count=2000", "sweep.adhesion.work=[0.01,0.02,0.05]"),
-        "sweep.asperities.height.std={logspace=['0.1 um','10 um'],num=5}",
-    ],
-    "4 x 1e6": ["batch.realizations=4", "asperities.count=1000000"],
-    "80000 steps": ["batch.realizations=64", "asperities.count=200", "path.separation.steps=40000"],
-}
-
-
-def _output(code: str, arguments: list[str]) -> str:
-    done = subprocess.run([sys.executable, "-c", code, *arguments], check=True, capture_output=True, text=True)
-    return done.stdout
-
-
-def foreseen(names: list[str]) -> xr.Dataset:
-    """Time and memory of a run of each scene as ``roughmdr plan`` foresees them, and as the run then takes them."""
-    rows = []
-    with tempfile.TemporaryDirectory() as folder:
-        scene = Path(folder) / "scene.toml"
-        subprocess.run([sys.executable, "-m", "roughmdr", "new", str(scene)], check=True, capture_output=True)
-        for name in names:
-            command = [str(scene), *FORESEEN[name]]
-            plan = subprocess.run(
-                [sys.executable, "-c", _FORESEE, *command], check=True, capture_output=True, text=True
-            )
-            started = time.perf_counter()
-            run = subprocess.run([sys.executable, "-c", _TAKE, *command], check=True, capture_output=True, text=True)
-            rows.append([*map(float, plan.stdout.split()), time.perf_counter() - started, float(run.stdout)])
-    seconds, size, took, held = np.array(rows).T
-    return xr.Dataset(
-        {
-            "time": (("scene", "of"), np.stack([seconds, took], axis=1), {"units": "s", "long_name": "time of a run"}),
-            "memory": (("scene", "of"), np.stack([size, held], axis=1), {"units": "byte", "long_name": "peak memory"}),
-        },
-        coords={"scene": names, "of": ["plan", "run"]},
-    )
-
-
 def study(quick: bool) -> xr.Dataset:
     """All figures; ``quick`` on small ensembles, for a look that takes seconds."""
     count, repeats = (20_000, 1) if quick else (1_000_000, 3)
@@ -244,7 +187,6 @@ def study(quick: bool) -> xr.Dataset:
     )
     workers = over_workers(count // 10, 16, repeats)
     seconds, size = million(count)
-    plans = foreseen(list(FORESEEN)[: 1 if quick else None])
     ns = {"units": "ns", "long_name": "time per visited asperity and step"}
     return xr.Dataset(
         {
@@ -255,7 +197,7 @@ def study(quick: bool) -> xr.Dataset:
         },
         coords={"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"], "workers": list(workers)},
         attrs={"title": "What the sum costs", "asperities": count},
-    ).merge(plans)
+    )
 
 
 def draw(result: xr.Dataset, path: Path) -> None:
@@ -290,11 +232,6 @@ def main(output: Path, quick: bool) -> None:
     size = float(result["large_memory"]) / 2**20
     count, seconds = result.attrs["asperities"], float(result["large_time"])
     click.echo(f"{count} asperities, in and out: {seconds:.2f} s, {size:.0f} MB above them")
-    for scene in result["scene"].to_numpy():
-        (planned, took), (size, held) = (result[name].sel(scene=scene).to_numpy() for name in ("time", "memory"))
-        click.echo(
-            f"{scene:<12} planned {planned:6.1f} s {size / 1e6:5.0f} MB, took {took:6.1f} s {held / 1e6:5.0f} MB"
-        )
 
 
 if __name__ == "__main__":

@@ -143,3 +143,16 @@ def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
         assert result.cost.sizes == {"contact": 2, "method": 3}
         assert (result.cost > 0.0).all()
     assert (tmp_path / "scaling.png").stat().st_size > 5000
+
+
+def test_the_study_of_plans_in_its_quick_form(tmp_path: Path) -> None:
+    script = SCENES.parent / "foreseen.py"
+    done = subprocess.run(
+        [sys.executable, script, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(tmp_path / "foreseen.nc") as result:
+        planned, taken = result.memory.sel(of="plan"), result.memory.sel(of="run")
+        assert (planned / taken > 0.5).all()
+        assert (planned / taken < 2.0).all()
+    assert (tmp_path / "foreseen.png").stat().st_size > 5000

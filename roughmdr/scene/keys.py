@@ -55,14 +55,10 @@ def _chosen(sections: list[type[BaseModel]], data: dict[str, Any]) -> list[type[
     """Those sections that take the names in ``data``; all of them where none does."""
 
     def fits(section: type[BaseModel]) -> bool:
-        fixed = {name: get_args(field.annotation) for name, field in section.model_fields.items()}
-        return all(data[name] in names for name, names in fixed.items() if name in data and _is_literal(section, name))
+        declared = {name: field.annotation for name, field in section.model_fields.items() if name in data}
+        return all(data[name] in get_args(kind) for name, kind in declared.items() if get_origin(kind) is Literal)
 
     return [section for section in sections if fits(section)] or sections
-
-
-def _is_literal(section: type[BaseModel], name: str) -> bool:
-    return get_origin(section.model_fields[name].annotation) is Literal
 
 
 def _reader(declared: tuple[Any, ...]) -> Reader | None:
