@@ -14,19 +14,37 @@ if TYPE_CHECKING:
     from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
     from roughmdr.runner import run
     from roughmdr.scene import Scene
-    from roughmdr.shapes import Cone, Paraboloid, PowerLaw
+    from roughmdr.shapes import (
+        CappedParaboloid,
+        Cone,
+        FlatPunch,
+        Paraboloid,
+        PowerLaw,
+        RoundedCone,
+        RoundedPunch,
+        Sphere,
+        TruncatedCone,
+        TruncatedParaboloid,
+    )
     from roughmdr.units import effective_modulus
 
 _HOME = {
+    "CappedParaboloid": "shapes",
     "Cone": "shapes",
+    "FlatPunch": "shapes",
     "OutOfRange": "errors",
     "Paraboloid": "shapes",
     "PowerLaw": "shapes",
     "RoughmdrError": "errors",
+    "RoundedCone": "shapes",
+    "RoundedPunch": "shapes",
     "Scene": "scene",
     "SceneError": "errors",
     "ShapeError": "errors",
+    "Sphere": "shapes",
     "StoreError": "errors",
+    "TruncatedCone": "shapes",
+    "TruncatedParaboloid": "shapes",
     "effective_modulus": "units",
     "generate": "ensemble",
     "indent": "asperity",
@@ -36,15 +54,22 @@ _HOME = {
 }
 
 __all__ = [
+    "CappedParaboloid",
     "Cone",
+    "FlatPunch",
     "OutOfRange",
     "Paraboloid",
     "PowerLaw",
     "RoughmdrError",
+    "RoundedCone",
+    "RoundedPunch",
     "Scene",
     "SceneError",
     "ShapeError",
+    "Sphere",
     "StoreError",
+    "TruncatedCone",
+    "TruncatedParaboloid",
     "effective_modulus",
     "generate",
     "indent",

@@ -89,3 +89,11 @@ def exp(x: Pair) -> Pair:
     y = math.exp(x[0])
     error = add(x, multiply((-1.0, 0.0), log((y, 0.0))))
     return two_sum(y, y * (error[0] + error[1]))
+
+
+@njit
+def sqrt(x: Pair) -> Pair:
+    """The square root of x > 0: the rounded root and what its exact square leaves."""
+    root = math.sqrt(x[0])
+    p, e = two_product(root, root)
+    return two_sum(root, (((x[0] - p) - e) + x[1]) / (2.0 * root))

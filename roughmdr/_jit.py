@@ -14,6 +14,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from roughmdr._rebuilt import rebuilt
+
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -57,6 +59,12 @@ def njit(function: _Function, *, inline: bool = False) -> _Function:
     finally:
         _config.CACHE_DIR = before
     return cast(_Function, compiled)
+
+
+@cache
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a plain function and the plain functions of roughmdr that it calls."""
+    return njit(rebuilt(function, {}, compiled))
 
 
 def specialise(

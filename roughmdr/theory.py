@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats, check_number, check_values
-from roughmdr.asperity import Contact
+from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import Paraboloid

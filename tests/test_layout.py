@@ -13,10 +13,10 @@ import roughmdr as rm
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
-    ("errors", "arguments", "variables", "labelled", "units", "wording", "quantities", "faults", "_jit", "_extended"),
+    ("errors", "arguments", "variables", "labelled", "units", "wording", "quantities", "faults", "_jit", "_rebuilt", "_extended"),
     ("shapes",),
     ("kernels",),
-    ("asperity",),
+    ("contact", "asperity", "equilibria"),
     ("ensemble",),
     ("scene",),
     ("aggregate",),

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 from roughmdr.aggregate.block import least
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
@@ -15,13 +16,14 @@ _adhesive: bool
 _state: Callable[..., float]
 _force: Callable[..., float]
 _stiffness: Callable[..., float]
+_own: Callable[..., Any]
+_mixed: Callable[..., bool]
 
 
 def bound(
     count: int,
     z: Floats,
-    form: Floats,
-    mixed: bool,
+    forms: Floats,
     h: float,
     retracted: bool,
     greatest: Floats,
@@ -36,21 +38,45 @@ def bound(
     a retraction brings a state below that of first touch, x = 1.
     """
     deepest = greatest[DEPTH] if _adhesive else 0.0
-    high = _state(((z[0] - h) + deepest) * greatest[PER_DEPTH], form[0])
+    high = _state(((z[0] - h) + deepest) * greatest[PER_DEPTH], _own(forms, 0))
     low = high
     if _adhesive:
-        low = _state(1.0, form[0])
+        low = _state(1.0, _own(forms, 0))
         if retracted:
             for i in range(count):
                 terms[i] = state[i] if held[i] > 0.0 else math.inf
             low = max(min(low, least(terms, count)), _UNIT)
-    slope = max(abs(_stiffness(low, form[0])), abs(_stiffness(high, form[0])))
+    slope = max(abs(_stiffness(low, _own(forms, 0))), abs(_stiffness(high, _own(forms, 0))))
     least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
-    push = max(least_push, abs(_force(high, form[0])))
-    if mixed:
+    push = max(least_push, abs(_force(high, _own(forms, 0))))
+    if _mixed(forms):
         for i in range(count):
-            slope = max(slope, abs(_stiffness(max(state[i], low), form[i])))
-            push = max(push, abs(_force(state[i], form[i])))
+            slope = max(slope, abs(_stiffness(max(state[i], low), _own(forms, i))))
+            push = max(push, abs(_force(state[i], _own(forms, i))))
+    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
+    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
+    return float(count * each)
+
+
+def bound_curved(
+    count: int,
+    z: Floats,
+    forms: Floats,
+    h: float,
+    retracted: bool,
+    greatest: Floats,
+    held: Floats,
+    state: Floats,
+    terms: Floats,
+) -> float:
+    """The same where each asperity has scales of its own, and k need not grow along its branch: one by one."""
+    slope, push = 0.0, 0.0
+    for i in range(count):
+        if not _adhesive or held[i] > 0.0:
+            form = _own(forms, i)
+            slope = max(slope, abs(_stiffness(state[i], form)))
+            push = max(push, abs(_force(state[i], form)))
+    deepest = greatest[DEPTH] if _adhesive else 0.0
     rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
     each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
     return float(count * each)

@@ -9,17 +9,17 @@ import math
 from collections.abc import Callable
 from functools import cache
 from types import FunctionType
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr._jit import njit, specialise
 from roughmdr.aggregate.block import BLOCK, accumulate, run_on
-from roughmdr.aggregate.bound import bound
+from roughmdr.aggregate.bound import bound, bound_curved
 from roughmdr.aggregate.scales import DEPTH, PER_DEPTH, SCALES, WORTH, measure
 from roughmdr.aggregate.staircase import Staircase
-from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, tally
+from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.laws import Law
@@ -29,6 +29,10 @@ _NOT_REPRESENTABLE = -1
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
 _state: Callable[..., float]
+_state_on: Callable[..., float]
+_rung: Callable[..., float]
+_own: Callable[..., Any]
+_prepare: Callable[..., Floats]
 
 
 @njit
@@ -61,7 +65,7 @@ def _lowest(h: float, begin: int, end: int, bottom: Floats, top: Floats, deepest
 def _settle(
     count: int,
     z: Floats,
-    form: Floats,
+    forms: Floats,
     h: float,
     begin: int,
     end: int,
@@ -86,10 +90,32 @@ def _settle(
                 held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
         for i in range(count):
             x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = _state(x if x > 0.0 else 0.0, form[i])
+            state[i] = _state(x if x > 0.0 else 0.0, _own(forms, i))
     else:
         for i in range(count):
-            state[i] = _state((z[i] - h) * per_depth[i], form[i])
+            state[i] = _state((z[i] - h) * per_depth[i], _own(forms, i))
+
+
+def _settle_branched(
+    count: int,
+    z: Floats,
+    forms: Floats,
+    h: float,
+    begin: int,
+    end: int,
+    bottom: Floats,
+    top: Floats,
+    scales: Floats,
+    held: Floats,
+    state: Floats,
+) -> None:
+    """The same where contacts can be on one of several branches: ``held`` is its number, and comes from the step before."""
+    depth, per_depth = scales[DEPTH], scales[PER_DEPTH]
+    for i in range(count):
+        form = _own(forms, i)
+        x = ((z[i] - h) + depth[i]) * per_depth[i]
+        held[i] = _rung(x if z[i] < h else max(x, 1.0), held[i], form)
+        state[i] = _state_on(x, held[i], form) if held[i] > 0.0 else 0.0
 
 
 def _loop(
@@ -118,13 +144,14 @@ def _loop(
     energetic = wanted[ENERGY] or wanted[DISSIPATED]
     for start in range(0, height.size, BLOCK):
         block = slice(start, min(start + BLOCK, height.size))
-        z, n = height[block], form[block]
+        z = height[block]
         if z[0] < closest:
             break
-        mixed = bool(np.any(n != n[0]))
+        n = _prepare(modulus, work, width, rise, form, start, start + z.size, 0.0)
         if not measure(width[block], rise[block], n, modulus, work, energetic, scales, greatest, terms):
             return _NOT_REPRESENTABLE
         count_before = 0
+        held[:] = 0.0
         held_before[:] = 0.0
         for step in range(separation.size):
             h = separation[step]
@@ -135,12 +162,13 @@ def _loop(
                 _settle(count, z, n, h, begin, end, bottom, top, scales, held, state)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or top[begin] > bottom[begin]
-                    error = bound(count, z, n, mixed, h, retracted, greatest, held, state, terms)
+                    error = bound(count, z, n, h, retracted, greatest, held, state, terms)
                     accumulate(total[ERROR], carried[ERROR], step, error)
-            if _adhesive and wanted[DISSIPATED]:
-                held[count:count_before] = 0.0
-                spent = jumps(max(count, count_before), n, scales[WORTH], held, held_before, terms)
-                accumulate(total[DISSIPATED], carried[DISSIPATED], step, spent)
+            if _adhesive:
+                held[count:count_before] = 0.0  # out of reach
+                if wanted[DISSIPATED]:
+                    spent = jumps(max(count, count_before), n, scales[WORTH], held, held_before, terms)
+                    accumulate(total[DISSIPATED], carried[DISSIPATED], step, spent)
                 count_before = count
             if count > 0:
                 tally(count, n, scales, held, state, terms, wanted, step, total, carried)
@@ -154,17 +182,17 @@ def _loop(
 
 @cache
 def _compiled(law: Law) -> Callable[..., int]:
-    kernels: dict[str, object] = {
-        "_adhesive": law.adhesive,
-        "_natural": law.natural,
-        "_state": law.state,
-        "_radius": law.radius,
-        "_force": law.force,
-        "_stiffness": law.stiffness,
-        "_energy": law.energy,
+    kernels = law.kernels
+    parts = {
+        "measure": measure,
+        "_lowest": _lowest,
+        "_settle": _settle_branched if law.branched else _settle,
+        "bound": bound_curved if law.curved else bound,
+        "jumps": jumps_branched if law.branched else jumps,
+        "tally": tally,
     }
-    for part in (measure, _lowest, _settle, bound, jumps, tally):
-        kernels[part.__name__] = specialise(cast(FunctionType, part), law.name, kernels, inline=True)
+    for name, part in parts.items():
+        kernels[name] = specialise(cast(FunctionType, part), law.name, kernels, inline=True)
     return specialise(cast(FunctionType, _loop), law.name, kernels)
 
 

@@ -13,13 +13,15 @@ DEPTH, PER_DEPTH, SIZE, LOAD, RIGIDITY, WORTH = range(6)
 SCALES = 6
 _SMALLEST, _LARGEST = np.finfo(np.float64).tiny, np.finfo(np.float64).max
 
-_natural: Callable[..., Any]  # the name that ``specialise`` fills
+# Names that ``specialise`` fills with the kernels of a law.
+_natural: Callable[..., Any]
+_own: Callable[..., Any]
 
 
 def measure(
     width: Floats,
     rise: Floats,
-    form: Floats,
+    forms: Floats,
     modulus: float,
     work: float,
     energetic: bool,
@@ -32,7 +34,7 @@ def measure(
     That of the energy is 1 unless it is ``energetic``: unless an energy is wanted.
     """
     for i in range(width.size):  # nothing but this, so that it becomes vector code
-        (depth, _), size, load, rigidity = _natural(modulus, work, width[i], rise[i], form[i])
+        (depth, _), size, load, rigidity = _natural(modulus, work, width[i], rise[i], _own(forms, i))
         scales[DEPTH, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
         scales[SIZE, i] = size

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +22,13 @@ _radius: Callable[..., float]
 _force: Callable[..., float]
 _stiffness: Callable[..., float]
 _energy: Callable[..., float]
+_own: Callable[..., Any]
+_spent: Callable[..., float]
 
 
 def tally(
     count: int,
-    form: Floats,
+    forms: Floats,
     scales: Floats,
     held: Floats,
     state: Floats,
@@ -42,33 +45,32 @@ def tally(
     size, load, rigidity, worth = scales[SIZE], scales[LOAD], scales[RIGIDITY], scales[WORTH]
     if wanted[FORCE]:
         for i in range(count):
-            terms[i] = load[i] * _force(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = load[i] * _force(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[FORCE], carried[FORCE], step, add_up(terms, count))
     if wanted[RADIUS]:
         for i in range(count):
-            terms[i] = size[i] * _radius(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = size[i] * _radius(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[RADIUS], carried[RADIUS], step, add_up(terms, count))
     if wanted[AREA]:
         for i in range(count):
-            a = size[i] * _radius(state[i], form[i])
+            a = size[i] * _radius(state[i], _own(forms, i))
             terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[AREA], carried[AREA], step, add_up(terms, count))
     if wanted[STIFFNESS]:
         for i in range(count):
-            terms[i] = rigidity[i] * _stiffness(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = rigidity[i] * _stiffness(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[STIFFNESS], carried[STIFFNESS], step, add_up(terms, count))
     if wanted[ENERGY]:
         for i in range(count):
-            terms[i] = worth[i] * _energy(state[i], form[i]) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = worth[i] * _energy(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[ENERGY], carried[ENERGY], step, add_up(terms, count))
     if wanted[COUNT]:
-        contacts = float(count)
-        if _adhesive:
-            contacts = add_up(held, count)  # the last use of held: it is spoilt
-        accumulate(total[COUNT], carried[COUNT], step, contacts)
+        for i in range(count):
+            terms[i] = 1.0 if not _adhesive or held[i] > 0.0 else 0.0
+        accumulate(total[COUNT], carried[COUNT], step, add_up(terms, count))
 
 
-def jumps(count: int, form: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
+def jumps(count: int, forms: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
     """The energy [J] lost in the jumps of a block since the step before, of whose contacts it takes the place.
 
     Between two steps the flat moves one way, so that a contact made or lost on the way has jumped once: on at first
@@ -78,9 +80,17 @@ def jumps(count: int, form: Floats, worth: Floats, held: Floats, held_before: Fl
         made = held[i] > held_before[i]
         lost = held[i] < held_before[i]
         if made or lost:
-            energy = _energy(_state(1.0 if made else 0.0, form[i]), form[i])
+            energy = _energy(_state(1.0 if made else 0.0, _own(forms, i)), _own(forms, i))
             terms[i] = worth[i] * (-energy if made else energy)
         else:
             terms[i] = 0.0
+        held_before[i] = held[i]
+    return add_up(terms, count)
+
+
+def jumps_branched(count: int, forms: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
+    """The same where a contact also jumps from one branch to another; ``held`` is the number of the branch."""
+    for i in range(count):
+        terms[i] = worth[i] * _spent(held_before[i], held[i], _own(forms, i)) if held[i] != held_before[i] else 0.0
         held_before[i] = held[i]
     return add_up(terms, count)

@@ -69,9 +69,9 @@ def state_power(x: float, n: float) -> float:
 
 
 @njit
-def state_of_radius(ratio: float, n: float) -> float:
-    """t at a given a/width."""
-    return ratio
+def state_of_radius(radius: float, size: float, n: float) -> float:
+    """t at a contact radius, ``size`` the natural one."""
+    return radius / size
 
 
 @njit
@@ -139,5 +139,11 @@ def natural_force(modulus: float, work: float, width: float, rise: float, n: flo
 
 @njit
 def radius_of_force(x: float, n: float) -> float:
+    """t at x >= 0, the force over that at t = 1: x = t^(n + 1)."""
+    return state_power(x, n + 1.0)
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
     """t at x >= 0, the force over that at t = 1: x = t^(n + 1)."""
     return state_power(x, n + 1.0)

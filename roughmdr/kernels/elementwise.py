@@ -13,19 +13,19 @@ from roughmdr.arguments import Floats
 _kernel: Callable[..., float]  # the name that ``specialise`` fills
 
 
-def _loop(values: Floats, form: float, out: Floats) -> None:
+def _loop(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
     for i in range(values.size):
-        out[i] = _kernel(values[i], form)
+        out[i] = _kernel(values[i], *arguments)
 
 
 @cache
 def _compiled(kernel: Callable[..., float]) -> Callable[..., Any]:
     owner = kernel.__module__.rpartition(".")[2]
-    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__name__}", {"_kernel": kernel})
+    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__qualname__}", {"_kernel": kernel})
 
 
-def apply(kernel: Callable[..., float], values: Floats, form: float) -> Floats:
-    """``kernel(value, form)`` for each of a one-dimensional array of values."""
+def apply(kernel: Callable[..., float], values: Floats, *arguments: object) -> Floats:
+    """``kernel(value, *arguments)`` for each of a one-dimensional array of values."""
     out = np.empty_like(values)
-    _compiled(kernel)(values, form, out)
+    _compiled(kernel)(values, arguments, out)
     return out

@@ -17,6 +17,7 @@ __all__ = [
     "radius",
     "radius_of_force",
     "state",
+    "state_of_force",
     "state_of_radius",
     "stiffness",
 ]
@@ -54,6 +55,12 @@ def state(x: float, n: float) -> float:
 def radius_of_force(x: float, n: float) -> float:
     """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
     return math.exp(2.0 / 3.0 * branch(x, 1.0 / 3.0))
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
+    """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where tau = 3 at x = 0."""
+    return 3.0 * math.exp(branch(x, 1.0 / 3.0) / 3.0) - 1.0
 
 
 @njit

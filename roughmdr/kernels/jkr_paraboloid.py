@@ -75,8 +75,9 @@ def state(x: float, n: float) -> float:
 
 
 @njit
-def state_of_radius(ratio: float, n: float) -> float:
-    """v at a given a/a_c > 0, stable (v > 0) or not."""
+def state_of_radius(radius: float, size: float, n: float) -> float:
+    """v at a contact radius > 0, ``size`` = a_c, stable (v > 0) or not."""
+    ratio = radius / size
     return (ratio - 1.0) / (math.sqrt(ratio) + 1.0)
 
 
@@ -84,6 +85,12 @@ def state_of_radius(ratio: float, n: float) -> float:
 def radius_of_force(x: float, n: float) -> float:
     """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load: (1 + sqrt x)^(2/3)."""
     return float(np.cbrt((1.0 + math.sqrt(x)) ** 2))
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
+    """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load: tau^3 = 3 (1 + sqrt x)."""
+    return float(np.cbrt(3.0 * (1.0 + math.sqrt(x)))) - 1.0
 
 
 @njit

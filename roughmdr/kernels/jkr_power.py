@@ -87,15 +87,23 @@ def state(x: float, n: float) -> float:
 
 
 @njit
-def state_of_radius(ratio: float, n: float) -> float:
-    """l at a given a/a_c > 0, stable (l > 0) or not."""
-    return 0.5 * math.log(ratio)
+def state_of_radius(radius: float, size: float, n: float) -> float:
+    """l at a contact radius > 0, ``size`` = a_c, stable (l > 0) or not."""
+    return 0.5 * math.log(radius / size)
 
 
 @njit
 def radius_of_force(x: float, n: float) -> float:
     """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
     return math.exp(2.0 / 3.0 * branch(x, (2.0 * n - 1.0) / 3.0))
+
+
+@njit
+def state_of_force(x: float, n: float) -> float:
+    """l at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where l = (ln 3)/e at x = 0; near n = 1/2 a large
+    number, so that ``radius_of_force`` is the better way to a."""
+    e = 2.0 * n - 1.0
+    return extended.LOG_3[0] / e + branch(x, e / 3.0) / 3.0
 
 
 @njit

@@ -1,13 +1,13 @@
-"""Which kernels compute which shape, with and without adhesion. A new shape or adhesion joins by one line here."""
+"""Which kernels compute which shape, with and without adhesion. A new adhesion joins by one line here, a new shape by none."""
 
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels import elastic, jkr_cone, jkr_paraboloid, jkr_power
+from roughmdr.kernels import curved, elastic, flat, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.shapes import SHAPES, Curved
 
 Kernel = Callable[..., float]
 
@@ -16,21 +16,34 @@ class Law(NamedTuple):
     """The kernels of one asperity: scalars in, scalars out, reduced by the natural scales of the contact.
 
     ``x`` is the distance to the onset of contact over the natural depth (without adhesion delta/depth, with it
-    1 - delta/delta_c); ``form`` is the third number of ``Shape.stretch``.
+    1 - delta/delta_c, delta_c where a slow retraction ends); ``form`` is one asperity's share of what ``prepare`` made
+    of the third result of ``Shape.stretch``: a number, or a row of numbers.
     """
 
     name: str
     adhesive: bool
+    curved: bool
+    """Whether a form is a row, which holds what was found out about one asperity."""
+    branched: bool
+    """Whether there can be more than one stable branch."""
+    prepare: Callable[..., Floats]
+    """(modulus, work, width, rise, form, start, stop, control) -> the forms of the asperities from start to stop, with
+    control 0 for fixed grips and 1 for dead load."""
+    own: Callable[..., Any]
+    """(forms, i) -> the form of one."""
     natural: Callable[..., tuple[tuple[float, float], float, float, float]]
     """(modulus, work, width, rise, form) -> depth (hi, lo), radius, force, stiffness."""
     natural_force: Callable[..., tuple[tuple[float, float], float]]
-    """(modulus, work, width, rise, form) -> the force (hi, lo) that force control is reduced by, and its radius."""
+    """(modulus, work, width, rise, form under dead load) -> the force (hi, lo) that force control is reduced by, and a
+    radius."""
     state: Kernel
     """(x, form) -> the state on the branch that a retraction follows."""
+    state_of_force: Kernel
+    """(distance to the onset under dead load, form under dead load) -> the state."""
     radius_of_force: Kernel
-    """(x, form) -> a over the radius of ``natural_force``; x is the distance to the onset under dead load."""
+    """(the same, form under dead load) -> a over the radius of ``natural_force``."""
     state_of_radius: Kernel
-    """(a over natural radius, form) -> the state."""
+    """(a, natural radius, form) -> the state."""
     distance: Kernel
     """(state, form) -> x."""
     radius: Kernel
@@ -41,66 +54,95 @@ class Law(NamedTuple):
     """(state, form) -> k over natural stiffness."""
     energy: Kernel
     """(state, form) -> elastic and surface energy over natural force times natural depth."""
+    mixed: Kernel | None = None
+    """forms -> whether they differ; None where the law is curved."""
+    state_on: Kernel | None = None
+    """(x, rung, form) -> the state on branch number ``rung``; this and what follows only where the law is branched."""
+    rung: Kernel | None = None
+    """(x, rung before, form) -> the branch after a way in one direction, 0 out of contact."""
+    spent: Kernel | None = None
+    """(rung before, rung after, form) -> the energy lost between."""
+
+    @property
+    def kernels(self) -> dict[str, object]:
+        """Each under its name with an underscore before it, as loops ask ``specialise`` for them."""
+        return {f"_{name}": value for name, value in self._asdict().items()}
 
 
-def _elastic(name: str, natural: Callable[..., Any], state: Kernel, force: Kernel, energy: Kernel) -> Law:
-    return Law(
-        name=f"elastic_{name}",
-        adhesive=False,
-        natural=natural,
-        natural_force=elastic.natural_force,
-        state=state,
-        radius_of_force=elastic.radius_of_force,
-        state_of_radius=elastic.state_of_radius,
-        distance=elastic.distance,
-        radius=elastic.radius,
-        force=force,
-        stiffness=elastic.stiffness,
-        energy=energy,
-    )
+def _scalar(name: str, module: ModuleType, adhesive: bool, **others: Kernel) -> Law:
+    """The law of a module's kernels; ``others`` are those that have another name there."""
+    names = [name for name in Law._fields if name not in others and hasattr(module, name)]
+    own = {kernel: getattr(module, kernel) for kernel in names}
+    ready = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed}
+    return Law(name, adhesive, curved=False, branched=False, **ready, **own, **others)
+
+
+def _curved(shape: type[Curved], adhesive: bool) -> Law:
+    """The law of a shape that is known by its profile."""
+    built = curved.build(shape)
+    kernels = {name: built[name] for name in Law._fields if name in built}
+    name = f"{'jkr' if adhesive else 'elastic'}_{shape.name}"
+    return Law(name, adhesive, curved=True, branched=adhesive and shape.branched(), **kernels)
 
 
 _ELASTIC = {
-    "paraboloid": _elastic(
-        "paraboloid",
-        elastic.natural_paraboloid,
-        elastic.state_paraboloid,
-        elastic.force_paraboloid,
-        elastic.energy_paraboloid,
+    "paraboloid": _scalar(
+        "elastic_paraboloid",
+        elastic,
+        False,
+        natural=elastic.natural_paraboloid,
+        state=elastic.state_paraboloid,
+        force=elastic.force_paraboloid,
+        energy=elastic.energy_paraboloid,
     ),
-    "cone": _elastic("cone", elastic.natural_cone, elastic.state_cone, elastic.force_cone, elastic.energy_cone),
-    "power_law": _elastic(
-        "power_law", elastic.natural_power, elastic.state_power, elastic.force_power, elastic.energy_power
+    "cone": _scalar(
+        "elastic_cone",
+        elastic,
+        False,
+        natural=elastic.natural_cone,
+        state=elastic.state_cone,
+        force=elastic.force_cone,
+        energy=elastic.energy_cone,
     ),
+    "power_law": _scalar(
+        "elastic_power_law",
+        elastic,
+        False,
+        natural=elastic.natural_power,
+        state=elastic.state_power,
+        force=elastic.force_power,
+        energy=elastic.energy_power,
+    ),
+    "flat_punch": _scalar("elastic_flat_punch", flat, False, state_of_force=flat.state, radius_of_force=flat.radius),
 }
 _JKR = {
-    name: Law(
-        name=f"jkr_{name}",
-        adhesive=True,
-        natural=kernels.natural,
-        natural_force=kernels.natural_force,
-        state=kernels.state,
-        radius_of_force=kernels.radius_of_force,
-        state_of_radius=kernels.state_of_radius,
-        distance=kernels.distance,
-        radius=kernels.radius,
-        force=kernels.force,
-        stiffness=kernels.stiffness,
-        energy=kernels.energy,
-    )
-    for name, kernels in (("paraboloid", jkr_paraboloid), ("cone", jkr_cone), ("power_law", jkr_power))
+    "paraboloid": _scalar("jkr_paraboloid", jkr_paraboloid, True),
+    "cone": _scalar("jkr_cone", jkr_cone, True),
+    "power_law": _scalar("jkr_power_law", jkr_power, True),
+    "flat_punch": _scalar(
+        "jkr_flat_punch",
+        flat,
+        True,
+        state=flat.state_jkr,
+        state_of_force=flat.state_jkr,
+        radius_of_force=flat.radius,
+        distance=flat.distance_jkr,
+        energy=flat.energy_jkr,
+    ),
 }
 
 
 def choose(shape: str, work: float, form: Floats) -> Law:
-    """The law of asperities of one shape under a work of adhesion [J/m2].
+    """The law of asperities of one shape under a work of adhesion [J/m2]; ``form`` as from ``Shape.stretch``.
 
     OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
     two springs' laws are parallel.
     """
-    if work == 0.0:
-        return _ELASTIC[shape]
-    lowest = float(np.min(form, initial=np.inf))
-    if not lowest > 0.5:
-        raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
-    return _JKR[shape]
+    kind = SHAPES[shape]
+    if work > 0.0:
+        lowest = kind.least_exponent(form)
+        if not lowest > 0.5:
+            raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
+    if issubclass(kind, Curved):
+        return _curved(kind, work > 0.0)
+    return (_JKR if work > 0.0 else _ELASTIC)[shape]

@@ -1,14 +1,18 @@
 """What every axisymmetric profile offers: f, g and G over arrays, and its reduction to width, rise and form."""
 
+import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import fields
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr._rebuilt import rebuilt
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.shapes.profile import Profile, no_dips
 
 
 class Shape(ABC):
@@ -23,6 +27,8 @@ class Shape(ABC):
     """Unit of each parameter, in the order of the arguments."""
     spellings: ClassVar[tuple[tuple[str, ...], ...]]
     """The sets of parameters that describe the shape, any one of them whole."""
+    not_below: ClassVar[tuple[tuple[str, str, str], ...]] = ()
+    """Pairs of parameters of which the first must not be below the second, and why."""
 
     @abstractmethod
     def f(self, r: ArrayLike) -> Floats:
@@ -38,6 +44,16 @@ class Shape(ABC):
 
     @classmethod
     @abstractmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        """f'(r) [1] of asperities at one radius r [m] each."""
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
+        return np.full_like(next(iter(parameters.values())), np.inf)
+
+    @classmethod
+    @abstractmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """Width [m], rise [m] and form [1] of asperities whose parameters come as equally long arrays."""
 
@@ -50,6 +66,11 @@ class Shape(ABC):
         allowed = ", or ".join(" and ".join(spelling) for spelling in cls.spellings)
         got = " and ".join(name for name in cls.units if name in given) or "nothing"
         raise ShapeError(f"{cls.name}: got {got}; it takes {allowed}")
+
+    @classmethod
+    def least_exponent(cls, form: Floats) -> float:
+        """The least n among the tips f ~ r^n of asperities, from the third column of ``stretch``."""
+        return math.inf
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -69,15 +90,79 @@ class Shape(ABC):
         for name, value in parameters.items():
             if isinstance(value, bool) or np.ndim(value) != 0:
                 raise ShapeError(f"{type(self).name}: {name} is {value!r}; it must be one number")
-            check_positive(type(self).name, name, value)
+        self.check(parameters)
+
+    @classmethod
+    def check(cls, parameters: Mapping[str, ArrayLike]) -> None:
+        """ShapeError where a parameter, a number or an array over asperities, is out of its range."""
+        for name, values in parameters.items():
+            check_positive(cls.name, name, values)
+        for name, floor, reason in cls.not_below:
+            values, least = np.atleast_1d(parameters[name]), np.atleast_1d(parameters[floor])
+            below = values < least
+            if below.any():
+                where = "" if below.size == 1 else f" at asperity {int(np.argmax(below))}"
+                raise ShapeError(
+                    f"{cls.name}: {name} is {values[below][0]:g}{where}; it must be at least {floor}, "
+                    f"{least[below][0]:g}: {reason}"
+                )
 
 
-def radii(name: str, values: ArrayLike) -> Floats:
-    """``values`` as floats; OutOfRange unless all are finite and at least 0."""
+class Curved(Shape):
+    """A shape whose MDR profile comes from the functions of its ``Profile``, compiled when they are first used."""
+
+    profile: ClassVar[Profile]
+    common: ClassVar[bool] = False
+    """Whether all asperities of an ensemble have the same profile."""
+
+    @classmethod
+    def branched(cls) -> bool:
+        """Whether there can be more than one stable branch with adhesion."""
+        return cls.profile.dip_count is not no_dips
+
+    def precisely(self, t: float) -> tuple[Any, Any, Any]:
+        """a [m], g [m] and a g - G [m2] at t with 40 digits."""
+        from mpmath import mp
+
+        def remake(function: Callable[..., Any]) -> Callable[..., Any]:
+            return rebuilt(function, {"math": mp}, remake)
+
+        with mp.workdps(40):
+            exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
+            width, rise, form = (column[0] for column in self.stretch(exact))
+            a, _, g, _ = remake(self.profile.curve)(mp.mpf(t), [form])
+            return width * a, rise * g, width * rise * remake(self.profile.push)(mp.mpf(t), [form])
+
+    def g(self, x: ArrayLike) -> Floats:
+        return self._along(radii("x", x), lambda curve, swept, t, form: curve(t, form)[2])
+
+    def G(self, a: ArrayLike) -> Floats:
+        width = self.stretched()[0]
+        return width * self._along(radii("a", a), lambda curve, swept, t, form: swept(t, form))
+
+    def _along(self, radius: Floats, value: Callable[..., float]) -> Floats:
+        """The rise times ``value`` at each contact radius; 0 on the flat."""
+        from roughmdr._jit import compiled  # it alone needs the compiler
+
+        width, rise, form = self.stretched()
+        curve, swept, place = (compiled(part) for part in (self.profile.curve, self.profile.swept, self.profile.place))
+        numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
+        begin = width if self.profile.flat else 0.0
+        flat = [value(curve, swept, place(a, width, numbers), numbers) if a > begin else 0.0 for a in radius.flat]
+        results = rise * np.array(flat, dtype=np.float64).reshape(radius.shape)
+        if not np.isfinite(results).all():
+            worst = radius[~np.isfinite(results)].flat[0]
+            raise OutOfRange(f"{self.name}: a radius of {worst:g} m lies beyond what it can touch, or a float can hold")
+        return results
+
+
+def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:
+    """``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``most``."""
     numbers = np.asarray(values, dtype=np.float64)
-    wrong = ~(np.isfinite(numbers) & (numbers >= 0.0))
+    wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= most))
     if wrong.any():
-        raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0")
+        above = "" if math.isinf(most) else f" and at most {most:g} m"
+        raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0{above}")
     return numbers
 
 

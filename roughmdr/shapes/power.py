@@ -27,6 +27,13 @@ class _Power(Shape):
         return np.asarray(radius * self.g(radius) / (self.stretched()[2] + 1.0))
 
 
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        width, rise, exponent = cls.stretch(parameters)
+        with np.errstate(divide="ignore"):  # below n = 1 the tip is infinitely steep
+            return np.asarray(exponent * rise / width * (r / width) ** (exponent - 1.0))
+
+
 @dataclass(frozen=True)
 class Paraboloid(_Power):
     """f = r^2/(2 R): the sphere of radius R [m] as Hertz and JKR take it. ShapeError unless R > 0."""
@@ -36,6 +43,11 @@ class Paraboloid(_Power):
     name: ClassVar[str] = "paraboloid"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        """R: there the sphere that the paraboloid stands for is over."""
+        return parameters["radius"]
 
     @classmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
@@ -80,6 +92,10 @@ class PowerLaw(_Power):
         ("exponent", "coefficient"),
         ("exponent", "width", "rise"),
     )
+
+    @classmethod
+    def least_exponent(cls, form: Floats) -> float:
+        return float(np.min(form, initial=np.inf))
 
     @classmethod
     def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:

@@ -8,7 +8,7 @@ from test_accuracy import SHAPES, draw
 from twins import Real, Twin, mp
 
 import roughmdr as rm
-from roughmdr.asperity import Contact
+from roughmdr.contact import Contact
 from roughmdr.kernels.elementwise import apply
 
 E, W, R = 4e6, 0.05, 5e-5

@@ -1,0 +1,164 @@
+"""One asperity in contact: a law with the natural scales of the asperity, and its state from each of the controls."""
+
+import math
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from roughmdr.arguments import Floats, check_number
+from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.kernels.elementwise import apply
+from roughmdr.kernels.exact import exact_depth
+from roughmdr.kernels.laws import Law, choose
+from roughmdr.shapes import Curved, FlatPunch, Shape
+
+Results = dict[str, Floats]
+
+_FIXED_GRIPS, _DEAD_LOAD = 0.0, 1.0
+
+
+class Contact(NamedTuple):
+    """A law with the natural scales of one asperity."""
+
+    law: Law
+    shape: Shape
+    modulus: float
+    work: float
+    form: Any
+    depth: tuple[float, float]
+    radius: float
+    force: float
+    stiffness: float
+
+    @classmethod
+    def of(cls, shape: Shape, modulus: float, work: float) -> "Contact":
+        """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
+        if not isinstance(shape, Shape):
+            raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
+        modulus = check_number("modulus", modulus, "Pa")
+        work = check_number("work", work, "J/m^2", zero=True)
+        width, rise, form = shape.stretched()
+        law = choose(shape.name, work, np.array([form]))
+        with np.errstate(all="ignore"):  # what overflows is refused below
+            form = _prepared(law, shape, modulus, work, _FIXED_GRIPS)
+            contact = cls(law, shape, modulus, work, form, *law.natural(modulus, work, width, rise, form))
+        contact._check(
+            indentation=contact.depth[0],
+            contact_radius=contact.radius,
+            force=contact.force,
+            stiffness=contact.stiffness,
+        )
+        return contact._replace(depth=contact._exact(contact.depth, form))
+
+    def _under_load(self) -> tuple[tuple[float, float], float, Any]:
+        """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
+        width, rise, _ = self.shape.stretched()
+        with np.errstate(all="ignore"):
+            form = _prepared(self.law, self.shape, self.modulus, self.work, _DEAD_LOAD)
+            force, radius = self.law.natural_force(self.modulus, self.work, width, rise, form)
+        self._check(force=force[0], contact_radius=radius)
+        return self._exact(force, form), radius, form
+
+    def _exact(self, depth: tuple[float, float], form: Any) -> tuple[float, float]:
+        """A natural depth with the digits that the fold needs."""
+        if not (self.law.adhesive and self.law.curved):
+            return depth
+        return exact_depth(cast(Curved, self.shape), self.modulus, self.work, form)
+
+    def _check(self, **scales: float) -> None:
+        for quantity, scale in scales.items():
+            if not np.finfo(float).tiny <= scale < math.inf:
+                raise OutOfRange(
+                    f"the natural {quantity} is not representable (2e-308 to 2e308 in SI): "
+                    f"modulus {self.modulus:g} Pa, work {self.work:g} J/m^2, {self.shape}"
+                )
+
+    def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
+        """Distance >= 0 of ``value`` to the onset of contact over ``scale``: to the fold at -scale, or to 0.
+
+        The float that is nearest to the fold stands for the fold itself.
+        """
+        if not self.law.adhesive:
+            return np.asarray(value / scale[0])
+        distance = ((value + scale[0]) + scale[1]) / scale[0]
+        return np.where(value == -scale[0], 0.0, distance).clip(min=0.0)
+
+    def pull_off(self, control: str) -> Results:
+        """Where a slow retraction ends under "displacement" or "force"; one number each."""
+        if control == "displacement":
+            fold = np.array([-self.depth[0]])
+            return {**self.at_indentation(fold), "indentation": fold}
+        return self.at_force(np.array([-self._under_load()[0][0]]))
+
+    def at_indentation(self, delta: Floats) -> Results:
+        """The contact as on retraction; zeros where there is none."""
+        law = self.law
+        onset = -self.depth[0] if law.adhesive else 0.0
+        touching = (delta >= onset) if law.adhesive else (delta > 0.0)
+        state = apply(law.state, np.where(touching, self.reduced(delta, self.depth), 1.0), self.form)
+        one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
+        off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, self.form), state)
+        results = {
+            "force": self.force * apply(law.force, state, self.form),
+            "contact_radius": self.radius * apply(law.radius, state, self.form),
+            "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
+        }
+        return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+
+    def at_force(self, force: Floats) -> Results:
+        """The contact on the branch that is stable under dead load; OutOfRange where there is none."""
+        law = self.law
+        scale, radius_there, form = self._under_load()
+        lowest = -scale[0] if law.adhesive else 0.0
+        if (force < lowest).any():
+            worst = float(force.min())
+            raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
+        touching = (force >= lowest) if law.adhesive else (force > 0.0)
+        distance = np.where(touching, self.reduced(force, scale), 1.0)
+        state = apply(law.state_of_force, distance, form)
+        results = {
+            "indentation": self._indentation(state),
+            "contact_radius": radius_there * apply(law.radius_of_force, distance, form),
+            "stiffness": self.stiffness * apply(law.stiffness, state, self.form),
+        }
+        return {**{name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}, "force": force}
+
+    def at_radius(self, radius: Floats) -> Results:
+        """The equilibrium with each radius, stable or not; zeros where it is 0."""
+        law, shape = self.law, self.shape
+        if (radius < 0.0).any():
+            raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
+        if isinstance(shape, FlatPunch):
+            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {shape.radius:g} m")
+        if isinstance(shape, Curved) and shape.profile.flat:
+            on_the_flat = (radius > 0.0) & (radius < self.radius)
+            if on_the_flat.any():
+                raise ShapeError(
+                    f"contact_radius is {radius[on_the_flat][0]:g} m, on the flat of the {shape.name}, where contacts "
+                    f"are not stable; it must be 0, or at least {self.radius:g} m"
+                )
+        touching = radius > 0.0
+        a = np.where(touching, radius, self.radius)
+        state = apply(law.state_of_radius, a, self.radius, self.form)
+        off_the_fold = state
+        if law.adhesive and not law.curved:  # the folds of rows lie between the floats
+            above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.form)
+            off_the_fold = np.where(state == 0.0, above, state)
+        results = {
+            "indentation": self._indentation(state),
+            "force": self.force * apply(law.force, state, self.form),
+            "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
+        }
+        return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+
+    def _indentation(self, state: Floats) -> Floats:
+        """Indentation [m] of each state."""
+        distance = apply(self.law.distance, state, self.form)
+        if not self.law.adhesive:
+            return self.depth[0] * distance
+        return self.depth[0] * (distance - 1.0) - self.depth[1]
+
+
+def _prepared(law: Law, shape: Shape, modulus: float, work: float, control: float) -> Any:
+    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.stretched())
+    return law.own(law.prepare(modulus, work, width, rise, form, 0, 1, control), 0)

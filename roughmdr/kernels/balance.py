@@ -1,0 +1,83 @@
+"""The equilibrium of one curved asperity at a state t: what it takes, what it carries, what it stores (H 25, 32-33, 40-41).
+
+Notation of ``row``. All in units of the shape's width and rise.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import CONTROL, DEPTH, FORM, TENSION
+
+# Names that ``specialise`` fills with the functions of a profile.
+_curve: Callable[..., tuple[float, float, float, float]]
+_push: Callable[..., float]
+_panel_end: Callable[..., float]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+
+
+def load(t: float, row: Floats) -> tuple[float, float]:
+    """The controlled quantity, indentation or force, and its slope over t."""
+    tension, form = row[TENSION], row[FORM:]
+    a, da, g, dg = _curve(t, form)
+    root = math.sqrt(a)
+    if row[CONTROL] == 0.0:
+        return (g - tension * root, dg - 0.5 * tension * da / root) if tension > 0.0 else (g, dg)
+    slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
+    return _push(t, form) - tension * a * root, a * slope
+
+
+def distance(t: float, row: Floats) -> float:
+    """The controlled quantity from the lowest foot on, over its depth; without adhesion from first touch on."""
+    value = load(t, row)[0]
+    return (value + row[DEPTH]) / row[DEPTH] if row[TENSION] > 0.0 else value
+
+
+def radius(t: float, row: Floats) -> float:
+    """a over width."""
+    return _curve(t, row[FORM:])[0]
+
+
+def force(t: float, row: Floats) -> float:
+    """P over 2 E* width rise."""
+    form = row[FORM:]
+    a = _curve(t, form)[0]
+    return _push(t, form) - row[TENSION] * a * math.sqrt(a)
+
+
+def stiffness(t: float, row: Floats) -> float:
+    """k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl), infinite at a smooth fold."""
+    a, da, _, dg = _curve(t, row[FORM:])
+    tension = row[TENSION]
+    if tension == 0.0:
+        return a
+    rising, pull = math.sqrt(a) * dg, 0.5 * tension * da
+    return a * (rising - 3.0 * pull) / (rising - pull)
+
+
+def energy(t: float, row: Floats) -> float:
+    """U over 2 E* width rise^2 DEPTH: ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx, and what the springs' stretch adds."""
+    tension, form = row[TENSION], row[FORM:]
+    a = _curve(t, form)[0]
+    pull = tension * a * math.sqrt(a)
+    return (_strain(t, form) - 2.0 * pull * _push(t, form) + 0.5 * pull * pull / a) / (2.0 * row[DEPTH])
+
+
+def _strain(t: float, form: Floats) -> float:
+    """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
+    total, low = 0.0, 0.0
+    while low < t:
+        high = min(_panel_end(low, form), t)
+        for z, weight in zip(_NODES, _WEIGHTS):
+            at = low + (high - low) * z * z * z * z
+            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, form)[3] * _push(at, form)
+        low = high
+    return total
+
+
+PARTS: tuple[Callable[..., Any], ...] = (load, distance, radius, force, stiffness, _strain, energy)

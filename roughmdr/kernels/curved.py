@@ -1,0 +1,111 @@
+"""The law of asperities with any ``Profile``: what a block of them needs found out once, and the kernels put together."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from types import FunctionType
+from typing import Any, cast
+
+import numpy as np
+
+from roughmdr._extended import Pair
+from roughmdr._jit import compiled, specialise
+from roughmdr.arguments import Floats
+from roughmdr.kernels import balance, branches, folds
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FORM, TENSION
+from roughmdr.shapes.base import Curved
+
+# Names that ``specialise`` fills.
+_place: Callable[..., float]
+state: Callable[..., float]
+radius: Callable[..., float]
+find_branches: Callable[..., None]
+find_start: Callable[..., None]
+
+
+def fill(modulus: float, work: float, width: float, rise: float, control: float, row: Floats) -> None:
+    """The row of one asperity, whose numbers of the shape stand in it already."""
+    row[TENSION] = math.sqrt(2.0 * math.pi * work / modulus) * math.sqrt(width) / rise
+    row[CONTROL] = control
+    find_branches(row)
+    if row[COUNT] > 0.0:
+        find_start(row)
+
+
+def prepare(
+    modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
+) -> Floats:
+    """A row for each of the asperities from start to stop."""
+    rows = np.zeros((stop - start, FORM + 1))
+    for i in range(stop - start):
+        rows[i, FORM] = form[start + i]
+        fill(modulus, work, width[start + i], rise[start + i], control, rows[i])
+    return rows
+
+
+def prepare_common(
+    modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
+) -> Floats:
+    """The one row of asperities that are all alike."""
+    rows = np.zeros((1, FORM + form.shape[1]))
+    rows[0, FORM:] = form[0]
+    fill(modulus, work, width[0], rise[0], control, rows[0])
+    return rows
+
+
+def own(rows: Floats, i: int) -> Floats:
+    """The row of one asperity."""
+    return rows[i]
+
+
+def common(rows: Floats, i: int) -> Floats:
+    """The row of all asperities."""
+    return rows[0]
+
+
+def natural(modulus: float, work: float, width: float, rise: float, row: Floats) -> tuple[Pair, float, float, float]:
+    """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured; 0 where there is none."""
+    depth = rise * row[DEPTH] if row[COUNT] > 0.0 else 0.0
+    return (depth, 0.0), width, 2.0 * modulus * width * rise, 2.0 * modulus * width
+
+
+def natural_force(modulus: float, work: float, width: float, rise: float, row: Floats) -> tuple[Pair, float]:
+    """The depth of a row under dead load [N], and the width [m]."""
+    return ((2.0 * modulus * width * rise * row[DEPTH] if row[COUNT] > 0.0 else 0.0), 0.0), width
+
+
+def state_of_radius(radius: float, width: float, row: Floats) -> float:
+    """t at a contact radius [m]."""
+    return _place(radius, width, row[FORM:])
+
+
+def state_of_force(x: float, row: Floats) -> float:
+    """t at the distance x to the lowest foot of a row under dead load."""
+    return state(x, row)
+
+
+def radius_of_force(x: float, row: Floats) -> float:
+    """a over width at the distance x to the lowest foot of a row under dead load."""
+    return radius(state(x, row), row)
+
+
+@cache
+def build(shape: type[Curved]) -> dict[str, Any]:
+    """The kernels of a shape, by the names that ``Law`` has for them."""
+    profile = shape.profile
+    kernels: dict[str, Any] = {
+        "_curve": compiled(profile.curve),
+        "_push": compiled(profile.push),
+        "_place": compiled(profile.place),
+        "_dip_count": compiled(profile.dip_count),
+        "_dip": compiled(profile.dip),
+        "_kink": compiled(profile.kink),
+        "_panel_end": compiled(profile.panel_end),
+        "_corner": profile.corner,
+    }
+    ends = (prepare, prepare_common, own, common, natural, natural_force, state_of_radius, state_of_force, radius_of_force)
+    for part in (*balance.PARTS, *folds.PARTS, *branches.PARTS, fill, *ends):
+        kernels[part.__name__] = specialise(cast(FunctionType, part), shape.name, kernels)
+    if shape.common:
+        kernels |= {"prepare": kernels["prepare_common"], "own": kernels["common"]}
+    return kernels

@@ -1,0 +1,23 @@
+"""How deep a curved asperity is pulled before it lets go, beyond the digits of a float.
+
+Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt(X) in what is found there.
+"""
+
+from roughmdr._extended import Pair
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import CONTROL, FOLD
+from roughmdr.shapes import Curved
+
+
+def exact_depth(shape: Curved, modulus: float, work: float, row: Floats) -> Pair:
+    """-delta [m] or -P [N] at the lowest foot of a row (H 40-41, 44), as two floats.
+
+    The quantity is stationary there, so that the rounding of t does not matter.
+    """
+    from mpmath import mp
+
+    a, g, push = shape.precisely(float(row[FOLD]))
+    with mp.workdps(40):
+        stretch = mp.sqrt(2 * mp.pi * a * mp.mpf(work) / mp.mpf(modulus))
+        depth = stretch - g if row[CONTROL] == 0.0 else 2 * mp.mpf(modulus) * (a * stretch - push)
+        return float(depth), float(depth - mp.mpf(float(depth)))

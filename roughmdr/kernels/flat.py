@@ -1,0 +1,90 @@
+"""One flat-ended punch, its contact pinned to its edge: P = 2 E* b delta, and with adhesion down to delta = -dl(b) (H 44).
+
+With adhesion all is measured from the depth dl(b), where it lets go (K. Kendall, J. Phys. D 4 (1971) 1186); the state
+is the indentation over it, and so without adhesion, where the depth is b.
+"""
+
+import math
+
+from roughmdr import _extended as extended
+from roughmdr._extended import Pair
+from roughmdr._jit import njit
+
+
+@njit
+def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+    """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where no float can hold the stretch."""
+    depth = (width, 0.0)
+    if work > 0.0:
+        square = extended.divide(extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (modulus, 0.0))
+        if not 1e-280 < square[0] < 1e290:
+            return (0.0, 0.0), 0.0, 0.0, 0.0
+        depth = extended.sqrt(square)
+    return depth, width, 2.0 * modulus * width * depth[0], 2.0 * modulus * width
+
+
+@njit
+def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+    """The force [N] at the depth, and b [m]."""
+    depth = natural(modulus, work, width, rise, n)[0]
+    return extended.multiply(extended.two_product(2.0 * modulus, width), depth), width
+
+
+@njit
+def state(x: float, n: float) -> float:
+    """delta over depth without adhesion."""
+    return x
+
+
+@njit
+def state_jkr(x: float, n: float) -> float:
+    """delta over depth at the distance x to where the contact lets go."""
+    return x - 1.0
+
+
+@njit
+def state_of_radius(radius: float, size: float, n: float) -> float:
+    """None: the radius does not tell the state."""
+    return math.nan
+
+
+@njit
+def distance(s: float, n: float) -> float:
+    """x without adhesion."""
+    return s
+
+
+@njit
+def distance_jkr(s: float, n: float) -> float:
+    """x(s)."""
+    return s + 1.0
+
+
+@njit
+def radius(s: float, n: float) -> float:
+    """a/b."""
+    return 1.0
+
+
+@njit
+def force(s: float, n: float) -> float:
+    """P over 2 E* b depth."""
+    return s
+
+
+@njit
+def stiffness(s: float, n: float) -> float:
+    """k over 2 E* b."""
+    return 1.0
+
+
+@njit
+def energy(s: float, n: float) -> float:
+    """U over 2 E* b depth^2."""
+    return 0.5 * s * s
+
+
+@njit
+def energy_jkr(s: float, n: float) -> float:
+    """U, elastic and surface, over 2 E* b dl^2: pi w b^2 = E* b dl^2/2."""
+    return 0.5 * s * s - 0.25

@@ -1,0 +1,121 @@
+"""The stable branches of one curved asperity: where each begins, at a fold or a corner, and where it ends.
+
+A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g'(a) > tension under fixed grips, and
+> 3 tension under dead load (H 32, 40). Notation of ``row``.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, FORM, MOST, TENSION, TOP, TOP_X
+
+# Names that ``specialise`` fills with the functions of a profile and of ``balance``.
+_curve: Callable[..., tuple[float, float, float, float]]
+_dip_count: Callable[..., int]
+_dip: Callable[..., tuple[float, float]]
+_corner: bool
+load: Callable[..., tuple[float, float]]
+
+_LARGEST = 1e140  # its square is a float
+_CLOSE = 1e-13
+
+
+def _steepness(t: float, form: Floats) -> float:
+    """2 sqrt(a) g'(a)."""
+    a, da, _, dg = _curve(t, form)
+    return 2.0 * math.sqrt(a) * dg / da if da > 0.0 else math.inf
+
+
+def _excess(t: float, tension: float, form: Floats) -> float:
+    """ln(steepness/tension), within bounds."""
+    steepness = _steepness(t, form)
+    return math.log(steepness / tension) if 0.0 < steepness < math.inf else (500.0 if steepness > 0.0 else -500.0)
+
+
+def _crossing(low: float, high: float, tension: float, form: Floats) -> float:
+    """The t between low (or 0) and high (or inf) where the steepness passes the tension; inf where none is found.
+
+    By secants and halves in ln t, in which the steepness is nearly a power law.
+    """
+    rising, factor = True, 16.0
+    if high == math.inf:
+        low, high = max(low, 1e-3), max(low, 1.0)
+        while _steepness(high, form) < tension:
+            if high > _LARGEST:
+                return math.inf
+            low, high, factor = high, high * factor, min(factor * factor, 1e20)
+    else:
+        rising = _steepness(high, form) >= tension
+    if low == 0.0 or (_steepness(low, form) >= tension) == rising:
+        low, factor = min(0.5 * high, 1.0), 16.0
+        while (_steepness(low, form) >= tension) == rising:
+            if low < 1.0 / _LARGEST:
+                return math.inf
+            high, low, factor = low, low / factor, min(factor * factor, 1e20)
+    z_low, z_high = math.log(low), math.log(high)
+    e_low, e_high = _excess(low, tension, form), _excess(high, tension, form)
+    z = z_high
+    for i in range(200):
+        z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % 3 < 2 else 0.5 * (z_low + z_high)
+        if not z_low < z < z_high:
+            z = 0.5 * (z_low + z_high)
+        excess = _excess(math.exp(z), tension, form)
+        if abs(excess) < _CLOSE or not z_low < z < z_high:
+            break
+        if (excess > 0.0) == (e_high > 0.0):
+            z_high, e_high = z, excess
+        else:
+            z_low, e_low = z, excess
+    return math.exp(z)
+
+
+def _branch(count: int, foot: float, top: float, row: Floats) -> int:
+    """Note one more branch; the new count, or more than MOST."""
+    if count < MOST:
+        row[FOOT + count], row[TOP + count] = foot, top
+    return count + 1
+
+
+def find_branches(row: Floats) -> None:
+    """Fill in the stable branches and the depth, from TENSION, CONTROL and FORM; COUNT = 0 where it cannot be done."""
+    form = row[FORM:]
+    tension = row[TENSION] * (1.0 + 2.0 * row[CONTROL])
+    row[COUNT] = 0.0
+    count, low, foot, stable = 0, 0.0, 0.0, tension == 0.0
+    if tension > 0.0:
+        for i in range(_dip_count(form)):
+            peak, dip = _dip(i, form)
+            if not stable and peak > low and _steepness(peak, form) >= tension:
+                foot, stable = _crossing(low, peak, tension, form), True
+            elif not stable and _corner:
+                foot, stable = peak, True
+            if stable and _steepness(dip, form) < tension:
+                count = _branch(count, foot, _crossing(peak, dip, tension, form), row)
+                stable = False
+            low = dip
+        if not stable:
+            foot = _crossing(low, math.inf, tension, form)
+    count = _branch(count, foot, math.inf, row)
+    if count > MOST or foot == math.inf:
+        return
+    row[FOLD], row[DEPTH] = 0.0, 1.0
+    if tension > 0.0:
+        row[DEPTH] = -math.inf
+        for j in range(count):
+            depth = -load(row[FOOT + j], row)[0]
+            if depth > row[DEPTH]:
+                row[FOLD], row[DEPTH] = row[FOOT + j], depth
+        if not 0.0 < row[DEPTH] < math.inf:
+            return
+    for j in range(count):
+        if tension > 0.0:
+            row[FOOT_X + j] = load(row[FOOT + j], row)[0] / row[DEPTH] + 1.0
+            row[TOP_X + j] = load(row[TOP + j], row)[0] / row[DEPTH] + 1.0 if j < count - 1 else math.inf
+        else:
+            row[FOOT_X + j], row[TOP_X + j] = 0.0, math.inf
+    row[COUNT] = float(count)
+
+
+PARTS: tuple[Callable[..., Any], ...] = (_steepness, _excess, _crossing, _branch, find_branches)

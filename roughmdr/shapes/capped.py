@@ -1,0 +1,112 @@
+"""The capped paraboloid: a blunter cap on a paraboloid."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.profile import Form, Profile, swung
+
+
+def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+    """g = c a^2 + (1 - c) a q with the flatness c = R2/R1 of the cap and q = sqrt(a^2 - 1), 0 below the blend.
+
+    t is a on the cap and 1 + q/c beyond, so that it resolves the blend where the cap is nearly flat.
+    """
+    c = form[0]
+    if t <= 1.0:
+        return t, 1.0, c * t * t, 2.0 * c * t
+    q = c * (t - 1.0)
+    a = math.sqrt(1.0 + q * q)
+    return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
+
+
+def _push(t: float, form: Form) -> float:
+    c = form[0]
+    if t <= 1.0:
+        return 2.0 * c * t * t * t / 3.0
+    q = c * (t - 1.0)
+    square = 1.0 + q * q
+    return 2.0 * c * square * math.sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
+
+
+def _swept(t: float, form: Form) -> float:
+    c = form[0]
+    if t <= 1.0:
+        return c * t * t * t / 3.0
+    q = c * (t - 1.0)
+    square = 1.0 + q * q
+    return (c * square * math.sqrt(square) + (1.0 - c) * q * q * q) / 3.0
+
+
+def _place(radius: float, width: float, form: Form) -> float:
+    if radius <= width:
+        return radius / width
+    return 1.0 + swung(radius, width) / form[0]
+
+
+def _one(form: Form) -> int:
+    return 1
+
+
+def _dip(index: int, form: Form) -> tuple[float, float]:
+    """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
+    c = form[0]
+    low, high = 0.0, 0.61575390344349083  # its place for c = 0
+    for _ in range(60):
+        q = 0.5 * (low + high)
+        square = 1.0 + q * q
+        if 3.0 * c * math.sqrt(square) * q * q * q + 0.5 * (1.0 - c) * ((6.0 * square - 9.0) * square + 1.0) < 0.0:
+            low = q
+        else:
+            high = q
+    return 1.0, 1.0 + high / c
+
+
+def _at_the_blend(low: float, high: float, form: Form) -> bool:
+    return low < 1.0 < high
+
+
+@dataclass(frozen=True)
+class CappedParaboloid(Curved):
+    """f' = r/R1 to the blend radius b, then r/R2: radius R2, cap_radius R1 >= R2, all [m].
+
+    ShapeError unless all are > 0, and for R1 < R2: there the contact would not be a disc.
+    """
+
+    radius: float
+    cap_radius: float
+    blend_radius: float
+
+    name: ClassVar[str] = "capped_paraboloid"
+    units: ClassVar[dict[str, str]] = {"radius": "m", "cap_radius": "m", "blend_radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius", "cap_radius", "blend_radius"),)
+    not_below: ClassVar[tuple[tuple[str, str, str], ...]] = (
+        ("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),
+    )
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _one, _dip, _at_the_blend, corner=True)
+
+    def f(self, r: ArrayLike) -> Floats:
+        r, b = radii("r", r), self.blend_radius
+        on_cap = np.minimum(r, b)
+        flank = (r - b).clip(min=0.0) * ((r + b) / (2.0 * self.radius))
+        return np.asarray(on_cap * (on_cap / (2.0 * self.cap_radius)) + flank)
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        cap = r / parameters["cap_radius"]
+        return np.where(r <= parameters["blend_radius"], cap, r / parameters["radius"])
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        return parameters["radius"]
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """b, b^2/R2 and R2/R1."""
+        blend, radius = parameters["blend_radius"], parameters["radius"]
+        return blend, blend * (blend / radius), radius / parameters["cap_radius"]

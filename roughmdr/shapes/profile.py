@@ -1,0 +1,62 @@
+"""What the kernels need to know of a profile: its MDR profile along the contact radius, in units of width and rise.
+
+The functions are plain Python on ``math`` alone, so that they can be compiled, or run with any number of digits.
+``t`` is the parameter that the shape chooses to count its contact radius by, growing with it: where a contact radius
+needs more digits than a float has (a corner, the equator of a sphere) it is not the radius itself. ``form`` holds the
+numbers, beside width and rise, that tell profiles of one shape apart.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+Form = Sequence[float]
+
+
+def no_dips(form: Form) -> int:
+    """No dip."""
+    return 0
+
+
+def _no_dip(index: int, form: Form) -> tuple[float, float]:
+    """Never called."""
+    return 0.0, 0.0
+
+
+def _smooth(low: float, high: float, form: Form) -> bool:
+    """No kink anywhere."""
+    return False
+
+
+def _octave(t: float, form: Form) -> float:
+    """1, 2, 4, ..."""
+    return 1.0 if t < 1.0 else 2.0 * t
+
+
+class Profile(NamedTuple):
+    """A profile in units of its width (radii) and its rise (depths); a = contact radius, x g' and G as in (H 17, 25)."""
+
+    curve: Callable[..., tuple[Any, Any, Any, Any]]
+    """(t, form) -> a, da/dt, g, dg/dt."""
+    push: Callable[..., Any]
+    """(t, form) -> ∫_0^a x g'(x) dx = a g - G, without their difference."""
+    swept: Callable[..., Any]
+    """(t, form) -> G."""
+    place: Callable[[float, float, Form], float]
+    """(contact radius, width, form) -> t."""
+    dip_count: Callable[[Form], int] = no_dips
+    """form -> how often sqrt(a) g'(a) falls on its way from 0 to infinity: each time two stable branches may part."""
+    dip: Callable[[int, Form], tuple[float, float]] = _no_dip
+    """(number, form) -> the t from which and to which it falls."""
+    kink: Callable[[float, float, Form], bool] = _smooth
+    """(low, high, form) -> whether g' has a kink strictly between."""
+    panel_end: Callable[[float, Form], float] = _octave
+    """(t, form) -> the next t to which ġ and the push are smooth, but for a root where they begin."""
+    corner: bool = False
+    """Whether g' jumps up to infinity where it begins to fall."""
+    flat: bool = False
+    """Whether the profile is flat to one width, so that g and t begin there."""
+
+
+def swung(radius: float, width: float) -> float:
+    """q = sqrt(a^2 - b^2)/b for a contact radius a >= b = ``width``."""
+    return float(((radius - width) / width) ** 0.5 * ((radius + width) / width) ** 0.5)

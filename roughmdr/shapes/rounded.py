@@ -1,0 +1,132 @@
+"""Profiles with a rounded tip or edge: the rounded cone and the rounded punch."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.profile import Form, Profile, swung
+from roughmdr.shapes.special import less_atan, less_atan_and_cube
+
+_CONE_DIP = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
+
+
+def _cone_curve(a: float, form: Form) -> tuple[float, float, float, float]:
+    """g = a^2; beyond the blend g = a (a - q) + a atan q, q = sqrt(a^2 - 1)."""
+    if a <= 1.0:
+        return a, 1.0, a * a, 2.0 * a
+    q = math.sqrt((a - 1.0) * (a + 1.0))
+    angle = math.atan(q)
+    return a, 1.0, a / (a + q) + a * angle, 2.0 / (a + q) + angle
+
+
+def _cone_push(a: float, form: Form) -> float:
+    if a <= 1.0:
+        return 2.0 * a * a * a / 3.0
+    q = math.sqrt((a - 1.0) * (a + 1.0))
+    return 0.5 * (a * a * math.atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
+
+
+def _cone_swept(a: float, form: Form) -> float:
+    if a <= 1.0:
+        return a * a * a / 3.0
+    q = math.sqrt((a - 1.0) * (a + 1.0))
+    return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * math.atan(q) - less_atan(q))
+
+
+def _cone_place(radius: float, width: float, form: Form) -> float:
+    return radius / width
+
+
+def _one(form: Form) -> int:
+    return 1
+
+
+def _cone_dip(index: int, form: Form) -> tuple[float, float]:
+    return 1.0, _CONE_DIP
+
+
+def _at_the_blend(low: float, high: float, form: Form) -> bool:
+    return low < 1.0 < high
+
+
+@dataclass(frozen=True)
+class RoundedCone(Curved):
+    """f = S r^2/(2 b) to the blend radius b [m], then a cone of slope S [1]. ShapeError unless both are > 0."""
+
+    slope: float
+    blend_radius: float
+
+    name: ClassVar[str] = "rounded_cone"
+    units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "blend_radius"),)
+    profile: ClassVar[Profile] = Profile(
+        _cone_curve, _cone_push, _cone_swept, _cone_place, _one, _cone_dip, _at_the_blend
+    )
+
+    def f(self, r: ArrayLike) -> Floats:
+        r, b = radii("r", r), self.blend_radius
+        return np.asarray(self.slope * np.where(r < b, r * (r / (2.0 * b)), r - 0.5 * b))
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        return np.asarray(parameters["slope"] * np.minimum(r / parameters["blend_radius"], 1.0))
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """b, S b and nothing."""
+        blend = parameters["blend_radius"]
+        return blend, parameters["slope"] * blend, np.zeros_like(blend)
+
+
+def _punch_curve(q: float, form: Form) -> tuple[float, float, float, float]:
+    """g = a (q - atan q), a = sqrt(1 + q^2)."""
+    a, excess = math.sqrt(1.0 + q * q), less_atan(q)
+    return a, q / a, a * excess, q * (excess + q) / a
+
+
+def _punch_push(q: float, form: Form) -> float:
+    return q * q * q / 6.0 + 0.5 * (1.0 + q * q) * less_atan(q)
+
+
+def _punch_swept(q: float, form: Form) -> float:
+    return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
+
+
+def _punch_place(radius: float, width: float, form: Form) -> float:
+    return swung(radius, width)
+
+
+@dataclass(frozen=True)
+class RoundedPunch(Curved):
+    """A flat of radius b [m], then f = (r - b)^2/(2 R), R [m] the radius of its edge. ShapeError unless both > 0."""
+
+    flat_radius: float
+    edge_radius: float
+
+    name: ClassVar[str] = "rounded_punch"
+    units: ClassVar[dict[str, str]] = {"flat_radius": "m", "edge_radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("flat_radius", "edge_radius"),)
+    profile: ClassVar[Profile] = Profile(_punch_curve, _punch_push, _punch_swept, _punch_place, flat=True)
+
+    def f(self, r: ArrayLike) -> Floats:
+        beyond = (radii("r", r) - self.flat_radius).clip(min=0.0)
+        return np.asarray(beyond * (beyond / (2.0 * self.edge_radius)))
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        return np.asarray((r - parameters["flat_radius"]).clip(min=0.0) / parameters["edge_radius"])
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        return np.asarray(parameters["flat_radius"] + parameters["edge_radius"])
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """b, b^2/R and nothing."""
+        flat = parameters["flat_radius"]
+        return flat, flat * (flat / parameters["edge_radius"]), np.zeros_like(flat)

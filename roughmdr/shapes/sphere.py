@@ -1,0 +1,68 @@
+"""The sphere itself, not the paraboloid that stands for it in the theories of Hertz and JKR."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.profile import Form, Profile
+from roughmdr.shapes.special import beyond_tanh
+
+
+def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+    """a = tanh t, g = a artanh a."""
+    growth = math.expm1(2.0 * min(t, 300.0))
+    a = growth / (growth + 2.0)
+    narrowing = 4.0 * (growth + 1.0) / (growth + 2.0) / (growth + 2.0)  # 1 - a^2
+    return a, narrowing, a * t, a + t * narrowing
+
+
+def _push(t: float, form: Form) -> float:
+    """[(1 + a^2) artanh a - a]/2."""
+    a = math.tanh(t)
+    return 0.5 * (beyond_tanh(t, a) + a * a * t)
+
+
+def _swept(t: float, form: Form) -> float:
+    """[(a^2 - 1) artanh a + a]/2."""
+    a = math.tanh(t)
+    return 0.5 * (a * a * t - beyond_tanh(t, a))
+
+
+def _place(radius: float, width: float, form: Form) -> float:
+    return 0.5 * math.log1p(2.0 * radius / (width - radius)) if radius < width else math.inf
+
+
+@dataclass(frozen=True)
+class Sphere(Curved):
+    """f = R - sqrt(R^2 - r^2), r <= R [m]; its contact radius stays below R. ShapeError unless R > 0."""
+
+    radius: float
+
+    name: ClassVar[str] = "sphere"
+    units: ClassVar[dict[str, str]] = {"radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place)
+
+    def f(self, r: ArrayLike) -> Floats:
+        r = radii("r", r, most=self.radius)
+        return np.asarray(r * (r / (self.radius + np.sqrt((self.radius - r) * (self.radius + r)))))
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        radius = parameters["radius"]
+        return np.asarray(r / np.sqrt((radius - r).clip(min=0.0) * (radius + r)))
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        return parameters["radius"]
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """R, R and nothing."""
+        radius = parameters["radius"]
+        return radius, radius, np.zeros_like(radius)

@@ -1,0 +1,122 @@
+"""Profiles with a flat tip that ends in a corner: the truncated cone and the truncated paraboloid."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.profile import Form, Profile, swung
+from roughmdr.shapes.special import less_atan
+
+# Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
+_CONE_DIP = 1.0424561234141570
+_PARABOLOID_DIP = 0.61575390344349083
+
+
+def _one(form: Form) -> int:
+    return 1
+
+
+def _place(radius: float, width: float, form: Form) -> float:
+    return swung(radius, width)
+
+
+def _cone_curve(q: float, form: Form) -> tuple[float, float, float, float]:
+    """g = a acos(1/a) = a atan q, a = sqrt(1 + q^2)."""
+    a, angle = math.sqrt(1.0 + q * q), math.atan(q)
+    return a, q / a, a * angle, (q * angle + 1.0) / a
+
+
+def _cone_push(q: float, form: Form) -> float:
+    return 0.5 * ((1.0 + q * q) * math.atan(q) + q)
+
+
+def _cone_swept(q: float, form: Form) -> float:
+    return 0.5 * (q * q * math.atan(q) - less_atan(q))
+
+
+def _cone_dip(index: int, form: Form) -> tuple[float, float]:
+    return 0.0, _CONE_DIP
+
+
+@dataclass(frozen=True)
+class TruncatedCone(Curved):
+    """A flat of radius b [m], then f = S (r - b) with slope S [1]. ShapeError unless both are > 0."""
+
+    slope: float
+    flat_radius: float
+
+    name: ClassVar[str] = "truncated_cone"
+    units: ClassVar[dict[str, str]] = {"slope": "1", "flat_radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "flat_radius"),)
+    profile: ClassVar[Profile] = Profile(
+        _cone_curve, _cone_push, _cone_swept, _place, _one, _cone_dip, corner=True, flat=True
+    )
+
+    def f(self, r: ArrayLike) -> Floats:
+        return np.asarray(self.slope * (radii("r", r) - self.flat_radius).clip(min=0.0))
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        return np.where(r > parameters["flat_radius"], parameters["slope"], 0.0)
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """b, S b and nothing."""
+        flat = parameters["flat_radius"]
+        return flat, parameters["slope"] * flat, np.zeros_like(flat)
+
+
+def _paraboloid_curve(q: float, form: Form) -> tuple[float, float, float, float]:
+    """g = a q."""
+    a = math.sqrt(1.0 + q * q)
+    return a, q / a, a * q, (1.0 + 2.0 * q * q) / a
+
+
+def _paraboloid_push(q: float, form: Form) -> float:
+    return q + 2.0 * q * q * q / 3.0
+
+
+def _paraboloid_swept(q: float, form: Form) -> float:
+    return q * q * q / 3.0
+
+
+def _paraboloid_dip(index: int, form: Form) -> tuple[float, float]:
+    return 0.0, _PARABOLOID_DIP
+
+
+@dataclass(frozen=True)
+class TruncatedParaboloid(Curved):
+    """A flat of radius b [m], then f = (r^2 - b^2)/(2 R), R [m]. ShapeError unless both are > 0."""
+
+    radius: float
+    flat_radius: float
+
+    name: ClassVar[str] = "truncated_paraboloid"
+    units: ClassVar[dict[str, str]] = {"radius": "m", "flat_radius": "m"}
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius", "flat_radius"),)
+    profile: ClassVar[Profile] = Profile(
+        _paraboloid_curve, _paraboloid_push, _paraboloid_swept, _place, _one, _paraboloid_dip, corner=True, flat=True
+    )
+
+    def f(self, r: ArrayLike) -> Floats:
+        r, b = radii("r", r), self.flat_radius
+        return np.asarray((r - b).clip(min=0.0) * ((r + b) / (2.0 * self.radius)))
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+        return np.where(r > parameters["flat_radius"], r / parameters["radius"], 0.0)
+
+    @classmethod
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        return parameters["radius"]
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """b, b^2/R and nothing."""
+        flat = parameters["flat_radius"]
+        return flat, flat * (flat / parameters["radius"]), np.zeros_like(flat)
