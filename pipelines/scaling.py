@@ -63,7 +63,7 @@ def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int) 
     memory = staircase(path) if work else no_memory(path)
 
     def action() -> int:
-        _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, work, path, memory, ROWS)
+        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, work, path, memory, ROWS)
         return visits
 
     action()

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from roughmdr.aggregate import load_separation
     from roughmdr.asperity import indent, pull_off
     from roughmdr.ensemble import generate
-    from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
+    from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
     from roughmdr.runner import run
     from roughmdr.scene import Scene
     from roughmdr.shapes import (
@@ -20,9 +20,11 @@ if TYPE_CHECKING:
         FlatPunch,
         Paraboloid,
         PowerLaw,
+        PowerSeries,
         RoundedCone,
         RoundedPunch,
         Sphere,
+        Tabulated,
         TruncatedCone,
         TruncatedParaboloid,
     )
@@ -32,9 +34,11 @@ _HOME = {
     "CappedParaboloid": "shapes",
     "Cone": "shapes",
     "FlatPunch": "shapes",
+    "LimitWarning": "errors",
     "OutOfRange": "errors",
     "Paraboloid": "shapes",
     "PowerLaw": "shapes",
+    "PowerSeries": "shapes",
     "RoughmdrError": "errors",
     "RoundedCone": "shapes",
     "RoundedPunch": "shapes",
@@ -42,6 +46,7 @@ _HOME = {
     "SceneError": "errors",
     "ShapeError": "errors",
     "Sphere": "shapes",
+    "Tabulated": "shapes",
     "StoreError": "errors",
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
@@ -57,9 +62,11 @@ __all__ = [
     "CappedParaboloid",
     "Cone",
     "FlatPunch",
+    "LimitWarning",
     "OutOfRange",
     "Paraboloid",
     "PowerLaw",
+    "PowerSeries",
     "RoughmdrError",
     "RoundedCone",
     "RoundedPunch",
@@ -67,6 +74,7 @@ __all__ = [
     "SceneError",
     "ShapeError",
     "Sphere",
+    "Tabulated",
     "StoreError",
     "TruncatedCone",
     "TruncatedParaboloid",

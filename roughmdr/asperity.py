@@ -1,14 +1,16 @@
 """One asperity's face: indentation, force or contact radius in, the whole state of the contact out, as xarray."""
 
 import math
+import warnings
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr import limits
 from roughmdr.arguments import Floats, check_values
 from roughmdr.contact import Contact
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 
@@ -62,7 +64,8 @@ def indent(
         if lost.any():
             worst = np.atleast_1d(values)[lost][0]
             raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
-    return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control)
+    extremes = limits.Extremes.of(results["contact_radius"], shape.df(results["contact_radius"]), np.array(shape.end))
+    return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, extremes)
 
 
 def pull_off(
@@ -77,14 +80,22 @@ def pull_off(
         raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
     contact = Contact.of(shape, modulus, work)
     if not contact.law.adhesive:
-        return _dataset({name: np.zeros(()) for name in ("force", "indentation", "contact_radius")}, None)
+        none = {name: np.zeros(()) for name in ("force", "indentation", "contact_radius")}
+        return _dataset(none, None, limits.Extremes())
     with np.errstate(all="ignore"):
         results = contact.pull_off(control)
-    return _dataset({name: results[name].reshape(()) for name in ("force", "indentation", "contact_radius")}, None)
+    radius = results["contact_radius"]
+    extremes = limits.Extremes.of(radius, shape.df(radius), np.array(shape.end))
+    names = ("force", "indentation", "contact_radius")
+    return _dataset({name: results[name].reshape(()) for name in names}, None, extremes)
 
 
-def _dataset(results: dict[str, Floats], control: str | None) -> "xr.Dataset":
+def _dataset(results: dict[str, Floats], control: str | None, extremes: limits.Extremes) -> "xr.Dataset":
+    """The results over the control, with what is doubtful about them; each doubt is a LimitWarning too."""
     import xarray as xr
+
+    for text in extremes.warnings:
+        warnings.warn(text, LimitWarning, stacklevel=3)
 
     def dims(numbers: Floats) -> tuple[str, ...]:
         return (control,) if control is not None and numbers.ndim else ()
@@ -92,4 +103,5 @@ def _dataset(results: dict[str, Floats], control: str | None) -> "xr.Dataset":
     return xr.Dataset(
         {name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name != control},
         coords={name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name == control},
+        attrs={"warnings": "\n".join(extremes.warnings)} if extremes.warnings else {},
     )

@@ -41,6 +41,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         ("variables", ", ".join(held_variables(result))),
         *_pull_off(result),
         *_open_ends(result),
+        *_several("warning", tuple(attrs.get("warnings", "").splitlines())),
         ("run time", _run_time(result, elapsed)),
         ("error", f"numerical error at most {_array(result, 'numerical_error').max():.1e} of the largest force"),
     ]

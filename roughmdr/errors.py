@@ -46,5 +46,9 @@ class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contrac
     """A number lies outside the range in which there is a right answer."""
 
 
+class LimitWarning(UserWarning):
+    """A result lies where its theory is doubtful."""
+
+
 class StoreError(RoughmdrError):
     """A file cannot be read or written."""

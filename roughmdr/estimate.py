@@ -110,7 +110,7 @@ def _start_up(cell: Cell) -> float:
     smallest = {
         "material": {"effective_modulus": 1.0},
         "adhesion": {"model": "jkr", "work": cell.scene.work and 1.0},
-        "asperities": {**asperities, **dict.fromkeys(shape.spellings[0], 1.0)},
+        "asperities": {**asperities, **shape.example()},
         "path": {"separation": [0.0]},
     }
     with tempfile.TemporaryDirectory() as folder:

@@ -4,6 +4,7 @@ import numpy as np
 
 from roughmdr.arguments import Floats
 from roughmdr.labelled import Array, Labelled
+from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
 from roughmdr.statistics import summarise
 from roughmdr.store import provenance
@@ -16,7 +17,9 @@ _REFERENCES = (
 DONE, FAILED, NOT_RUN = 0, 1, 2
 
 
-def assemble(plan: Plan, variables: dict[str, Floats], run_time: Floats, error: Floats, command: str) -> Labelled:
+def assemble(
+    plan: Plan, variables: dict[str, Floats], run_time: Floats, error: Floats, extremes: Extremes, command: str
+) -> Labelled:
     """The result, from ``variables`` [run, step] in SI, run times [s] and numerical errors [run]."""
     scene = plan.scene
     swept, realization = tuple(plan.sizes), ("realization",)
@@ -41,4 +44,6 @@ def assemble(plan: Plan, variables: dict[str, Floats], run_time: Floats, error: 
     data["numerical_error"] = Array(dims, error, RUN["numerical_error"].attrs)
     data["status"] = Array(dims, status, {"long_name": RUN["status"].long_name, **flags})
     attrs = {"references": _REFERENCES, "seed": scene.seed, "scene": scene.toml, "left_out": "\n".join(plan.left_out)}
+    if extremes.warnings:
+        attrs["warnings"] = "\n".join(extremes.warnings)
     return Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})

@@ -1,7 +1,8 @@
 """The batch: a plan's tasks over dask's threads, the results into one dataset. The only file that knows dask."""
 
 import time
-from functools import partial
+import warnings
+from functools import partial, reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -9,8 +10,9 @@ import numpy as np
 
 from roughmdr.aggregate import compute
 from roughmdr.arguments import Floats
-from roughmdr.errors import RoughmdrError
+from roughmdr.errors import LimitWarning, RoughmdrError
 from roughmdr.labelled import Labelled
+from roughmdr.limits import Extremes
 from roughmdr.plan import Plan, make_plan, prepare_all
 from roughmdr.progress import Advance, progress
 from roughmdr.result import assemble
@@ -27,6 +29,7 @@ class Shard(NamedTuple):
     variables: dict[str, Floats]
     run_time: Floats
     numerical_error: Floats
+    extremes: list[Extremes]
 
 
 def run(
@@ -49,7 +52,10 @@ def run(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
     target = None if out is None else Path(out)
-    return execute(make_plan(read(scene)), target, workers=workers, quiet=quiet).to_xarray()
+    result = execute(make_plan(read(scene)), target, workers=workers, quiet=quiet)
+    for text in result.attrs.get("warnings", "").splitlines():
+        warnings.warn(text, LimitWarning, stacklevel=2)
+    return result.to_xarray()
 
 
 def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, command: str = "roughmdr.run") -> Labelled:
@@ -64,7 +70,8 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
     }
     run_time = np.concatenate([shard.run_time for shard in shards])
     numerical_error = np.concatenate([shard.numerical_error for shard in shards])
-    result = assemble(plan, variables, run_time, numerical_error, command)
+    extremes = reduce(Extremes.joined, (each for shard in shards for each in shard.extremes))
+    result = assemble(plan, variables, run_time, numerical_error, extremes, command)
     if target is not None:
         write(result, target)
     return result
@@ -101,6 +108,7 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
         {name: np.empty((len(runs), steps)) for name in names},
         np.empty(len(runs)),
         np.empty(len(runs)),
+        [],
     )
     for row, number in enumerate(runs):
         (scene, route), realization = plan.run(number)
@@ -113,5 +121,6 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
         for name in names:
             shard.variables[name][row] = result.variables[name]
         shard.numerical_error[row] = result.numerical_error
+        shard.extremes.append(result.extremes)
         shard.run_time[row] = time.perf_counter() - started
     return shard

@@ -70,7 +70,7 @@ def test_blocks_are_added_without_loss() -> None:
     z = np.sort(rng.uniform(0.0, 1e-6, count))[::-1].copy()
     columns = tuple(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0))
     h = np.array([0.0])
-    total, _ = loop.add_asperities(
+    total, _, _ = loop.add_asperities(
         choose("paraboloid", 0.0, columns[2]), z, columns, E, 0.0, h, no_memory(h), {totals.FORCE}
     )
     terms = 4.0 / 3.0 * E * math.sqrt(5e-5) * z**1.5

@@ -164,7 +164,7 @@ def test_only_the_asked_totals_are_computed() -> None:
     route = Route.along(np.array([0.0]), unload=False, adhesive=True)
     columns = asperities.columns()
     law = choose("paraboloid", W, columns[2])
-    total, _ = loop.add_asperities(law, asperities.height, columns, E, W, *route, rows={totals.RADIUS})
+    total, _, _ = loop.add_asperities(law, asperities.height, columns, E, W, *route, rows={totals.RADIUS})
     assert total[totals.RADIUS, 0] > 0.0
     others = [row for row in range(totals.ROWS) if row != totals.RADIUS]
     assert not total[others].any()

@@ -1,5 +1,6 @@
 """The load-separation law of an ensemble: which totals the asked variables need, and the face in xarray."""
 
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -11,9 +12,10 @@ from roughmdr.aggregate.route import Route
 from roughmdr.aggregate.staircase import no_memory
 from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import OutOfRange, SceneError
+from roughmdr.errors import LimitWarning, OutOfRange, SceneError
 from roughmdr.kernels.laws import choose
 from roughmdr.labelled import Array, Labelled
+from roughmdr.limits import Extremes
 from roughmdr.shapes import SHAPES
 from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 
@@ -41,6 +43,8 @@ class LoadSeparation(NamedTuple):
     """Each over the steps, in SI."""
     numerical_error: float
     """Bound on the error of the force along the path, over the largest magnitude of the force."""
+    extremes: Extremes
+    """The most that any contact comes to."""
     visits: int
     """How often an asperity was visited."""
 
@@ -59,7 +63,7 @@ def compute(
     columns = ensemble.columns()
     law = choose(ensemble.shape, work, columns[2])
 
-    total, visits = loop.add_asperities(
+    total, reached, visits = loop.add_asperities(
         law,
         ensemble.height,
         columns,
@@ -77,13 +81,17 @@ def compute(
             raise OutOfRange(f"{name} is not representable on a nominal area of {ensemble.nominal_area:g} m2")
     largest = float(np.max(np.abs(total[totals.FORCE])))
     error = float(np.max(total[totals.ERROR]))
-    return LoadSeparation(results, error / largest if largest > 0.0 else 0.0, visits)
+    relative = error / largest if largest > 0.0 else 0.0
+    return LoadSeparation(results, relative, ensemble.extremes(reached), visits)
 
 
 def prepare(shape: str, *, adhesive: bool) -> None:
     """Compile the sum for a shape with or without adhesion, once, before several threads or a clock need it."""
-    columns = SHAPES[shape].stretch({name: np.ones(1) for name in SHAPES[shape].spellings[0]})
-    law = choose(shape, float(adhesive), columns[2])
+    kind = SHAPES[shape]
+    example = kind(**kind.example())
+    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in example.stretched())
+    columns = (width, rise, form)
+    law = choose(shape, float(adhesive), form)
     loop.add_asperities(law, np.zeros(1), columns, 1.0, 1.0, np.zeros(1), no_memory(np.zeros(1)), set())
 
 
@@ -126,4 +134,7 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
-    return Labelled(data, {"separation": way, "branch": route.branch()}, {}).to_xarray()
+    attrs = {"warnings": "\n".join(result.extremes.warnings)} if result.extremes.warnings else {}
+    for text in result.extremes.warnings:
+        warnings.warn(text, LimitWarning, stacklevel=2)
+    return Labelled(data, {"separation": way, "branch": route.branch()}, attrs).to_xarray()

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from roughmdr._jit import njit, specialise
 from roughmdr.aggregate.block import BLOCK, accumulate, run_on
 from roughmdr.aggregate.bound import bound, bound_curved
-from roughmdr.aggregate.scales import DEPTH, PER_DEPTH, SCALES, WORTH, measure
+from roughmdr.aggregate.scales import DEPTH, PER_DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.staircase import Staircase
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.arguments import Floats
@@ -29,6 +29,7 @@ _NOT_REPRESENTABLE = -1
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
 _state: Callable[..., float]
+_radius: Callable[..., float]
 _state_on: Callable[..., float]
 _rung: Callable[..., float]
 _own: Callable[..., Any]
@@ -132,13 +133,17 @@ def _loop(
     wanted: NDArray[np.bool_],
     total: Floats,
     carried: Floats,
+    reached: Floats,
 ) -> int:
     """Add all asperities to total[row, step] (zeros before) for the rows wanted; returns the number of visits.
+
+    ``reached`` (zeros before) becomes the contact radius of each where the flat is closest.
 
     That is _NOT_REPRESENTABLE where a scale of an asperity within reach is so.
     """
     visits = 0
-    closest = np.min(separation)
+    turn = np.argmin(separation)
+    closest = separation[turn]
     scales, greatest = np.empty((SCALES, BLOCK)), np.empty(SCALES)
     held, held_before, state, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     energetic = wanted[ENERGY] or wanted[DISSIPATED]
@@ -170,6 +175,10 @@ def _loop(
                     spent = jumps(max(count, count_before), n, scales[WORTH], held, held_before, terms)
                     accumulate(total[DISSIPATED], carried[DISSIPATED], step, spent)
                 count_before = count
+            if step == turn:
+                for i in range(count):
+                    if not _adhesive or held[i] > 0.0:
+                        reached[start + i] = scales[SIZE, i] * _radius(state[i], _own(n, i))
             if count > 0:
                 tally(count, n, scales, held, state, terms, wanted, step, total, carried)
     for row in range(ROWS):
@@ -205,8 +214,9 @@ def add_asperities(
     separation: Floats,
     memory: Staircase,
     rows: set[int],
-) -> tuple[Floats, int]:
-    """Totals over the asperities, [row, step] in SI, and the number of visits (asperities times steps).
+) -> tuple[Floats, Floats, int]:
+    """Totals over the asperities, [row, step] in SI, the contact radius of each [m] where the flat is closest, and the
+    number of visits (asperities times steps).
 
     height [m] descends; columns are width [m], rise [m] and form; only the ``rows`` asked for are computed. OutOfRange
     where the contact of an asperity within reach is not representable.
@@ -214,10 +224,11 @@ def add_asperities(
     wanted = np.zeros(ROWS, dtype=np.bool_)
     wanted[list(rows)] = True
     total, carried = np.zeros((ROWS, separation.size)), np.zeros((ROWS, separation.size))
-    visits = _compiled(law)(height, *columns, modulus, work, separation, *memory, wanted, total, carried)
+    reached = np.zeros_like(height)
+    visits = _compiled(law)(height, *columns, modulus, work, separation, *memory, wanted, total, carried, reached)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {law.name} with modulus {modulus:g} Pa, "
             f"work {work:g} J/m^2, separation down to {separation.min():g} m"
         )
-    return total, visits
+    return total, reached, visits

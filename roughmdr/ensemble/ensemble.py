@@ -8,8 +8,8 @@ import numpy as np
 from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.labelled import Array, Labelled
-from roughmdr.shapes import SHAPES
-from roughmdr.shapes.base import check_positive
+from roughmdr.limits import Extremes
+from roughmdr.shapes import SHAPES, Common, Shape
 from roughmdr.units import unit_factor
 from roughmdr.variables import COORDINATES
 
@@ -27,6 +27,8 @@ class Ensemble:
     nominal_area: float | None = None
     positions: dict[str, Floats] = field(default_factory=dict)
     attrs: dict[str, float | int | str] = field(default_factory=dict)
+    fixed: Common | None = None
+    """The one profile of all asperities, of a shape that has no plain numbers for parameters."""
 
     @classmethod
     def sorted(
@@ -37,6 +39,7 @@ class Ensemble:
         nominal_area: float | None = None,
         positions: dict[str, Floats] | None = None,
         attrs: dict[str, float | int | str] | None = None,
+        fixed: Common | None = None,
     ) -> "Ensemble":
         """The ensemble in its one order: descending height, equal heights by their parameters."""
         order = np.argsort(-height, kind="stable")
@@ -45,11 +48,21 @@ class Ensemble:
             order = np.lexsort((*parameters.values(), -height))
         pick = {name: np.ascontiguousarray(column[order]) for name, column in parameters.items()}
         places = {name: np.ascontiguousarray(column[order]) for name, column in (positions or {}).items()}
-        return cls(shape, np.ascontiguousarray(height[order]), pick, nominal_area, places, attrs or {})
+        return cls(shape, np.ascontiguousarray(height[order]), pick, nominal_area, places, attrs or {}, fixed)
 
     def columns(self) -> tuple[Floats, Floats, Floats]:
-        """Width [m], rise [m] and form [1] of each asperity."""
-        return SHAPES[self.shape].stretch(self.parameters)
+        """Width [m], rise [m] and form [1] of each asperity; of a fixed profile the one form in a row."""
+        if self.fixed is None:
+            return SHAPES[self.shape].stretch(self.parameters)
+        width, rise, form = self.fixed.stretched()
+        return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(form)[None]
+
+    def extremes(self, radius: Floats) -> Extremes:
+        """The most that contacts of these radii [m], 0 for none, come to."""
+        if self.fixed is None:
+            kind = SHAPES[self.shape]
+            return Extremes.of(radius, kind.slopes(self.parameters, radius), kind.ends(self.parameters))
+        return Extremes.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
 
     def labelled(self) -> Labelled:
         """The arrays over ``asperity``, with their units."""
@@ -58,6 +71,10 @@ class Ensemble:
         for name, column in self.parameters.items():
             attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}"}
             variables[name] = Array(("asperity",), column, attrs)
+        if self.fixed is not None:
+            for name, column in self.fixed.columns.items():
+                attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}, the same for all"}
+                variables[name] = Array((self.fixed.along,), column, attrs)
         for name, column in self.positions.items():
             variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
         area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
@@ -73,20 +90,24 @@ class Ensemble:
         if not isinstance(shape, str) or shape not in SHAPES:
             raise SceneError(f"ensemble: attribute shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
         kind = SHAPES[shape]
-        given = {name for name in kind.units if name in dataset}
+        height = _column(dataset, "height", "m")
+        positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
         try:
-            spelling = kind.spelling(given)
+            parameters, fixed = _parameters(dataset, kind)
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
-        height = _column(dataset, "height", "m")
-        parameters = {name: _column(dataset, name, kind.units[name]) for name in spelling}
-        for name, column in parameters.items():
-            try:
-                check_positive(shape, name, column)
-            except ShapeError as error:
-                raise SceneError(f"ensemble: {error}") from None
-        positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
-        return cls.sorted(shape, height, parameters, _nominal_area(dataset.attrs), positions)
+        return cls.sorted(shape, height, parameters, _nominal_area(dataset.attrs), positions, fixed=fixed)
+
+
+def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], Common | None]:
+    """The parameters of each asperity, or the one profile of all."""
+    if issubclass(kind, Common):
+        columns = {name: _column(dataset, name, unit, kind.along) for name, unit in kind.units.items()}
+        return {}, kind.of_columns(columns)
+    spelling = kind.spelling({name for name in kind.units if name in dataset})
+    parameters = {name: _column(dataset, name, kind.units[name]) for name in spelling}
+    kind.check(parameters)
+    return parameters, None
 
 
 def _nominal_area(attrs: dict[str, Any]) -> float | None:
@@ -107,14 +128,14 @@ def _nominal_area(attrs: dict[str, Any]) -> float | None:
     return None
 
 
-def _column(dataset: "xr.Dataset", name: str, unit: str) -> Floats:
+def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity") -> Floats:
     if name not in dataset:
         raise SceneError(f"ensemble: variable {name!r} is missing")
     variable = dataset[name]
-    if variable.dims != ("asperity",):
-        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over ('asperity',)")
+    if variable.dims != (along,):
+        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over ({along!r},)")
     if variable.size == 0:
-        raise SceneError("ensemble: it has no asperity; at least one is needed")
+        raise SceneError(f"ensemble: it has no {along}; at least one is needed")
     if variable.dtype.kind not in "iuf":
         raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
     try:
@@ -125,5 +146,5 @@ def _column(dataset: "xr.Dataset", name: str, unit: str) -> Floats:
     column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
     if not np.isfinite(column).all():
         where = int(np.argmin(np.isfinite(column)))
-        raise SceneError(f"ensemble: {name} is {column[where]} at asperity {where}; it must be finite")
+        raise SceneError(f"ensemble: {name} is {column[where]} at {along} {where}; it must be finite")
     return column

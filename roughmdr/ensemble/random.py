@@ -1,16 +1,20 @@
 """source = "random": heights and shape parameters drawn from distributions, independent of each other."""
 
+import math
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
+import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
 from roughmdr.ensemble.distributions import Distribution, uniforms
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import Length, Quantity, Section, WholeNumber
-from roughmdr.shapes import SHAPES, Shape
+from roughmdr.quantities import EntryError, Length, Quantity, Section, WholeNumber
+from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
+from roughmdr.units import DIMENSIONLESS, quantity
 
 # Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
 _HEIGHT_STREAM = 0
@@ -40,14 +44,42 @@ class RandomAsperities(Section):
 
     @model_validator(mode="after")
     def _parameters_describe_the_shape(self) -> "RandomAsperities":
-        SHAPES[self.shape].spelling(set(self.distributions))
+        if self.fixed is None:
+            SHAPES[self.shape].spelling(set(self.distributions))
         if self.placement == "hard_core" and self.min_distance is None:
             raise RoughmdrError('placement = "hard_core" needs min_distance')
         return self
 
+    @model_validator(mode="after")
+    def _parameters_go_together(self) -> "RandomAsperities":
+        for name, floor, reason in SHAPES[self.shape].not_below:
+            entry, least = self.distributions[name], self.distributions[floor]
+            if entry.least < least.greatest:
+                raise EntryError(
+                    name,
+                    f"from {entry.least:.3g}",
+                    f"must not be below {floor}, which can be as high as {least.greatest:.3g}: {reason}",
+                )
+        return self
+
+    @cached_property
+    def fixed(self) -> Common | None:
+        """The one profile of all asperities, where the shape's parameters are no plain numbers."""
+        return None
+
+    @property
+    def least_exponent(self) -> float:
+        """The least exponent among the tips."""
+        if self.fixed is not None:
+            return self.fixed.least_exponent(np.asarray(self.fixed.stretched()[2])[None])
+        exponent = self.distributions.get("exponent")
+        return math.inf if exponent is None else exponent.least
+
     @property
     def distributions(self) -> dict[str, Distribution]:
         """The distribution of each shape parameter that was given."""
+        if self.fixed is not None:
+            return {}
         entries = {name: getattr(self, name) for name in SHAPES[self.shape].units}
         return {name: entry for name, entry in entries.items() if entry is not None}
 
@@ -74,7 +106,53 @@ class RandomAsperities(Section):
             for name, entry in self.distributions.items()
         }
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
-        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs)
+        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs, fixed=self.fixed)
+
+
+def _terms(value: object) -> dict[float, float]:
+    """Reads the terms of a power series, { "exponent" = coefficient }."""
+    if not isinstance(value, dict) or not value:
+        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
+    terms = {}
+    for exponent, coefficient in value.items():
+        try:
+            number = quantity(coefficient, DIMENSIONLESS)
+            terms[float(exponent)] = number
+        except (ValueError, RoughmdrError) as error:
+            raise EntryError(str(exponent), coefficient, str(error)) from None
+    return terms
+
+
+def _lengths(value: object) -> list[float]:
+    """Reads a list of lengths."""
+    if not isinstance(value, list):
+        raise RoughmdrError('must be a list of lengths, as [0, "1 um", "2 um"]')
+    return [quantity(entry, "m") for entry in value]
+
+
+class RandomPowerSeries(RandomAsperities):
+    """Asperities that are all the same power series."""
+
+    shape: Literal["power_series"]
+    terms: Annotated[dict[float, float], BeforeValidator(_terms)]
+
+    @cached_property
+    def fixed(self) -> Common:
+        """The series; ShapeError where it is none."""
+        return PowerSeries(self.terms)
+
+
+class RandomTabulated(RandomAsperities):
+    """Asperities that all have the same measured profile."""
+
+    shape: Literal["tabulated"]
+    r: Annotated[list[float], BeforeValidator(_lengths)]
+    f: Annotated[list[float], BeforeValidator(_lengths)]
+
+    @cached_property
+    def fixed(self) -> Common:
+        """The table; ShapeError where it is none."""
+        return Tabulated(self.r, self.f)
 
 
 def _section(shape: type[Shape]) -> type[RandomAsperities]:
@@ -92,6 +170,10 @@ if TYPE_CHECKING:
     AnyRandomAsperities = RandomAsperities
 else:
     AnyRandomAsperities = Annotated[
-        Union[tuple(_section(shape) for shape in SHAPES.values())],  # noqa: UP007 - made at run time
+        Union[
+            RandomPowerSeries,
+            RandomTabulated,
+            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, Common)),
+        ],
         Field(discriminator="shape"),
     ]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import CONTROL, DEPTH, FORM, TENSION
+from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
 
 # Names that ``specialise`` fills with the functions of a profile.
 _curve: Callable[..., tuple[float, float, float, float]]
@@ -23,13 +23,13 @@ _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 def load(t: float, row: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over t."""
-    tension, form = row[TENSION], row[FORM:]
-    a, da, g, dg = _curve(t, form)
+    tension = row[TENSION]
+    a, da, g, dg = _curve(t, row)
     root = math.sqrt(a)
     if row[CONTROL] == 0.0:
         return (g - tension * root, dg - 0.5 * tension * da / root) if tension > 0.0 else (g, dg)
     slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
-    return _push(t, form) - tension * a * root, a * slope
+    return _push(t, row) - tension * a * root, a * slope
 
 
 def distance(t: float, row: Floats) -> float:
@@ -40,19 +40,18 @@ def distance(t: float, row: Floats) -> float:
 
 def radius(t: float, row: Floats) -> float:
     """a over width."""
-    return _curve(t, row[FORM:])[0]
+    return _curve(t, row)[0]
 
 
 def force(t: float, row: Floats) -> float:
     """P over 2 E* width rise."""
-    form = row[FORM:]
-    a = _curve(t, form)[0]
-    return _push(t, form) - row[TENSION] * a * math.sqrt(a)
+    a = _curve(t, row)[0]
+    return _push(t, row) - row[TENSION] * a * math.sqrt(a)
 
 
 def stiffness(t: float, row: Floats) -> float:
     """k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl), infinite at a smooth fold."""
-    a, da, _, dg = _curve(t, row[FORM:])
+    a, da, _, dg = _curve(t, row)
     tension = row[TENSION]
     if tension == 0.0:
         return a
@@ -62,20 +61,20 @@ def stiffness(t: float, row: Floats) -> float:
 
 def energy(t: float, row: Floats) -> float:
     """U over 2 E* width rise^2 DEPTH: ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx, and what the springs' stretch adds."""
-    tension, form = row[TENSION], row[FORM:]
-    a = _curve(t, form)[0]
-    pull = tension * a * math.sqrt(a)
-    return (_strain(t, form) - 2.0 * pull * _push(t, form) + 0.5 * pull * pull / a) / (2.0 * row[DEPTH])
+    tension = row[TENSION]
+    a = _curve(t, row)[0]
+    stretch = tension * math.sqrt(a)
+    return (_strain(t, row) - 2.0 * stretch * _push(t, row) + 0.5 * stretch * stretch * a) / (2.0 * row[DEPTH])
 
 
-def _strain(t: float, form: Floats) -> float:
+def _strain(t: float, row: Floats) -> float:
     """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
     total, low = 0.0, 0.0
     while low < t:
-        high = min(_panel_end(low, form), t)
+        high = min(_panel_end(low, row), t)
         for z, weight in zip(_NODES, _WEIGHTS):
             at = low + (high - low) * z * z * z * z
-            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, form)[3] * _push(at, form)
+            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, row)[3] * _push(at, row)
         low = high
     return total
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import (
-    CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, FORM, NODE, OCTAVES, SLOPE, TENSION, TOP, TOP_X,
+    CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, NODE, OCTAVES, SLOPE, TENSION, TOP, TOP_X,
 )  # fmt: skip
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
@@ -28,7 +28,7 @@ def _above(t: float, j: int, row: Floats) -> tuple[float, float]:
     step = t - foot
     if row[TENSION] == 0.0:
         return value, slope
-    if step > _NEAR * t or _kink(foot, t, row[FORM:]):
+    if step > _NEAR * t or _kink(foot, t, row):
         return value + row[DEPTH], slope
     middle = foot + 0.5 * step
     outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]
@@ -46,15 +46,16 @@ def _root(wanted: float, t: float, low: float, high: float, j: int, row: Floats)
             high = t
         else:
             return t
-        better = t - (value - wanted) / slope if slope > 0.0 else math.nan
+        step = (value - wanted) / slope if slope > 0.0 else math.inf
+        if abs(step) <= _FINE * (t - foot):
+            return t - step
+        better = t - step
         if not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
             if not low < better < high:
                 return t
-        step, t = abs(better - t), better
-        if step <= _FINE * (t - foot):
-            return t
-    return t if row[DEPTH] > 0.0 else math.nan
+        t = better
+    return math.nan
 
 
 def _start(x: float, row: Floats) -> float:

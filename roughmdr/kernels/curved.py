@@ -12,7 +12,7 @@ from roughmdr._extended import Pair
 from roughmdr._jit import compiled, specialise
 from roughmdr.arguments import Floats
 from roughmdr.kernels import balance, branches, folds
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FORM, TENSION
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, SIZE, TENSION
 from roughmdr.shapes.base import Curved
 
 # Names that ``specialise`` fills.
@@ -36,9 +36,9 @@ def prepare(
     modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
 ) -> Floats:
     """A row for each of the asperities from start to stop."""
-    rows = np.zeros((stop - start, FORM + 1))
+    rows = np.zeros((stop - start, 1 + SIZE))
     for i in range(stop - start):
-        rows[i, FORM] = form[start + i]
+        rows[i, 0] = form[start + i]
         fill(modulus, work, width[start + i], rise[start + i], control, rows[i])
     return rows
 
@@ -47,8 +47,8 @@ def prepare_common(
     modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
 ) -> Floats:
     """The one row of asperities that are all alike."""
-    rows = np.zeros((1, FORM + form.shape[1]))
-    rows[0, FORM:] = form[0]
+    rows = np.zeros((1, form.shape[1] + SIZE))
+    rows[0, : form.shape[1]] = form[0]
     fill(modulus, work, width[0], rise[0], control, rows[0])
     return rows
 
@@ -76,7 +76,7 @@ def natural_force(modulus: float, work: float, width: float, rise: float, row: F
 
 def state_of_radius(radius: float, width: float, row: Floats) -> float:
     """t at a contact radius [m]."""
-    return _place(radius, width, row[FORM:])
+    return _place(radius, width, row)
 
 
 def state_of_force(x: float, row: Floats) -> float:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, FORM, MOST, TENSION, TOP, TOP_X
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, MOST, TENSION, TOP, TOP_X
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _curve: Callable[..., tuple[float, float, float, float]]
@@ -22,19 +22,19 @@ _LARGEST = 1e140  # its square is a float
 _CLOSE = 1e-13
 
 
-def _steepness(t: float, form: Floats) -> float:
+def _steepness(t: float, row: Floats) -> float:
     """2 sqrt(a) g'(a)."""
-    a, da, _, dg = _curve(t, form)
+    a, da, _, dg = _curve(t, row)
     return 2.0 * math.sqrt(a) * dg / da if da > 0.0 else math.inf
 
 
-def _excess(t: float, tension: float, form: Floats) -> float:
+def _excess(t: float, tension: float, row: Floats) -> float:
     """ln(steepness/tension), within bounds."""
-    steepness = _steepness(t, form)
+    steepness = _steepness(t, row)
     return math.log(steepness / tension) if 0.0 < steepness < math.inf else (500.0 if steepness > 0.0 else -500.0)
 
 
-def _crossing(low: float, high: float, tension: float, form: Floats) -> float:
+def _crossing(low: float, high: float, tension: float, row: Floats) -> float:
     """The t between low (or 0) and high (or inf) where the steepness passes the tension; inf where none is found.
 
     By secants and halves in ln t, in which the steepness is nearly a power law.
@@ -42,26 +42,26 @@ def _crossing(low: float, high: float, tension: float, form: Floats) -> float:
     rising, factor = True, 16.0
     if high == math.inf:
         low, high = max(low, 1e-3), max(low, 1.0)
-        while _steepness(high, form) < tension:
+        while not _steepness(high, row) >= tension:
             if high > _LARGEST:
                 return math.inf
             low, high, factor = high, high * factor, min(factor * factor, 1e20)
     else:
-        rising = _steepness(high, form) >= tension
-    if low == 0.0 or (_steepness(low, form) >= tension) == rising:
+        rising = _steepness(high, row) >= tension
+    if low == 0.0 or (_steepness(low, row) >= tension) == rising:
         low, factor = min(0.5 * high, 1.0), 16.0
-        while (_steepness(low, form) >= tension) == rising:
+        while (_steepness(low, row) >= tension) == rising:
             if low < 1.0 / _LARGEST:
                 return math.inf
             high, low, factor = low, low / factor, min(factor * factor, 1e20)
     z_low, z_high = math.log(low), math.log(high)
-    e_low, e_high = _excess(low, tension, form), _excess(high, tension, form)
+    e_low, e_high = _excess(low, tension, row), _excess(high, tension, row)
     z = z_high
     for i in range(200):
         z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % 3 < 2 else 0.5 * (z_low + z_high)
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
-        excess = _excess(math.exp(z), tension, form)
+        excess = _excess(math.exp(z), tension, row)
         if abs(excess) < _CLOSE or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
@@ -80,23 +80,22 @@ def _branch(count: int, foot: float, top: float, row: Floats) -> int:
 
 def find_branches(row: Floats) -> None:
     """Fill in the stable branches and the depth, from TENSION, CONTROL and FORM; COUNT = 0 where it cannot be done."""
-    form = row[FORM:]
     tension = row[TENSION] * (1.0 + 2.0 * row[CONTROL])
     row[COUNT] = 0.0
     count, low, foot, stable = 0, 0.0, 0.0, tension == 0.0
     if tension > 0.0:
-        for i in range(_dip_count(form)):
-            peak, dip = _dip(i, form)
-            if not stable and peak > low and _steepness(peak, form) >= tension:
-                foot, stable = _crossing(low, peak, tension, form), True
+        for i in range(_dip_count(row)):
+            peak, dip = _dip(i, row)
+            if not stable and peak > low and _steepness(peak, row) >= tension:
+                foot, stable = _crossing(low, peak, tension, row), True
             elif not stable and _corner:
                 foot, stable = peak, True
-            if stable and _steepness(dip, form) < tension:
-                count = _branch(count, foot, _crossing(peak, dip, tension, form), row)
+            if stable and _steepness(dip, row) < tension:
+                count = _branch(count, foot, _crossing(peak, dip, tension, row), row)
                 stable = False
             low = dip
         if not stable:
-            foot = _crossing(low, math.inf, tension, form)
+            foot = _crossing(low, math.inf, tension, row)
     count = _branch(count, foot, math.inf, row)
     if count > MOST or foot == math.inf:
         return

@@ -150,11 +150,12 @@ class Scene(Section):
             raise _misfit(
                 "path.separation", f"cannot be given in sigma: the heights' standard deviation is {sigma:g} m"
             )
-        exponent = self.asperities.distributions.get("exponent")
-        if self.work > 0.0 and exponent is not None and not exponent.least > 0.5:
+        exponent = self.asperities.least_exponent
+        if self.work > 0.0 and not exponent > 0.5:
+            key = "terms" if self.asperities.fixed is not None else "exponent"
             raise _misfit(
-                "asperities.exponent",
-                f"can be as low as {exponent.least:g}; with adhesion it must be above 0.5",
+                f"asperities.{key}",
+                f"can be as low as {exponent:g}; with adhesion it must be above 0.5",
             )
         return self
 

@@ -1,11 +1,13 @@
 """The profiles of single asperities. A new shape is one file here and one line in ``SHAPES``."""
 
-from roughmdr.shapes.base import Curved, Shape
+from roughmdr.shapes.base import Common, Curved, Shape
 from roughmdr.shapes.capped import CappedParaboloid
 from roughmdr.shapes.flat import FlatPunch
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.rounded import RoundedCone, RoundedPunch
+from roughmdr.shapes.series import PowerSeries
 from roughmdr.shapes.sphere import Sphere
+from roughmdr.shapes.tabulated import Tabulated
 from roughmdr.shapes.truncated import TruncatedCone, TruncatedParaboloid
 
 SHAPES: dict[str, type[Shape]] = {
@@ -21,21 +23,26 @@ SHAPES: dict[str, type[Shape]] = {
         RoundedCone,
         CappedParaboloid,
         RoundedPunch,
+        PowerSeries,
+        Tabulated,
     )
 }
 
 __all__ = [
     "SHAPES",
     "CappedParaboloid",
+    "Common",
     "Cone",
     "Curved",
     "FlatPunch",
     "Paraboloid",
     "PowerLaw",
+    "PowerSeries",
     "RoundedCone",
     "RoundedPunch",
     "Shape",
     "Sphere",
+    "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
 ]

@@ -47,6 +47,17 @@ class Shape(ABC):
     def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
         """f'(r) [1] of asperities at one radius r [m] each."""
 
+    def df(self, r: ArrayLike) -> Floats:
+        """f'(r) [1] at radius r >= 0 [m]."""
+        r = radii("r", r)
+        with np.errstate(all="ignore"):
+            return self.slopes({name: np.full_like(r, value) for name, value in self.parameters.items()}, r)
+
+    @property
+    def end(self) -> float:
+        """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
+        return float(self.ends({name: np.array([value]) for name, value in self.parameters.items()})[0])
+
     @classmethod
     def ends(cls, parameters: dict[str, Floats]) -> Floats:
         """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
@@ -72,13 +83,18 @@ class Shape(ABC):
         """The least n among the tips f ~ r^n of asperities, from the third column of ``stretch``."""
         return math.inf
 
+    @classmethod
+    def example(cls) -> dict[str, Any]:
+        """The parameters of any one of them."""
+        return dict.fromkeys(cls.spellings[0], 1.0)
+
     @property
     def parameters(self) -> dict[str, float]:
         """The parameters that were given, by name."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in values.items() if value is not None}
 
-    def stretched(self) -> tuple[float, float, float]:
+    def stretched(self) -> tuple[float, float, Any]:
         """Width [m], rise [m] and form [1] of this one."""
         columns = self.stretch({name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()})
         width, rise, form = (float(column[0]) for column in columns)
@@ -154,6 +170,36 @@ class Curved(Shape):
             worst = radius[~np.isfinite(results)].flat[0]
             raise OutOfRange(f"{self.name}: a radius of {worst:g} m lies beyond what it can touch, or a float can hold")
         return results
+
+
+class Common(Curved):
+    """A curved shape that all asperities of an ensemble share, since its parameters are no plain numbers."""
+
+    common: ClassVar[bool] = True
+    along: ClassVar[str]
+    """The dimension that the columns of an ensemble's Dataset lie over."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> dict[str, Floats]:
+        """The parameters as equally long arrays."""
+
+    @classmethod
+    @abstractmethod
+    def of_columns(cls, columns: dict[str, Floats]) -> "Common":
+        """The shape of such arrays; ShapeError as the shape itself."""
+
+    @classmethod
+    def slopes(cls, parameters: dict[str, Any], r: Floats) -> Floats:
+        return cls(**parameters).df(r)
+
+    @classmethod
+    def stretch(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
+        return cls(**parameters).stretched()
+
+    @property
+    def end(self) -> float:
+        return math.inf
 
 
 def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:

@@ -48,7 +48,7 @@ class Profile(NamedTuple):
     dip: Callable[[int, Form], tuple[float, float]] = _no_dip
     """(number, form) -> the t from which and to which it falls."""
     kink: Callable[[float, float, Form], bool] = _smooth
-    """(low, high, form) -> whether g' has a kink strictly between."""
+    """(low, high, form) -> whether g' is not smooth from low to high."""
     panel_end: Callable[[float, Form], float] = _octave
     """(t, form) -> the next t to which ġ and the push are smooth, but for a root where they begin."""
     corner: bool = False

@@ -1,0 +1,51 @@
+"""Where a result leaves what its theory supposes: contacts beyond the end of the profile, and slopes that are not small."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.arguments import Floats
+
+STEEP = 0.3
+"""The slope at the edge of a contact from which on there is a warning.
+
+Linear elasticity supposes small strains, and a half-space: a contact small beside the radii of the bodies (K. L. Johnson,
+Contact Mechanics, 1985, section 4.1). a/R = 0.3 is where a sphere and its paraboloid part by 2 % in g.
+"""
+
+
+class Extremes(NamedTuple):
+    """The most that any contact comes to."""
+
+    slope: float = 0.0
+    """f'(a) [1]."""
+    extent: float = 0.0
+    """a over the radius where the profile ends."""
+
+    @classmethod
+    def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "Extremes":
+        """Of contact radii [m], with the slopes there and the ends [m] of their profiles."""
+        if not (radius > 0.0).any():
+            return cls()
+        with np.errstate(all="ignore"):
+            return cls(float(np.nanmax(np.where(radius > 0.0, slopes, 0.0))), float(np.max(radius / ends)))
+
+    def joined(self, other: "Extremes") -> "Extremes":
+        """The more extreme of both."""
+        return Extremes(max(self.slope, other.slope), max(self.extent, other.extent))
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to tell the user, with the numbers."""
+        found = []
+        if self.slope > STEEP:
+            found.append(
+                f"slopes of up to {self.slope:.3g} at the edge of contacts: linear elasticity supposes small slopes "
+                f"(warned of above {STEEP:g})"
+            )
+        if self.extent > 1.0:
+            found.append(
+                f"contact radii of up to {self.extent:.3g} times the radius where the profile, or the body it stands for, "
+                "ends: what lies beyond is extrapolated"
+            )
+        return found

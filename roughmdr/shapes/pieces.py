@@ -1,0 +1,128 @@
+"""A spline's MDR profile made into the pieces that ``table`` looks up."""
+
+import numpy as np
+
+from roughmdr.arguments import Floats
+from roughmdr.shapes.table import DEGREE
+
+_EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
+_FINEST = 2.0**-12  # of the way between two knots
+_OCTAVES_BEYOND = 2  # beyond the last knot, until the far field is right: 16^-14 is below rounding
+_LOOKS = 16  # on each piece, for where sqrt(a) g' falls
+_RIPPLE = 1e-9  # a fall of so little is rounding
+
+_POINTS = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+_TO_POWERS = np.array(
+    [np.pad(np.polynomial.chebyshev.cheb2poly([0.0] * i + [1.0]), (0, DEGREE - i)) for i in range(DEGREE + 1)]
+)
+_TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_POINTS, DEGREE))
+
+
+def tabulate(knots: Floats, coefficients: Floats) -> Floats:
+    """The form of f' = c0 + c1 s + c2 s^2 over s = r - knot (last piece: c0 alone, without end), as ``table`` says."""
+    from roughmdr.shapes.abel import integrals  # it alone needs the compiler
+
+    ends = np.append(knots[1:], knots[-1] * 2.0 ** np.arange(1, _OCTAVES_BEYOND + 1))
+    bases = np.append(knots[:-1], np.full(_OCTAVES_BEYOND, knots[-1]))
+    begins = np.append(knots[:-1], knots[-1] * 2.0 ** np.arange(_OCTAVES_BEYOND))
+    reach = np.sqrt((ends - bases) * (ends + bases))
+    low = np.sqrt((begins - bases) * (begins + bases)) / reach
+    waiting = [(base, length, start, 1.0) for base, length, start in zip(bases, reach, low, strict=True)]
+    done: list[tuple[float, Floats]] = [_tip(knots, coefficients)]
+    waiting = waiting[1:]
+    while waiting:
+        places = np.array(waiting)
+        base, length, start, stop = places.T
+        middle, half = 0.5 * (stop + start), 0.5 * (stop - start)
+        q = length[:, None] * (middle[:, None] + half[:, None] * _POINTS)
+        x = np.sqrt(q * q + base[:, None] ** 2)
+        values = integrals(x.ravel(), knots, coefficients).reshape(*x.shape, 3)
+        chebyshev = np.einsum("cp,spv->svc", _TO_CHEBYSHEV, values)
+        left = np.abs(chebyshev[..., -2:]).sum(axis=-1)
+        fits = (left <= _EXACT * np.abs(values).max(axis=1)).all(axis=1) | (half < _FINEST)
+        powers = chebyshev @ _TO_POWERS
+        for i in np.flatnonzero(fits):
+            begin = np.hypot(base[i], length[i] * start[i]) if start[i] > 0.0 else base[i]
+            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i]]
+            done.append((float(begin), np.concatenate([head, powers[i].ravel()])))
+        waiting = [
+            part
+            for i in np.flatnonzero(~fits)
+            for part in ((base[i], length[i], start[i], middle[i]), (base[i], length[i], middle[i], stop[i]))
+        ]
+    done.sort(key=lambda piece: piece[0])
+    begins = np.array([begin for begin, _ in done] + [ends[-1]])
+    dips = _dips(begins, knots, coefficients)
+    parts = [piece for _, piece in done]
+    return np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, _far(begins[-1], knots, coefficients)])
+
+
+def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
+    """The first piece, in powers of a itself, so that it is right however near the tip."""
+    c0, c1, c2 = coefficients[0] * np.array([0.5 * np.pi, 1.0, 0.25 * np.pi])
+    g, slope, push = (np.zeros(DEGREE + 1) for _ in range(3))
+    g[1:4] = c0, c1, c2
+    slope[:3] = c0, 2.0 * c1, 3.0 * c2
+    push[2:5] = 0.5 * c0, 2.0 / 3.0 * c1, 0.75 * c2
+    return 0.0, np.concatenate([[0.0, 1.0, 0.0], g, slope, push])
+
+
+def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
+    """g beyond the end: with the last slope S, a pi/2 S + sum over k of binomial(2k, k)/4^k a^(-2k) ∫ (f' - S) r^(2k) dr."""
+    from scipy.special import binom
+
+    from roughmdr.shapes.abel import integrals
+
+    nodes, weights = np.polynomial.legendre.leggauss(DEGREE + 3)
+    h = np.diff(knots)[:, None]
+    s = 0.5 * h * (1.0 + nodes)
+    c0, c1, c2 = coefficients[:-1].T[:, :, None]
+    excess = 0.5 * h * weights * (c0 + s * (c1 + s * c2) - coefficients[-1, 0])
+    r = knots[:-1, None] + s
+    k = np.arange(DEGREE + 1)
+    terms = np.array([binom(2 * i, i) / 4.0**i * np.sum(excess * r ** (2 * i)) for i in k])
+    steepness = 0.5 * np.pi * coefficients[-1, 0]
+    far = end * np.sum(2.0 * k / (2.0 * k - 1.0) * terms * end ** (-2.0 * k))
+    constant = integrals(np.array([end]), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
+    return np.concatenate([[steepness, constant], terms])
+
+
+def steepness(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
+    """Contact radii all along the pieces, and g' there."""
+    from roughmdr.shapes.abel import integrals
+
+    x = (begins[:-1, None] + np.diff(begins)[:, None] * (np.arange(_LOOKS) + 0.5) / _LOOKS).ravel()
+    return x, integrals(x, knots, coefficients)[:, 1]
+
+
+def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[float, float]]:
+    """Where sqrt(a) g'(a) falls: from where and to where."""
+    from scipy.optimize import minimize_scalar
+
+    from roughmdr.shapes.abel import integrals
+
+    def steep(x: float) -> float:
+        return float(np.sqrt(x) * integrals(np.array([x]), knots, coefficients)[0, 1])
+
+    x, slope = steepness(begins, knots, coefficients)
+    m = np.sqrt(x) * slope
+    turns: list[tuple[float, float]] = []
+    top = 0
+    bottom: int | None = None
+    for i in range(1, x.size):  # a fall counts when it is deeper than rounding
+        if bottom is None:
+            if m[i] >= m[top]:
+                top = i
+            elif m[i] < m[top] * (1.0 - _RIPPLE):
+                bottom = i
+        elif m[i] < m[bottom]:
+            bottom = i
+        elif m[i] > m[bottom] * (1.0 + _RIPPLE):
+            turns.append((top, bottom))
+            top, bottom = i, None
+    found = []
+    for peak, dip in turns:
+        high = minimize_scalar(lambda a: -steep(a), bounds=(x[max(peak - 1, 0)], x[peak + 1]), method="bounded")
+        low = minimize_scalar(steep, bounds=(x[dip - 1], x[dip + 1]), method="bounded")
+        found.append((float(high.x), float(low.x)))
+    return found

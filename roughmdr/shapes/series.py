@@ -1,0 +1,125 @@
+"""The power series f = sum of c r^n: any aspheric tip that grows with every term."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.shapes.base import Common, check_positive, radii
+from roughmdr.shapes.profile import Form, Profile
+
+
+def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+    """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
+    g, slope = 0.0, 0.0
+    for i in range(int(form[0])):
+        n, term = form[1 + 2 * i], form[2 + 2 * i] * t ** form[1 + 2 * i]
+        g += term
+        slope += n * term
+    return t, 1.0, g, slope / t
+
+
+def _push(t: float, form: Form) -> float:
+    total = 0.0
+    for i in range(int(form[0])):
+        n = form[1 + 2 * i]
+        total += n / (n + 1.0) * form[2 + 2 * i] * t**n
+    return total * t
+
+
+def _swept(t: float, form: Form) -> float:
+    total = 0.0
+    for i in range(int(form[0])):
+        n = form[1 + 2 * i]
+        total += form[2 + 2 * i] * t**n / (n + 1.0)
+    return total * t
+
+
+def _place(radius: float, width: float, form: Form) -> float:
+    return radius / width
+
+
+@dataclass(frozen=True, eq=False)
+class PowerSeries(Common):
+    """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c the number that it is in metres, [m^(1-n)].
+
+    ShapeError unless there is a term and all n and c are finite and > 0.
+    """
+
+    terms: Mapping[float, float]
+
+    name: ClassVar[str] = "power_series"
+    units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
+    along: ClassVar[str] = "term"
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.terms, Mapping) or not self.terms:
+            raise ShapeError(f"power_series: terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}")
+        for exponent, coefficient in self.terms.items():
+            check_positive("power_series", "an exponent of terms", exponent)
+            check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
+        terms = {float(n): float(c) for n, c in sorted(self.terms.items(), key=lambda term: float(term[0]))}
+        object.__setattr__(self, "terms", terms)
+
+    @classmethod
+    def example(cls) -> dict[str, Any]:
+        return {"terms": {"2": 1.0}}
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        return {"exponent": np.array(list(self.terms)), "terms": np.array(list(self.terms.values()))}
+
+    @classmethod
+    def of_columns(cls, columns: dict[str, Floats]) -> "PowerSeries":
+        return cls(dict(zip(columns["exponent"].tolist(), columns["terms"].tolist(), strict=True)))
+
+    def _summed(self, factors: Mapping[float, float], r: Floats, lower: float) -> Floats:
+        """Sum of factor r^(n - lower)."""
+        total: Floats = sum((factor * r ** (n - lower) for n, factor in factors.items()), np.zeros_like(r))
+        return total
+
+    def f(self, r: ArrayLike) -> Floats:
+        return self._summed(self.terms, radii("r", r), 0.0)
+
+    def df(self, r: ArrayLike) -> Floats:
+        return self._summed({n: n * c for n, c in self.terms.items()}, radii("r", r), 1.0)
+
+    def stretched(self) -> tuple[float, float, Any]:
+        """The width where the first and the last term are equal, their rise there, and the reduced terms."""
+        from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
+
+        (n, c), (n_last, c_last) = list(self.terms.items())[0], list(self.terms.items())[-1]
+        log_width = (math.log(c) - math.log(c_last)) / (n_last - n) if n_last > n else 0.0
+        log_width = min(max(log_width, -25.0), 5.0)  # lengths from 1e-11 to 100 m
+        width, rise = math.exp(log_width), math.exp(math.log(c) + n * log_width)
+        parts = [float(len(self.terms))]
+        for exponent, coefficient in self.terms.items():
+            reduced = math.exp(math.log(coefficient) + exponent * log_width - math.log(c) - n * log_width)
+            parts += [exponent, kappa(exponent) * reduced]
+        if not (0.0 < rise < math.inf and 0.0 < min(parts) and max(parts) < math.inf):
+            raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
+        return width, rise, np.array(parts)
+
+    def precisely(self, t: float) -> tuple[Any, Any, Any]:
+        from mpmath import mp
+
+        with mp.workdps(40):
+            a = mp.mpf(self.stretched()[0]) * mp.mpf(t)
+            g = push = mp.mpf(0)
+            for exponent, coefficient in self.terms.items():
+                n = mp.mpf(exponent)
+                kappa = mp.sqrt(mp.pi) / 2 * n * mp.gamma(n / 2) / mp.gamma((n + 1) / 2)
+                term = kappa * mp.mpf(coefficient) * a**n
+                g, push = g + term, push + n / (n + 1) * term * a
+            return a, g, push
+
+    @classmethod
+    def least_exponent(cls, form: Floats) -> float:
+        return float(form[0, 1])

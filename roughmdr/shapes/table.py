@@ -1,0 +1,104 @@
+"""The MDR profile of a tabulated shape as pieces of polynomials, looked up.
+
+A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its knot,
+scale, middle and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a constant and
+coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are
+smooth although g' has the kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
+"""
+
+import math
+
+from roughmdr.shapes.profile import Form, Profile
+
+DEGREE = 13
+PIECE = 3 + 3 * (DEGREE + 1)
+
+
+def _piece(t: float, form: Form) -> int:
+    """Where the piece stands on which t lies; less than 0 beyond the last, where the far field stands at its opposite."""
+    first = 2 + 2 * int(form[0])
+    count = int(form[first - 1])
+    if t >= form[first + count]:
+        return -(first + count + 1 + PIECE * count)
+    low, high = 0, count
+    while high - low > 1:
+        middle = (low + high) // 2
+        if t >= form[first + middle]:
+            low = middle
+        else:
+            high = middle
+    return first + count + 1 + PIECE * low
+
+
+def _sum(place: float, begin: int, form: Form) -> float:
+    """The polynomial whose coefficients stand from ``begin`` on."""
+    total = form[begin + DEGREE]
+    for i in range(DEGREE - 1, -1, -1):
+        total = total * place + form[begin + i]
+    return total
+
+
+def _place_on(t: float, piece: int, form: Form) -> float:
+    knot = form[piece]
+    return form[piece + 1] * math.sqrt((t - knot) * (t + knot)) - form[piece + 2]
+
+
+def _far_sum(t: float, far: int, tilt: float, form: Form) -> float:
+    """sum of c_k t^(-2k) times 1, or -2 k (tilt 1), or 2 k/(2 k - 1) (tilt 2), over the terms k of the far field."""
+    total, u = 0.0, 1.0 / t / t
+    for k in range(DEGREE, -1, -1):
+        factor = 1.0 if tilt == 0.0 else (-2.0 * k if tilt == 1.0 else 2.0 * k / (2.0 * k - 1.0))
+        total = total * u + factor * form[far + 2 + k]
+    return total
+
+
+def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+    piece = _piece(t, form)
+    if piece < 0:
+        steepness = form[-piece]
+        slope = steepness + _far_sum(t, -piece, 1.0, form) / t
+        return t, 1.0, steepness * t + _far_sum(t, -piece, 0.0, form), slope
+    place = _place_on(t, piece, form)
+    return t, 1.0, _sum(place, piece + 3, form), _sum(place, piece + 4 + DEGREE, form)
+
+
+def _push(t: float, form: Form) -> float:
+    piece = _piece(t, form)
+    if piece < 0:
+        return 0.5 * form[-piece] * t * t + form[1 - piece] + t * _far_sum(t, -piece, 2.0, form)
+    return _sum(_place_on(t, piece, form), piece + 5 + 2 * DEGREE, form)
+
+
+def _swept(t: float, form: Form) -> float:
+    return t * _curve(t, form)[2] - _push(t, form)
+
+
+def _place(radius: float, width: float, form: Form) -> float:
+    return radius / width
+
+
+def _dip_count(form: Form) -> int:
+    return int(form[0])
+
+
+def _dip(index: int, form: Form) -> tuple[float, float]:
+    return form[1 + 2 * index], form[2 + 2 * index]
+
+
+def _kink(low: float, high: float, form: Form) -> bool:
+    """At a knot g' begins like a root: it is smooth only well away from it."""
+    first, last = _piece(low, form), _piece(high, form)
+    if first < 0:
+        return False
+    knot = form[first]
+    return last < 0 or form[last] != knot or (knot > 0.0 and high - low > 0.1 * (low - knot))
+
+
+def _panel_end(t: float, form: Form) -> float:
+    """The begin of the next piece."""
+    piece = _piece(t, form)
+    begins = 2 + 2 * int(form[0])
+    return form[begins + 1 + (piece - begins - int(form[begins - 1]) - 1) // PIECE] if piece >= 0 else 2.0 * t
+
+
+PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, _panel_end)

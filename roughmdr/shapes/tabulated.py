@@ -1,0 +1,183 @@
+"""A measured radial profile."""
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.shapes import table
+from roughmdr.shapes.base import Common, radii
+from roughmdr.shapes.profile import Profile
+
+_LEAST_POINTS = 3
+_NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
+
+
+class Tabulated(Common):
+    """f [m] at radii r [m], both from 0 on: between them a monotone cubic spline, beyond them a cone.
+
+    The spline is the not-a-knot cubic, its slopes at the points kept between 0 and three times the lesser slope of the
+    chords (R. L. Dougherty, A. Edelman, J. M. Hyman, Math. Comp. 52 (1989) 471). ShapeError unless there are at least 3
+    points, r rises, f does not fall, and both begin at 0. OutOfRange where the profile is so concave that the contact
+    would not be a disc.
+    """
+
+    name: ClassVar[str] = "tabulated"
+    units: ClassVar[dict[str, str]] = {"r": "m", "f": "m"}
+    along: ClassVar[str] = "point"
+    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("r", "f"),)
+    profile: ClassVar[Profile] = table.PROFILE
+
+    def __init__(self, r: ArrayLike, f: ArrayLike) -> None:
+        self.radii, self.heights = _column("r", r), _column("f", f)
+        _check(self.radii, self.heights)
+        self.knot_slopes = _monotone_slopes(self.radii, self.heights)
+        self._check_disc()
+
+    def __repr__(self) -> str:
+        return f"Tabulated({self.radii.size} points to r={self.radii[-1]:g}, f={self.heights[-1]:g})"
+
+    @classmethod
+    def example(cls) -> dict[str, Any]:
+        return {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        return self.parameters
+
+    @classmethod
+    def of_columns(cls, columns: dict[str, Floats]) -> "Tabulated":
+        return cls(**columns)
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        return {"r": self.radii, "f": self.heights}
+
+    @property
+    def end(self) -> float:
+        return float(self.radii[-1])
+
+    def _pieces(self, width: float = 1.0, rise: float = 1.0) -> tuple[Floats, Floats]:
+        """Knots, and the coefficients of f' over r - knot for each piece, the last one without end."""
+        r, f, d = self.radii / width, self.heights / rise, self.knot_slopes * (width / rise)
+        h, chord = np.diff(r), np.diff(f) / np.diff(r)
+        bend = 2.0 * (3.0 * chord - 2.0 * d[:-1] - d[1:]) / h
+        twist = 3.0 * (d[:-1] + d[1:] - 2.0 * chord) / h**2
+        return r, np.stack([d, np.append(bend, 0.0), np.append(twist, 0.0)], axis=1)
+
+    def f(self, r: ArrayLike) -> Floats:
+        knots, coefficients = self._pieces()
+        r = radii("r", r)
+        piece = np.searchsorted(knots[1:], r, side="right")
+        s = r - knots[piece]
+        c0, c1, c2 = coefficients[piece].T.reshape(3, *r.shape)
+        return np.asarray(self.heights[piece] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)))
+
+    def df(self, r: ArrayLike) -> Floats:
+        knots, coefficients = self._pieces()
+        r = radii("r", r)
+        piece = np.searchsorted(knots[1:], r, side="right")
+        s = r - knots[piece]
+        c0, c1, c2 = coefficients[piece].T.reshape(3, *r.shape)
+        return np.asarray(c0 + s * (c1 + s * c2))
+
+    @cached_property
+    def _form(self) -> Floats:
+        from roughmdr.shapes.pieces import tabulate
+
+        return tabulate(*self._pieces(self.radii[-1], self.heights[-1]))
+
+    def stretched(self) -> tuple[float, float, Any]:
+        """The last r and f, and the pieces in their units."""
+        return float(self.radii[-1]), float(self.heights[-1]), self._form
+
+    def _check_disc(self) -> None:
+        """OutOfRange where g falls: pressed without adhesion, the contact would gape inside."""
+        from roughmdr.shapes.pieces import steepness
+
+        width, rise = self.radii[-1], self.heights[-1]
+        knots, coefficients = self._pieces(width, rise)
+        x, slope = steepness(knots, knots, coefficients)
+        falls = slope < -_NOISE * slope.max()
+        if falls.any():
+            raise OutOfRange(
+                f"tabulated: the profile is so concave near r = {width * x[falls][0]:.3g} m that the contact would not "
+                f"be a disc there; a table that ends before that can be used"
+            )
+
+    def precisely(self, t: float) -> tuple[Any, Any, Any]:
+        """As for every shape, from the antiderivatives of each piece with 40 digits."""
+        from mpmath import mp
+
+        with mp.workdps(40):
+            a = mp.mpf(float(self.radii[-1])) * mp.mpf(t)
+            r, f, d = ([mp.mpf(float(v)) for v in column] for column in (self.radii, self.heights, self.knot_slopes))
+            g = push = begin = mp.mpf(0)
+            for k, knot in enumerate(r):
+                if knot >= a:
+                    break
+                last = k + 1 == len(r)
+                end = mp.pi / 2 if last or r[k + 1] >= a else mp.asin(r[k + 1] / a)
+                bend = twist = mp.mpf(0)
+                if not last:
+                    h = r[k + 1] - knot
+                    chord = (f[k + 1] - f[k]) / h
+                    bend = 2 * (3 * chord - 2 * d[k] - d[k + 1]) / h
+                    twist = 3 * (d[k] + d[k + 1] - 2 * chord) / h**2
+                powers = (d[k] - bend * knot + twist * knot**2, (bend - 2 * twist * knot) * a, twist * a**2)
+                sines = [_sine_integral(m, end) - _sine_integral(m, begin) for m in range(5)]
+                g += a * sum(c * sines[m] for m, c in enumerate(powers))
+                push += a**2 * sum(c * sines[m + 2] for m, c in enumerate(powers))
+                begin = end
+            return a, g, push
+
+
+def _sine_integral(power: int, angle: Any) -> Any:
+    """∫_0^angle sin^power, for power 0 to 4, of an mpmath number."""
+    from mpmath import mp
+
+    sine, cosine = mp.sin(angle), mp.cos(angle)
+    if power < 2:
+        return angle if power == 0 else 1 - cosine
+    return ((power - 1) * _sine_integral(power - 2, angle) - cosine * sine ** (power - 1)) / power
+
+
+def _column(name: str, values: ArrayLike) -> Floats:
+    try:
+        column = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ShapeError(f"tabulated: {name} is {values!r}; it must be a list of numbers") from None
+    if column.ndim != 1 or column.size < _LEAST_POINTS:
+        raise ShapeError(f"tabulated: {name} has the shape {column.shape}; it must hold at least 3 numbers in a row")
+    if not np.isfinite(column).all():
+        where = int(np.argmin(np.isfinite(column)))
+        raise ShapeError(f"tabulated: {name}[{where}] is {column[where]}; it must be finite")
+    if column[0] != 0.0:
+        raise ShapeError(f"tabulated: {name}[0] is {column[0]:g} m; the table must begin at the tip, with 0")
+    column.setflags(write=False)
+    return column
+
+
+def _check(r: Floats, f: Floats) -> None:
+    if r.size != f.size:
+        raise ShapeError(f"tabulated: r holds {r.size} numbers and f {f.size}; they must be equally many")
+    for name, column, falls in (("r", r, np.diff(r) <= 0.0), ("f", f, np.diff(f) < 0.0)):
+        if falls.any():
+            k = int(np.argmax(falls))
+            must = "rise from point to point" if name == "r" else "not fall: the tip is the lowest point"
+            raise ShapeError(f"tabulated: {name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m; {name} must {must}")
+    if f[-1] == 0.0:
+        raise ShapeError("tabulated: f is 0 everywhere; that is a FlatPunch")
+
+
+def _monotone_slopes(r: Floats, f: Floats) -> Floats:
+    """f' at the points."""
+    from scipy.interpolate import CubicSpline
+
+    chords = np.diff(f) / np.diff(r)
+    steepest = 3.0 * np.minimum(np.append(chords, np.inf), np.insert(chords, 0, np.inf))
+    slopes = np.asarray(CubicSpline(r, f, bc_type="not-a-knot")(r, 1))
+    return np.clip(slopes, 0.0, steepest)

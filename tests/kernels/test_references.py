@@ -1,0 +1,86 @@
+"""Every shape against tables made from the 3D integrals with 40 digits (``data_gen/references.py``).
+
+The bounds are those of the accuracy that double precision allows, with X the distance to the fold: backward 1e-14 of the
+indentation and 1e-13 of the force, forward 1e-12 + 3e-16/sqrt(X), the stiffness 1e-12 + 1e-15/X.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+import roughmdr as rm
+from roughmdr.shapes import SHAPES
+
+mp = mpmath.mp.clone()
+mp.dps = 50
+DATA = Path(__file__).parent.parent / "data"
+ULP = 2.0**-53
+
+
+def shape_of(name: str, case: dict[str, Any]) -> Any:
+    parameters = case["parameters"]
+    if name == "power_series":
+        parameters = {"terms": {float(n): c for n, c in parameters["terms"].items()}}
+    return SHAPES[name](**parameters)
+
+
+def tables() -> list[Any]:
+    found = []
+    for name in SHAPES:
+        for number, case in enumerate(json.loads((DATA / f"{name}.json").read_text())["cases"]):
+            found.append(pytest.param(name, case, id=f"{name}-{number}"))
+    return found
+
+
+def bounds(case: dict[str, Any], row: dict[str, Any]) -> dict[str, float]:
+    """How far each answer may be off."""
+    exact = {name: mp.mpf(row[name]) for name in ("contact_radius", "indentation", "force", "stiffness")}
+    control, X = row["control"], mp.mpf(1)
+    scale = {name: abs(exact[name]) for name in ("indentation", "force")}
+    if case["work"] > 0.0:
+        off = case["pull_off"]["displacement" if control == "indentation" else "force"]
+        X = abs(1 - mp.mpf(row["value"]) / mp.mpf(off[control]))
+        scale = {name: max(scale[name], abs(mp.mpf(off[name]))) for name in scale}
+    forward = 1e-12 + 3e-16 / float(mp.sqrt(X)) if X > 0 else 1.0
+    k = exact["stiffness"]
+    plain = 2 * mp.mpf(case["modulus"]) * exact["contact_radius"]
+    return {
+        "contact_radius": forward * float(exact["contact_radius"]),
+        "indentation": forward * float(scale["indentation"]),
+        "force": forward * float(scale["force"]),
+        "stiffness": (1e-12 + 1e-15 / float(X) if X > 0 else 1.0) * float(max(abs(k), plain)),
+    }
+
+
+@pytest.mark.parametrize(("name", "case"), tables())
+def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any]) -> None:
+    shape = shape_of(name, case)
+    for control in ("indentation", "force"):
+        rows = [row for row in case["rows"] if row["control"] == control]
+        values = [row["value"] for row in rows]
+        got = rm.indent(shape, modulus=case["modulus"], work=case["work"], **{control: values})
+        for i, row in enumerate(rows):
+            for quantity, bound in bounds(case, row).items():
+                error = abs(mp.mpf(float(got[quantity][i])) - mp.mpf(row[quantity]))
+                assert error <= bound, (control, row["value"], quantity, float(error) / bound, row)
+
+
+@pytest.mark.parametrize(("name", "case"), tables())
+def test_pull_off(name: str, case: dict[str, Any]) -> None:
+    if case["work"] == 0.0:
+        return
+    shape = shape_of(name, case)
+    for control, exact in case["pull_off"].items():
+        off = rm.pull_off(shape, modulus=case["modulus"], work=case["work"], control=control)
+        own = "indentation" if control == "displacement" else "force"
+        assert abs(float(off[own]) / mp.mpf(exact[own]) - 1) <= 3 * ULP
+        assert float(off.contact_radius) == pytest.approx(float(mp.mpf(exact["contact_radius"])), rel=1e-7)
+
+
+def test_the_tables_hold_the_spline_that_is_used() -> None:
+    for case in json.loads((DATA / "tabulated.json").read_text())["cases"]:
+        np.testing.assert_allclose(rm.Tabulated(**case["parameters"]).knot_slopes, case["slopes"], rtol=1e-15)
