@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from roughmdr.aggregate import load_separation
     from roughmdr.asperity import indent, pull_off
     from roughmdr.ensemble import generate
+    from roughmdr.equilibria import equilibria
     from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
     from roughmdr.runner import run
     from roughmdr.scene import Scene
@@ -51,6 +52,7 @@ _HOME = {
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
     "effective_modulus": "units",
+    "equilibria": "equilibria",
     "generate": "ensemble",
     "indent": "asperity",
     "load_separation": "aggregate",
@@ -74,11 +76,12 @@ __all__ = [
     "SceneError",
     "ShapeError",
     "Sphere",
-    "Tabulated",
     "StoreError",
+    "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
     "effective_modulus",
+    "equilibria",
     "generate",
     "indent",
     "load_separation",

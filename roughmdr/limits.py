@@ -1,4 +1,4 @@
-"""Where a result leaves what its theory supposes: contacts beyond the end of the profile, and slopes that are not small."""
+"""Where a result leaves what its theory supposes: contacts beyond the end of a profile, slopes that are not small."""
 
 from typing import NamedTuple
 
@@ -9,8 +9,8 @@ from roughmdr.arguments import Floats
 STEEP = 0.3
 """The slope at the edge of a contact from which on there is a warning.
 
-Linear elasticity supposes small strains, and a half-space: a contact small beside the radii of the bodies (K. L. Johnson,
-Contact Mechanics, 1985, section 4.1). a/R = 0.3 is where a sphere and its paraboloid part by 2 % in g.
+Linear elasticity supposes small strains, and a half-space: a contact small beside the radii of the bodies (K. L.
+Johnson, Contact Mechanics, 1985, section 4.1). At a/R = 0.3 a sphere and its paraboloid part by 3 % in g.
 """
 
 
@@ -45,7 +45,7 @@ class Extremes(NamedTuple):
             )
         if self.extent > 1.0:
             found.append(
-                f"contact radii of up to {self.extent:.3g} times the radius where the profile, or the body it stands for, "
-                "ends: what lies beyond is extrapolated"
+                f"contact radii of up to {self.extent:.3g} times the radius where the profile, or the body that it "
+                "stands for, ends: what lies beyond is extrapolated"
             )
         return found

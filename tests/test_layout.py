@@ -13,7 +13,20 @@ import roughmdr as rm
 
 PACKAGE = Path(__file__).parent.parent / "roughmdr"
 LINES = (
-    ("errors", "arguments", "variables", "labelled", "units", "wording", "quantities", "faults", "_jit", "_rebuilt", "_extended", "limits"),
+    (
+        "errors",
+        "arguments",
+        "variables",
+        "labelled",
+        "units",
+        "wording",
+        "quantities",
+        "faults",
+        "_jit",
+        "_rebuilt",
+        "_extended",
+        "limits",
+    ),
     ("shapes",),
     ("kernels",),
     ("contact", "asperity", "equilibria"),

@@ -110,7 +110,7 @@ def _settle_branched(
     held: Floats,
     state: Floats,
 ) -> None:
-    """The same where contacts can be on one of several branches: ``held`` is its number, and comes from the step before."""
+    """The same where contacts can be on one of several branches: ``held``, from the step before, is its number."""
     depth, per_depth = scales[DEPTH], scales[PER_DEPTH]
     for i in range(count):
         form = _own(forms, i)

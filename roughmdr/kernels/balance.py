@@ -1,4 +1,4 @@
-"""The equilibrium of one curved asperity at a state t: what it takes, what it carries, what it stores (H 25, 32-33, 40-41).
+"""The equilibrium of one curved asperity at a state t: its load, force, stiffness and energy (H 25, 32-33, 40-41).
 
 Notation of ``row``. All in units of the shape's width and rise.
 """
@@ -60,7 +60,7 @@ def stiffness(t: float, row: Floats) -> float:
 
 
 def energy(t: float, row: Floats) -> float:
-    """U over 2 E* width rise^2 DEPTH: ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx, and what the springs' stretch adds."""
+    """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
     tension = row[TENSION]
     a = _curve(t, row)[0]
     stretch = tension * math.sqrt(a)
@@ -72,7 +72,8 @@ def _strain(t: float, row: Floats) -> float:
     total, low = 0.0, 0.0
     while low < t:
         high = min(_panel_end(low, row), t)
-        for z, weight in zip(_NODES, _WEIGHTS):
+        for i in range(_NODES.size):
+            z, weight = _NODES[i], _WEIGHTS[i]
             at = low + (high - low) * z * z * z * z
             total += 8.0 * (high - low) * weight * z * z * z * _curve(at, row)[3] * _push(at, row)
         low = high

@@ -6,7 +6,16 @@ from typing import Any
 
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import (
-    CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, NODE, OCTAVES, SLOPE, TENSION, TOP, TOP_X,
+    COUNT,
+    DEPTH,
+    FOOT,
+    FOOT_X,
+    NODE,
+    OCTAVES,
+    SLOPE,
+    TENSION,
+    TOP,
+    TOP_X,
 )  # fmt: skip
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
@@ -22,7 +31,7 @@ _LARGEST = 2.0**OCTAVES
 
 
 def _above(t: float, j: int, row: Floats) -> tuple[float, float]:
-    """How far the controlled quantity lies above the lowest foot, and its slope; 1e-16 of the depth, less near a foot."""
+    """How far the controlled quantity lies above the lowest foot, and its slope."""
     value, slope = load(t, row)
     foot = row[FOOT + j]
     step = t - foot
@@ -36,7 +45,7 @@ def _above(t: float, j: int, row: Floats) -> tuple[float, float]:
 
 
 def _root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
-    """The t on branch j, between low and high, that lies ``wanted`` above the lowest foot; Newton's method from t, held."""
+    """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
     foot = row[FOOT + j]
     for _ in range(200):
         value, slope = _above(t, j, row)
@@ -115,7 +124,7 @@ def state_on(x: float, rung: float, row: Floats) -> float:
 
 
 def state(x: float, row: Floats) -> float:
-    """t at the distance x >= 0 to the lowest foot, where a slow retraction is: on the last branch that reaches so low."""
+    """t at the distance x >= 0 to the lowest foot, on the branch of a slow retraction: the last that reaches so low."""
     j = int(row[COUNT])
     while j > 1 and x < row[FOOT_X + j - 1]:
         j -= 1

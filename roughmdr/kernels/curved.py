@@ -1,4 +1,4 @@
-"""The law of asperities with any ``Profile``: what a block of them needs found out once, and the kernels put together."""
+"""The law of asperities with any ``Profile``: what is found out once for each, and the kernels put together."""
 
 import math
 from collections.abc import Callable
@@ -103,7 +103,17 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         "_panel_end": compiled(profile.panel_end),
         "_corner": profile.corner,
     }
-    ends = (prepare, prepare_common, own, common, natural, natural_force, state_of_radius, state_of_force, radius_of_force)
+    ends = (
+        prepare,
+        prepare_common,
+        own,
+        common,
+        natural,
+        natural_force,
+        state_of_radius,
+        state_of_force,
+        radius_of_force,
+    )
     for part in (*balance.PARTS, *folds.PARTS, *branches.PARTS, fill, *ends):
         kernels[part.__name__] = specialise(cast(FunctionType, part), shape.name, kernels)
     if shape.common:

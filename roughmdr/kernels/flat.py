@@ -1,4 +1,4 @@
-"""One flat-ended punch, its contact pinned to its edge: P = 2 E* b delta, and with adhesion down to delta = -dl(b) (H 44).
+"""One flat-ended punch, its contact pinned to its edge: P = 2 E* b delta, with adhesion down to -dl(b) (H 44).
 
 With adhesion all is measured from the depth dl(b), where it lets go (K. Kendall, J. Phys. D 4 (1971) 1186); the state
 is the indentation over it, and so without adhesion, where the depth is b.
@@ -16,7 +16,9 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
     """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where no float can hold the stretch."""
     depth = (width, 0.0)
     if work > 0.0:
-        square = extended.divide(extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (modulus, 0.0))
+        square = extended.divide(
+            extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (modulus, 0.0)
+        )
         if not 1e-280 < square[0] < 1e290:
             return (0.0, 0.0), 0.0, 0.0, 0.0
         depth = extended.sqrt(square)

@@ -78,43 +78,43 @@ def _branch(count: int, foot: float, top: float, row: Floats) -> int:
     return count + 1
 
 
-def find_branches(row: Floats) -> None:
-    """Fill in the stable branches and the depth, from TENSION, CONTROL and FORM; COUNT = 0 where it cannot be done."""
-    tension = row[TENSION] * (1.0 + 2.0 * row[CONTROL])
-    row[COUNT] = 0.0
-    count, low, foot, stable = 0, 0.0, 0.0, tension == 0.0
-    if tension > 0.0:
-        for i in range(_dip_count(row)):
-            peak, dip = _dip(i, row)
-            if not stable and peak > low and _steepness(peak, row) >= tension:
-                foot, stable = _crossing(low, peak, tension, row), True
-            elif not stable and _corner:
-                foot, stable = peak, True
-            if stable and _steepness(dip, row) < tension:
-                count = _branch(count, foot, _crossing(peak, dip, tension, row), row)
-                stable = False
-            low = dip
-        if not stable:
-            foot = _crossing(low, math.inf, tension, row)
+def _list_branches(tension: float, row: Floats) -> int:
+    """Fill in where the stable branches begin and end; how many there are, 0 where it cannot be said."""
+    count, low, foot, stable = 0, 0.0, 0.0, False
+    for i in range(_dip_count(row)):
+        peak, dip = _dip(i, row)
+        if not stable and peak > low and _steepness(peak, row) >= tension:
+            foot, stable = _crossing(low, peak, tension, row), True
+        elif not stable and _corner:
+            foot, stable = peak, True
+        if stable and _steepness(dip, row) < tension:
+            count = _branch(count, foot, _crossing(peak, dip, tension, row), row)
+            stable = False
+        low = dip
+    if not stable:
+        foot = _crossing(low, math.inf, tension, row)
     count = _branch(count, foot, math.inf, row)
-    if count > MOST or foot == math.inf:
+    return count if count <= MOST and foot < math.inf else 0
+
+
+def find_branches(row: Floats) -> None:
+    """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
+    row[COUNT], row[FOLD], row[DEPTH] = 0.0, 0.0, 1.0
+    if row[TENSION] == 0.0:
+        row[FOOT], row[TOP], row[FOOT_X], row[TOP_X], row[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
         return
-    row[FOLD], row[DEPTH] = 0.0, 1.0
-    if tension > 0.0:
-        row[DEPTH] = -math.inf
-        for j in range(count):
-            depth = -load(row[FOOT + j], row)[0]
-            if depth > row[DEPTH]:
-                row[FOLD], row[DEPTH] = row[FOOT + j], depth
-        if not 0.0 < row[DEPTH] < math.inf:
-            return
+    count = _list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row)
+    row[DEPTH] = -math.inf
     for j in range(count):
-        if tension > 0.0:
-            row[FOOT_X + j] = load(row[FOOT + j], row)[0] / row[DEPTH] + 1.0
-            row[TOP_X + j] = load(row[TOP + j], row)[0] / row[DEPTH] + 1.0 if j < count - 1 else math.inf
-        else:
-            row[FOOT_X + j], row[TOP_X + j] = 0.0, math.inf
+        depth = -load(row[FOOT + j], row)[0]
+        if depth > row[DEPTH]:
+            row[FOLD], row[DEPTH] = row[FOOT + j], depth
+    if not 0.0 < row[DEPTH] < math.inf:
+        return
+    for j in range(count):
+        row[FOOT_X + j] = load(row[FOOT + j], row)[0] / row[DEPTH] + 1.0
+        row[TOP_X + j] = load(row[TOP + j], row)[0] / row[DEPTH] + 1.0 if j < count - 1 else math.inf
     row[COUNT] = float(count)
 
 
-PARTS: tuple[Callable[..., Any], ...] = (_steepness, _excess, _crossing, _branch, find_branches)
+PARTS: tuple[Callable[..., Any], ...] = (_steepness, _excess, _crossing, _branch, _list_branches, find_branches)

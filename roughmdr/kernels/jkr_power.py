@@ -100,8 +100,10 @@ def radius_of_force(x: float, n: float) -> float:
 
 @njit
 def state_of_force(x: float, n: float) -> float:
-    """l at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where l = (ln 3)/e at x = 0; near n = 1/2 a large
-    number, so that ``radius_of_force`` is the better way to a."""
+    """l at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where l = (ln 3)/e at x = 0.
+
+    Near n = 1/2 that is a large number, so that ``radius_of_force`` is the better way to a.
+    """
     e = 2.0 * n - 1.0
     return extended.LOG_3[0] / e + branch(x, e / 3.0) / 3.0
 

@@ -1,4 +1,4 @@
-"""Which kernels compute which shape, with and without adhesion. A new adhesion joins by one line here, a new shape by none."""
+"""Which kernels compute which shape, with and without adhesion. A new curved shape needs no line here."""
 
 from collections.abc import Callable
 from types import ModuleType
@@ -69,12 +69,11 @@ class Law(NamedTuple):
         return {f"_{name}": value for name, value in self._asdict().items()}
 
 
-def _scalar(name: str, module: ModuleType, adhesive: bool, **others: Kernel) -> Law:
+def _scalar(name: str, module: ModuleType, adhesive: bool, **others: Callable[..., Any]) -> Law:
     """The law of a module's kernels; ``others`` are those that have another name there."""
-    names = [name for name in Law._fields if name not in others and hasattr(module, name)]
-    own = {kernel: getattr(module, kernel) for kernel in names}
-    ready = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed}
-    return Law(name, adhesive, curved=False, branched=False, **ready, **own, **others)
+    kernels: dict[str, Any] = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed}
+    kernels |= {kernel: getattr(module, kernel) for kernel in Law._fields if hasattr(module, kernel)}
+    return Law(name, adhesive, curved=False, branched=False, **{**kernels, **others})
 
 
 def _curved(shape: type[Curved], adhesive: bool) -> Law:

@@ -1,7 +1,7 @@
 """One curved asperity as a row of numbers: what ``prepare`` finds out once, and the kernels read.
 
-In units of the shape's width and rise the contact is g(a) - tension sqrt(a) = indentation and ∫ x g' dx - tension a^(3/2)
-= force over 2 E* width rise, with tension = dl(width)/rise. A branch is stable from its foot to its top.
+In units of the shape's width and rise the contact is indentation = g(a) - tension sqrt(a) and, over 2 E* width rise,
+force = ∫ x g' dx - tension a^(3/2), with tension = dl(width)/rise. A branch is stable from its foot to its top.
 """
 
 MOST = 8

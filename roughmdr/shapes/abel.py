@@ -27,7 +27,10 @@ def _turned(sine: float, cosine: float, angle: float) -> float:
     """The sine of an angle that is larger by a small one."""
     square = angle * angle
     turn = angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
-    return sine * (1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))) + cosine * turn
+    return (
+        sine * (1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))))
+        + cosine * turn
+    )
 
 
 @njit
@@ -48,7 +51,9 @@ def integrals(x: Floats, knots: Floats, coefficients: Floats) -> Floats:
             c0, c1, c2 = coefficients[k, 0], coefficients[k, 1], coefficients[k, 2]
             sine, cosine = math.sin(begin), math.cos(begin)
             for j in range(nodes.size):
-                r = a * (_turned(sine, cosine, angle * nodes[j]) if angle < _SMALL else math.sin(begin + angle * nodes[j]))
+                r = a * (
+                    _turned(sine, cosine, angle * nodes[j]) if angle < _SMALL else math.sin(begin + angle * nodes[j])
+                )
                 s = r - knots[k]
                 slope = c0 + s * (c1 + s * c2)
                 weight = angle * weights[j]

@@ -54,7 +54,9 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     begins = np.array([begin for begin, _ in done] + [ends[-1]])
     dips = _dips(begins, knots, coefficients)
     parts = [piece for _, piece in done]
-    return np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, _far(begins[-1], knots, coefficients)])
+    return np.concatenate(
+        [[len(dips)], np.ravel(dips), [len(done)], begins, *parts, _far(begins[-1], knots, coefficients)]
+    )
 
 
 def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
@@ -68,7 +70,7 @@ def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
-    """g beyond the end: with the last slope S, a pi/2 S + sum over k of binomial(2k, k)/4^k a^(-2k) ∫ (f' - S) r^(2k) dr."""
+    """g beyond the end, where the slope is S: a pi S/2 + sum over k of binomial(2k, k) (2a)^(-2k) ∫ (f' - S) r^(2k) dr."""
     from scipy.special import binom
 
     from roughmdr.shapes.abel import integrals
@@ -106,7 +108,7 @@ def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[flo
 
     x, slope = steepness(begins, knots, coefficients)
     m = np.sqrt(x) * slope
-    turns: list[tuple[float, float]] = []
+    turns: list[tuple[int, int]] = []
     top = 0
     bottom: int | None = None
     for i in range(1, x.size):  # a fall counts when it is deeper than rounding

@@ -26,7 +26,6 @@ class _Power(Shape):
         radius = radii("a", a)
         return np.asarray(radius * self.g(radius) / (self.stretched()[2] + 1.0))
 
-
     @classmethod
     def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
         width, rise, exponent = cls.stretch(parameters)

@@ -33,7 +33,7 @@ def _octave(t: float, form: Form) -> float:
 
 
 class Profile(NamedTuple):
-    """A profile in units of its width (radii) and its rise (depths); a = contact radius, x g' and G as in (H 17, 25)."""
+    """A profile in units of its width (radii) and its rise (depths); a is the contact radius, g and G are (H 17, 25)."""
 
     curve: Callable[..., tuple[Any, Any, Any, Any]]
     """(t, form) -> a, da/dt, g, dg/dt."""

@@ -61,7 +61,9 @@ class PowerSeries(Common):
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:
-            raise ShapeError(f"power_series: terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}")
+            raise ShapeError(
+                f"power_series: terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}"
+            )
         for exponent, coefficient in self.terms.items():
             check_positive("power_series", "an exponent of terms", exponent)
             check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
@@ -95,7 +97,7 @@ class PowerSeries(Common):
         """The width where the first and the last term are equal, their rise there, and the reduced terms."""
         from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
 
-        (n, c), (n_last, c_last) = list(self.terms.items())[0], list(self.terms.items())[-1]
+        (n, c), (n_last, c_last) = next(iter(self.terms.items())), list(self.terms.items())[-1]
         log_width = (math.log(c) - math.log(c_last)) / (n_last - n) if n_last > n else 0.0
         log_width = min(max(log_width, -25.0), 5.0)  # lengths from 1e-11 to 100 m
         width, rise = math.exp(log_width), math.exp(math.log(c) + n * log_width)
@@ -103,7 +105,7 @@ class PowerSeries(Common):
         for exponent, coefficient in self.terms.items():
             reduced = math.exp(math.log(coefficient) + exponent * log_width - math.log(c) - n * log_width)
             parts += [exponent, kappa(exponent) * reduced]
-        if not (0.0 < rise < math.inf and 0.0 < min(parts) and max(parts) < math.inf):
+        if not (0.0 < rise < math.inf and min(parts) > 0.0 and max(parts) < math.inf):
             raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
         return width, rise, np.array(parts)
 

@@ -1,8 +1,8 @@
 """The MDR profile of a tabulated shape as pieces of polynomials, looked up.
 
-A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its knot,
-scale, middle and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a constant and
-coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are
+A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
+knot, scale, middle and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a
+constant and coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are
 smooth although g' has the kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
 """
 
@@ -15,7 +15,7 @@ PIECE = 3 + 3 * (DEGREE + 1)
 
 
 def _piece(t: float, form: Form) -> int:
-    """Where the piece stands on which t lies; less than 0 beyond the last, where the far field stands at its opposite."""
+    """Where the piece stands on which t lies; beyond the last the opposite of where the far field stands."""
     first = 2 + 2 * int(form[0])
     count = int(form[first - 1])
     if t >= form[first + count]:

@@ -168,7 +168,9 @@ def _check(r: Floats, f: Floats) -> None:
         if falls.any():
             k = int(np.argmax(falls))
             must = "rise from point to point" if name == "r" else "not fall: the tip is the lowest point"
-            raise ShapeError(f"tabulated: {name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m; {name} must {must}")
+            raise ShapeError(
+                f"tabulated: {name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m; {name} must {must}"
+            )
     if f[-1] == 0.0:
         raise ShapeError("tabulated: f is 0 everywhere; that is a FlatPunch")
 

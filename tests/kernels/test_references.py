@@ -1,7 +1,7 @@
 """Every shape against tables made from the 3D integrals with 40 digits (``data_gen/references.py``).
 
-The bounds are those of the accuracy that double precision allows, with X the distance to the fold: backward 1e-14 of the
-indentation and 1e-13 of the force, forward 1e-12 + 3e-16/sqrt(X), the stiffness 1e-12 + 1e-15/X.
+The bounds are those of the accuracy that double precision allows, with X the distance to the fold: 1e-12 +
+3e-16/sqrt(X), and 1e-12 + 1e-15/X for the stiffness.
 """
 
 import json
