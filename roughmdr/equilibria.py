@@ -62,7 +62,7 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
     onset = -contact.depth[0] if law.adhesive else 0.0
     if delta < onset or (delta == 0.0 and not law.adhesive):
         return
-    if law.branched and law.state_on is not None and law.rung is not None:
+    if law.branched and law.state_on is not None and law.rung is not None and delta > onset:
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
         for number in range(1, int(contact.form[COUNT]) + 1):
             # A way that begins on a branch ends there just where the branch reaches so far.

@@ -59,15 +59,7 @@ def stiffness(t: float, row: Floats) -> float:
     return a * (rising - 3.0 * pull) / (rising - pull)
 
 
-def energy(t: float, row: Floats) -> float:
-    """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
-    tension = row[TENSION]
-    a = _curve(t, row)[0]
-    stretch = tension * math.sqrt(a)
-    return (_strain(t, row) - 2.0 * stretch * _push(t, row) + 0.5 * stretch * stretch * a) / (2.0 * row[DEPTH])
-
-
-def _strain(t: float, row: Floats) -> float:
+def strain(t: float, row: Floats) -> float:
     """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
     total, low = 0.0, 0.0
     while low < t:
@@ -80,4 +72,12 @@ def _strain(t: float, row: Floats) -> float:
     return total
 
 
-PARTS: tuple[Callable[..., Any], ...] = (load, distance, radius, force, stiffness, _strain, energy)
+def energy(t: float, row: Floats) -> float:
+    """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
+    tension = row[TENSION]
+    a = _curve(t, row)[0]
+    stretch = tension * math.sqrt(a)
+    return (strain(t, row) - 2.0 * stretch * _push(t, row) + 0.5 * stretch * stretch * a) / (2.0 * row[DEPTH])
+
+
+PARTS: tuple[Callable[..., Any], ...] = (load, distance, radius, force, stiffness, strain, energy)

@@ -115,7 +115,8 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         radius_of_force,
     )
     for part in (*balance.PARTS, *folds.PARTS, *branches.PARTS, fill, *ends):
-        kernels[part.__name__] = specialise(cast(FunctionType, part), shape.name, kernels)
+        known = compiled(profile.strain) if part is balance.strain and profile.strain is not None else None
+        kernels[part.__name__] = known or specialise(cast(FunctionType, part), shape.name, kernels)
     if shape.common:
         kernels |= {"prepare": kernels["prepare_common"], "own": kernels["common"]}
     return kernels

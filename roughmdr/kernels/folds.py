@@ -20,6 +20,7 @@ load: Callable[..., tuple[float, float]]
 
 _LARGEST = 1e140  # its square is a float
 _CLOSE = 1e-13
+_NEXT = 2.0**-52
 
 
 def _steepness(t: float, row: Floats) -> float:
@@ -88,7 +89,8 @@ def _list_branches(tension: float, row: Floats) -> int:
         elif not stable and _corner:
             foot, stable = peak, True
         if stable and _steepness(dip, row) < tension:
-            count = _branch(count, foot, _crossing(peak, dip, tension, row), row)
+            beyond = peak * (1.0 + _NEXT) if _corner else peak
+            count = _branch(count, foot, _crossing(beyond, dip, tension, row), row)
             stable = False
         low = dip
     if not stable:

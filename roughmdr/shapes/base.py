@@ -61,7 +61,7 @@ class Shape(ABC):
     @classmethod
     def ends(cls, parameters: dict[str, Floats]) -> Floats:
         """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
-        return np.full_like(next(iter(parameters.values())), np.inf)
+        return np.full(np.shape(next(iter(parameters.values()))), np.inf)
 
     @classmethod
     @abstractmethod

@@ -70,7 +70,7 @@ def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
-    """g beyond the end, where the slope is S: a pi S/2 + sum over k of binomial(2k, k) (2a)^(-2k) ∫ (f' - S) r^(2k) dr."""
+    """g beyond the end, slope S: a pi S/2 + sum over k of binomial(2k, k) (2a)^(-2k) ∫ (f' - S) r^(2k) dr."""
     from scipy.special import binom
 
     from roughmdr.shapes.abel import integrals

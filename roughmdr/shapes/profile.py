@@ -33,7 +33,7 @@ def _octave(t: float, form: Form) -> float:
 
 
 class Profile(NamedTuple):
-    """A profile in units of its width (radii) and its rise (depths); a is the contact radius, g and G are (H 17, 25)."""
+    """A profile in units of its width (radii) and its rise (depths), over the contact radius a; g and G as in H 17."""
 
     curve: Callable[..., tuple[Any, Any, Any, Any]]
     """(t, form) -> a, da/dt, g, dg/dt."""
@@ -49,6 +49,8 @@ class Profile(NamedTuple):
     """(number, form) -> the t from which and to which it falls."""
     kink: Callable[[float, float, Form], bool] = _smooth
     """(low, high, form) -> whether g' is not smooth from low to high."""
+    strain: Callable[..., Any] | None = None
+    """(t, form) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
     panel_end: Callable[[float, Form], float] = _octave
     """(t, form) -> the next t to which ġ and the push are smooth, but for a root where they begin."""
     corner: bool = False

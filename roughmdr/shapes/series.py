@@ -40,6 +40,15 @@ def _swept(t: float, form: Form) -> float:
     return total * t
 
 
+def _strain(t: float, form: Form) -> float:
+    total = 0.0
+    for i in range(int(form[0])):
+        for j in range(int(form[0])):
+            n, m = form[1 + 2 * i], form[1 + 2 * j]
+            total += n * m / (m + 1.0) / (n + m + 1.0) * (form[2 + 2 * i] * t**n) * (form[2 + 2 * j] * t**m)
+    return 2.0 * total * t
+
+
 def _place(radius: float, width: float, form: Form) -> float:
     return radius / width
 
@@ -57,7 +66,7 @@ class PowerSeries(Common):
     units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
     along: ClassVar[str] = "term"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, strain=_strain)
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:

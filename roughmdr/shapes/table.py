@@ -2,8 +2,8 @@
 
 A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
 knot, scale, middle and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a
-constant and coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are
-smooth although g' has the kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
+constant and coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in
+which they are smooth although g' has the kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
 """
 
 import math
@@ -101,4 +101,4 @@ def _panel_end(t: float, form: Form) -> float:
     return form[begins + 1 + (piece - begins - int(form[begins - 1]) - 1) // PIECE] if piece >= 0 else 2.0 * t
 
 
-PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, _panel_end)
+PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, panel_end=_panel_end)

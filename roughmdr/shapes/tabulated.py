@@ -20,7 +20,8 @@ class Tabulated(Common):
     """f [m] at radii r [m], both from 0 on: between them a monotone cubic spline, beyond them a cone.
 
     The spline is the not-a-knot cubic, its slopes at the points kept between 0 and three times the lesser slope of the
-    chords (R. L. Dougherty, A. Edelman, J. M. Hyman, Math. Comp. 52 (1989) 471). ShapeError unless there are at least 3
+    chords, and so that it is convex where the chords are (R. L. Dougherty, A. Edelman, J. M. Hyman, Math. Comp. 52
+    (1989) 471). ShapeError unless there are at least 3
     points, r rises, f does not fall, and both begin at 0. OutOfRange where the profile is so concave that the contact
     would not be a disc.
     """
@@ -176,10 +177,19 @@ def _check(r: Floats, f: Floats) -> None:
 
 
 def _monotone_slopes(r: Floats, f: Floats) -> Floats:
-    """f' at the points."""
+    """f' at the points: of the not-a-knot cubic, limited so that f does not fall and stays convex where the chords are."""
     from scipy.interpolate import CubicSpline
 
     chords = np.diff(f) / np.diff(r)
+    before, after = np.append(-np.inf, chords[:-1]), np.append(chords[1:], np.inf)
     steepest = 3.0 * np.minimum(np.append(chords, np.inf), np.insert(chords, 0, np.inf))
-    slopes = np.asarray(CubicSpline(r, f, bc_type="not-a-knot")(r, 1))
-    return np.clip(slopes, 0.0, steepest)
+    slopes = np.clip(np.asarray(CubicSpline(r, f, bc_type="not-a-knot")(r, 1)), 0.0, steepest)
+    convex = (before <= chords) & (chords <= after)
+    if convex[0]:
+        slopes[0] = min(slopes[0], chords[0])
+    for i in np.flatnonzero(convex):
+        # f'' >= 0 at both ends of the piece: 2 d_i + d_(i+1) <= 3 chord <= d_i + 2 d_(i+1).
+        most = min(3.0 * chords[i] - 2.0 * slopes[i], after[i])
+        least = max(0.5 * (3.0 * chords[i] - slopes[i]), chords[i])
+        slopes[i + 1] = np.clip(slopes[i + 1], min(least, most), most)
+    return slopes
