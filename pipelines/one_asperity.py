@@ -1,0 +1,411 @@
+"""One asperity under JKR adhesion: the two steps of its contact, how it lets go, and which shape holds best.
+
+    python pipelines/one_asperity.py -o results/studies
+
+Writes one_asperity.nc and three pictures, two_steps.png (Fig. 8 of M. Heß, "On the reduction method of dimensionality:
+the exact mapping of axisymmetric contact problems with and without adhesion", 2012), pull_off_curves.png and
+shape_and_pull_off.png (after H. Yao, H. Gao, J. Colloid Interface Sci. 298 (2006) 564).
+"""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import click
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import roughmdr as rm
+from roughmdr.labelled import Labelled
+from roughmdr.shapes import Shape
+from roughmdr.store import provenance, replacing, write
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+
+MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
+SLOPE, RADIUS, FLAT = 0.2, 50e-6, 10e-6  # of the cone [1], the paraboloid [m], the flat punch [m]
+SHAPES: dict[str, Shape] = {
+    "cone": rm.Cone(slope=SLOPE),
+    "paraboloid": rm.Paraboloid(radius=RADIUS),
+    "flat punch": rm.FlatPunch(radius=FLAT),
+}
+# Pull-off forces as their papers have them (Maugis for the cone, JKR, Kendall): under fixed grips, under dead load [N].
+KNOWN = {
+    "cone": [-factor * WORK**2 / (math.pi * MODULUS * SLOPE**3) for factor in (6.0, 54.0)],
+    "paraboloid": [-factor * math.pi * WORK * RADIUS for factor in (5.0 / 6.0, 1.5)],
+    "flat punch": [-math.sqrt(8.0 * math.pi * MODULUS * WORK * FLAT**3)] * 2,
+}
+CONTROLS: tuple[Literal["displacement", "force"], ...] = ("displacement", "force")
+COURSES = ("loading", "unloading", "unstable")
+PRESSED = 2.0  # the contact radius of the two steps, over the one at first touch
+INSIDE, SPRINGS = 8, 12  # springs from the middle to the edge of the contact, and to the end of the row
+WIDTH = 10e-6  # of the power laws whose exponent is varied [m]
+STRETCHES = (0.3, 1.0, 3.0)  # dl(width) over their rise
+SHARPEST, FLATTEST = 1.0, 100.0  # exponents
+POINTS = 121
+
+
+def stretch(radius: Floats | float) -> Floats:
+    """dl(a) = sqrt(2 pi a w/E*) [m]: how far a spring at the edge stretches before it lets go (H 44)."""
+    return np.sqrt(2.0 * math.pi * WORK / MODULUS * np.asarray(radius))
+
+
+def two_steps() -> xr.Dataset:
+    """The spring row below a cone: pressed without adhesion, lifted at fixed contact radius, and at its pull-off."""
+    cone = SHAPES["cone"]
+    touch = rm.indent(cone, modulus=MODULUS, work=WORK, indentation=0.0)
+    radius = PRESSED * float(touch.contact_radius)
+    states = {
+        "pressed": rm.indent(cone, modulus=MODULUS, contact_radius=radius),
+        "lifted": rm.indent(cone, modulus=MODULUS, work=WORK, contact_radius=radius),
+        "pull-off": rm.pull_off(cone, modulus=MODULUS, work=WORK),
+    }
+    radii = np.array([float(state.contact_radius) for state in states.values()])
+    depths = np.array([float(state.indentation) for state in states.values()])
+    numbers = np.arange(-SPRINGS, SPRINGS + 1)
+    position = radii[:, None] * numbers / INSIDE  # so that one spring hangs at the very edge
+    follows = np.abs(numbers) <= INSIDE
+    surface = np.where(follows, cone.g(np.abs(position)) - depths[:, None], 0.0)
+
+    def scalar(value: float, name: str) -> tuple[tuple[()], float, dict[str, str]]:
+        return (), value, {"units": "m", "long_name": name}
+
+    def staged(values: Floats, units: str, name: str) -> tuple[tuple[str, ...], Floats, dict[str, str]]:
+        return ("stage", "spring")[: values.ndim], values, {"units": units, "long_name": name}
+
+    force = np.array([float(state.force) for state in states.values()])
+    return xr.Dataset(
+        {
+            "spring_position": staged(position, "m", "distance of a spring from the axis"),
+            "spring_end": staged(surface, "m", "end of a spring above the undeformed surface"),
+            "stage_contact_radius": staged(radii, "m", "contact radius a"),
+            "stage_depth": staged(cone.g(radii), "m", "MDR profile at the contact radius, g(a)"),
+            "stage_stretch": staged(stretch(radii), "m", "stretch at which a spring at a lets go, dl(a)"),
+            "stage_indentation": staged(depths, "m", "indentation"),
+            "stage_force": staged(force, "N", "force, compression > 0"),
+            "touch_radius": scalar(float(touch.contact_radius), "contact radius of the cone at first touch"),
+            "touch_depth": scalar(float(stretch(touch.contact_radius)), "stretch of the edge at first touch"),
+        },
+        coords={
+            "stage": ("stage", list(states), {"long_name": "state of the spring row"}),
+            "spring": ("spring", numbers, {"units": "1", "long_name": "number of the spring"}),
+        },
+    )
+
+
+def pull_off_curves() -> xr.Dataset:
+    """Force against indentation of three shapes, in, out, and where no control holds the contact; and the pull-offs."""
+    points = np.linspace(0.0, 1.0, POINTS)
+    depth, force = np.full((2, len(SHAPES), len(COURSES), POINTS), np.nan)
+    folds = np.empty((3, len(SHAPES), len(CONTROLS)))
+    for i, shape in enumerate(SHAPES.values()):
+        for j, control in enumerate(CONTROLS):
+            fold = rm.pull_off(shape, modulus=MODULUS, work=WORK, control=control)
+            folds[:, i, j] = fold.force, fold.indentation, fold.contact_radius
+        lowest = float(folds[1, i, 0])
+        # As far in as pushes back with what it holds.
+        highest = float(rm.indent(shape, modulus=MODULUS, work=WORK, force=-folds[0, i, 1]).indentation)
+        depth[i, 0] = highest * points
+        depth[i, 1] = lowest + (highest - lowest) * (1.0 - points) ** 2  # closer together near the fold
+        depth[i, 1, -1] = lowest
+        for course in (0, 1):
+            force[i, course] = rm.indent(shape, modulus=MODULUS, work=WORK, indentation=depth[i, course]).force
+        if not isinstance(shape, rm.FlatPunch):  # its contact has one radius, and is stable until it is none
+            back = rm.indent(shape, modulus=MODULUS, work=WORK, contact_radius=folds[2, i, 0] * (1.0 - points))
+            depth[i, 2], force[i, 2] = back.indentation, back.force
+    over, at = ("shape", "course", "point"), ("shape", "control")
+    return xr.Dataset(
+        {
+            "curve_indentation": (over, depth, {"units": "m", "long_name": "indentation"}),
+            "curve_force": (over, force, {"units": "N", "long_name": "force, compression > 0"}),
+            "pull_off_force": (at, folds[0], {"units": "N", "long_name": "force at pull-off"}),
+            "pull_off_indentation": (at, folds[1], {"units": "m", "long_name": "indentation at pull-off"}),
+            "pull_off_radius": (at, folds[2], {"units": "m", "long_name": "contact radius at pull-off"}),
+            "known_force": (at, np.array([*KNOWN.values()]), {"units": "N", "long_name": "pull-off force of theory"}),
+        },
+        coords={
+            "shape": ("shape", list(SHAPES), {"long_name": "shape of the asperity"}),
+            "course": ("course", list(COURSES), {"long_name": "part of the curve"}),
+            "control": ("control", list(CONTROLS), {"long_name": "what is held while pulling"}),
+        },
+    )
+
+
+def holds(exponent: float, rise: float, control: Literal["displacement", "force"]) -> tuple[float, float]:
+    """Pull-off force [N] and contact radius there [m] of a power law that ends at its width.
+
+    Where the contact of the endless power law would be wider still, that of the real one stays at the rim until the
+    energy release rate there is the work of adhesion: the equilibrium whose radius is the width.
+    """
+    shape = rm.PowerLaw(exponent=exponent, width=WIDTH, rise=rise)
+    state = rm.pull_off(shape, modulus=MODULUS, work=WORK, control=control)
+    if float(state.contact_radius) > WIDTH:
+        state = rm.indent(shape, modulus=MODULUS, work=WORK, contact_radius=WIDTH)
+    return float(state.force), float(state.contact_radius)
+
+
+def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
+    """Pull-off force against exponent for power laws of one width, with three rises; the worst exponent of each.
+
+    Under dead load P = -(2n-1)/(2n+2) sqrt(8 pi E* w a^3), (a/width)^(n-1/2) = 3 dl(width)/(2 n g(width)): the flat
+    face, n -> infinity, holds most. A blunter profile has its rise nearer to the rim: contact keeps its middle longer,
+    and its rim less long. Tension is least near (a/width)^(n-1/2) = exp(-1/2), that is n g(width) = 2.5 dl(width).
+    """
+    exponents = np.geomspace(SHARPEST, FLATTEST, points)
+    rises = stretch(WIDTH) / np.array(STRETCHES)
+    found = np.array([[[holds(n, rise, control) for n in exponents] for control in CONTROLS] for rise in rises])
+    force, radius = np.moveaxis(found, -1, 0)
+    worst = np.empty((len(rises), len(CONTROLS), 2))
+    for i, rise in enumerate(rises):
+        for j, control in enumerate(CONTROLS):
+            worst[i, j] = _worst(exponents, force[i, j], rise, control)
+    flat = rm.pull_off(rm.FlatPunch(radius=WIDTH), modulus=MODULUS, work=WORK)
+    over = ("relative_stretch", "control", "exponent")
+    return xr.Dataset(
+        {
+            "held_force": (over, force, {"units": "N", "long_name": "force at pull-off, contact within the width"}),
+            "held_radius": (over, radius, {"units": "m", "long_name": "contact radius at pull-off"}),
+            "worst_exponent": (over[:2], worst[..., 0], {"units": "1", "long_name": "exponent that holds least"}),
+            "worst_force": (over[:2], worst[..., 1], {"units": "N", "long_name": "force at pull-off with it"}),
+            "flat_force": ((), float(flat.force), {"units": "N", "long_name": "pull-off force of a flat face"}),
+            "width": ((), WIDTH, {"units": "m", "long_name": "radius of the asperity"}),
+        },
+        coords={
+            "relative_stretch": (over[:1], list(STRETCHES), {"units": "1", "long_name": "dl(width) over rise"}),
+            "rise": (over[:1], rises, {"units": "m", "long_name": "height of the profile at its width"}),
+            "control": ("control", list(CONTROLS), {"long_name": "what is held while pulling"}),
+            "exponent": (over[2:], exponents, {"units": "1", "long_name": "exponent n of f = rise (r/width)^n"}),
+        },
+    )
+
+
+def _worst(exponents: Floats, force: Floats, rise: float, control: Literal["displacement", "force"]) -> list[float]:
+    """The exponent of the least tension and that force [N], refined between the neighbours of the lowest point."""
+    from scipy.optimize import minimize_scalar
+
+    lowest = int(np.argmax(force))
+    if lowest in (0, len(exponents) - 1):
+        return [float(exponents[lowest]), float(force[lowest])]
+    found = minimize_scalar(
+        lambda n: -holds(float(n), rise, control)[0],
+        bounds=(float(exponents[lowest - 1]), float(exponents[lowest + 1])),
+        method="bounded",
+    )
+    return [float(found.x), float(-found.fun)]
+
+
+def one_asperity(points: int = POINTS) -> xr.Dataset:
+    """All the numbers of this study."""
+    result = xr.merge([two_steps(), pull_off_curves(), shape_and_pull_off(points)])
+    return result.assign_attrs(
+        provenance("One asperity under JKR adhesion", "one_asperity.py"), effective_modulus=MODULUS, work=WORK
+    )
+
+
+_BODY, _LINE = "#e4e0d8", "#4a4a4a"
+_COMPRESSED, _STRETCHED, _FREE = "#1b6ca8", "#c8553d", "#9a9a9a"
+
+
+def draw_two_steps(result: xr.Dataset) -> "Figure":
+    """Profile, springs and surface of each stage, in units of the contact at first touch."""
+    from matplotlib.figure import Figure
+
+    a0, d0 = float(result.touch_radius), float(result.touch_depth)
+    figure = Figure(figsize=(13, 4.6), layout="constrained")
+    titles = (
+        "1  pressed by g(a), without adhesion",
+        "2  lifted by Δℓ(a) at fixed a:  δ = g(a) − Δℓ(a)",
+        "the last contact under fixed grips (magnified)",
+    )
+    for ax, name, title in zip(figure.subplots(1, 3), result.stage.to_numpy(), titles, strict=True):
+        stage = result.sel(stage=name)
+        a, depth = float(stage.stage_contact_radius) / a0, float(stage.stage_indentation) / d0
+        g, dl = float(stage.stage_depth) / d0, float(stage.stage_stretch) / d0 * (name != "pressed")
+        size = g if name != "pull-off" else 0.5  # what is small beside the picture scales with it
+        half = SPRINGS / INSIDE * a * 1.06
+        x = np.linspace(-half, half, 801)
+        profile = SHAPES["cone"].g(np.abs(x) * a0) / d0 - depth
+        bottom, top = -1.75 * size, max(1.25 * size, dl + 0.5 * size)
+        ax.fill_between(x, profile, top, where=list(profile <= top), color=_BODY, lw=0)
+        ax.plot(x, profile, color=_LINE, lw=1.4)
+        ax.axhline(0.0, color="0.45", lw=0.9, ls=(0, (6, 4)))
+        ends = stage.spring_end.to_numpy() / d0
+        for at, end in zip(stage.spring_position.to_numpy() / a0, ends, strict=True):
+            _spring(ax, at, bottom, end, 0.036 * half)
+        # The surface is torn at the edge once springs hang there.
+        number = stage.spring.to_numpy()
+        torn = [-SPRINGS, -INSIDE, INSIDE + 1] if dl else [-SPRINGS]
+        for first, end in zip(torn, [*torn[1:], SPRINGS + 1], strict=True):
+            part = (number >= first) & (number < end)
+            ax.plot(stage.spring_position[part] / a0, ends[part], color="k", lw=1.1)
+        ax.axhline(bottom, color=_LINE, lw=2.5)
+        _labels(ax, str(name), a, g, dl, size)
+        ax.set(xlim=(-half, half), ylim=(bottom - 0.02 * size, top), xlabel="x / a₀", title=title)
+        ax.title.set_fontsize(11)
+    figure.axes[0].set_ylabel("height above the undeformed surface / δ₀")
+    figure.suptitle(
+        "Cone on a row of springs, JKR adhesion.  a₀, δ₀: contact radius and Δℓ at first touch.  "
+        "Blue: compressed; red: stretched; dashed: undeformed surface",
+        fontsize=10,
+    )
+    return figure
+
+
+def _spring(ax: "Axes", x: float, bottom: float, end: float, width: float) -> None:
+    """A zigzag from the base to the end of a spring, its colour by its sign."""
+    color = _FREE if abs(end) < 1e-9 else _STRETCHED if end > 0.0 else _COMPRESSED
+    sideways = np.zeros(25)
+    sideways[2:-2:2], sideways[3:-2:2] = width, -width
+    ax.plot(x + 0.5 * sideways, np.linspace(bottom, end, sideways.size), color=color, lw=0.9, solid_joinstyle="round")
+    ax.plot(x, end, "o", color=color, ms=2.8)
+
+
+def _labels(ax: "Axes", name: str, a: float, g: float, dl: float, size: float) -> None:
+    """The lengths a, g(a), dl(a) and delta, with arrows; guide lines to where they are taken from."""
+    delta = g - dl
+    guide: dict[str, Any] = {"color": "0.35", "lw": 0.7, "ls": ":"}
+    paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8}
+
+    def arrow(start: tuple[float, float], end: tuple[float, float], text: str, shift: tuple[float, float]) -> None:
+        ax.annotate("", end, start, arrowprops={"arrowstyle": "<->", "lw": 1.2, "shrinkA": 0, "shrinkB": 0})
+        middle = (0.5 * (start[0] + end[0]) + shift[0] * a, 0.5 * (start[1] + end[1]) + shift[1] * size)
+        ax.text(*middle, text, ha="center", va="center", fontsize=12, bbox=paper if "<" in text else None)
+
+    above = dl + (0.25 if name == "pressed" else 0.12) * size
+    arrow((0.0, above), (a, above), "a", (0.0, 0.09))
+    ax.plot([a, a], [dl, above], **guide)
+    if name == "pressed":
+        arrow((0.0, 0.0), (0.0, -g), "g(a)", (-0.2, 0.22))
+        return
+    right, left = 1.2 * a, -1.25 * a
+    ax.plot([a, right], [dl, dl], **guide)
+    arrow((right, 0.0), (right, dl), "Δℓ(a)", (0.21, 0.0))
+    ax.plot([left, -a], [dl, dl], **guide)
+    ax.plot([left, 0.0], [-delta, -delta], **guide)
+    arrow((left, -delta), (left, dl), "g(a)", (-0.17, 0.1))
+    arrow(
+        (0.0, 0.0),
+        (0.0, -delta),
+        *(("δ", (0.0, 0.5 * delta / size + 0.08)) if delta > 0.0 else ("δ < 0", (0.27, 0.04))),
+    )
+
+
+_KNOWN = {  # as KNOWN has them, under fixed grips and dead load
+    "cone": (r"$-\frac{6\,w^2}{\pi E^* S^3}$", r"$-\frac{54\,w^2}{\pi E^* S^3}$  (Maugis)"),
+    "paraboloid": (r"$-\frac{5}{6}\,\pi w R$", r"$-\frac{3}{2}\,\pi w R$  (JKR)"),
+    "flat punch": ("", r"$-\sqrt{8\pi E^* w b^3}$  (Kendall)"),
+}
+
+
+def draw_pull_off_curves(result: xr.Dataset) -> "Figure":
+    """Each shape in a panel: force over its pull-off force under dead load, depth over that of the last contact."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13, 4.8), layout="constrained")
+    for ax, name in zip(figure.subplots(1, 3, sharey=True), result["shape"].to_numpy(), strict=True):
+        shape = result.sel(shape=name)
+        grips, dead = (shape.sel(control=control) for control in CONTROLS)
+        force = -float(dead.pull_off_force)
+        depth = -float(grips.pull_off_indentation)
+        curve = {
+            course: (one.curve_indentation.to_numpy() / depth, one.curve_force.to_numpy() / force)
+            for course, one in ((course, shape.sel(course=course)) for course in COURSES)
+        }
+        widest = float(curve["loading"][0].max())
+        low = -1.0 - 0.16 * (widest + 1.0)
+        x, y = curve["loading"]
+        ax.axhline(0.0, color="0.7", lw=0.7, zorder=0)
+        ax.axvline(0.0, color="0.7", lw=0.7, zorder=0)
+        ax.plot([low, 0.0], [0.0, 0.0], color=_COMPRESSED, lw=4, alpha=0.45)
+        ax.plot(x, y, color=_COMPRESSED, lw=4, alpha=0.45, label="loading, with its jump at first touch")
+        if y[0] < -1e-9:
+            _jump(ax, (0.0, 0.0), (0.0, float(y[0])), _COMPRESSED)
+        ax.plot(*curve["unloading"], color=_STRETCHED, lw=1.8, label="unloading, fixed grips")
+        x_grips, y_grips = -1.0, float(grips.pull_off_force) / force
+        _jump(ax, (x_grips, y_grips), (x_grips, 0.0), _STRETCHED)
+        if np.isfinite(curve["unstable"][0]).all():
+            ax.plot(*curve["unstable"], color="k", lw=1.2, ls="--", label="unstable")
+        ax.plot(x_grips, y_grips, "o", color=_STRETCHED, ms=7, label="lets go under fixed grips")
+        x_dead = float(dead.pull_off_indentation) / depth
+        ax.plot(x_dead, -1.0, "o", mec="k", mfc="none", mew=1.5, ms=11, label="lets go under dead load")
+        for j, text in enumerate(_KNOWN[str(name)]):
+            value = float(shape.known_force[j]) / force
+            if text:
+                ax.axhline(value, color="0.4", lw=0.8, ls=":", zorder=0)
+                ax.text(widest, value - 0.02, text, ha="right", va="top", fontsize=11)
+        ax.set(xlim=(low, widest), ylim=(-1.3, 1.0), title=name, xlabel="δ / |δ at pull-off under fixed grips|")
+    figure.axes[0].set_ylabel("P / |P at pull-off under dead load|")
+    figure.axes[1].legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
+def _jump(ax: "Axes", start: tuple[float, float], end: tuple[float, float], color: str) -> None:
+    """A jump at fixed indentation."""
+    arrow = {"arrowstyle": "-|>", "color": color, "lw": 1.4, "ls": ":", "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", end, start, arrowprops=arrow)
+
+
+def draw_shape_and_pull_off(result: xr.Dataset) -> "Figure":
+    """Pull-off force over that of a flat face of the same width, against the exponent; the worst exponents marked."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.6, 5.0), layout="constrained")
+    ax = figure.subplots()
+    flat = float(result.flat_force)
+    for color, ratio in zip((_COMPRESSED, _STRETCHED, "#3b7a57"), result.relative_stretch.to_numpy(), strict=True):
+        for control, style in (("force", "-"), ("displacement", "--")):
+            one = result.sel(relative_stretch=ratio, control=control)
+            label = f"Δℓ(width)/rise = {ratio:g}" if control == "force" else None
+            ax.plot(one.exponent, one.held_force / flat, color=color, ls=style, lw=1.8, label=label)
+            ax.plot(one.worst_exponent, one.worst_force / flat, "v", color=color, ms=8, clip_on=False, zorder=3)
+            at_rim = one.held_radius.to_numpy() == WIDTH
+            ax.plot(one.exponent[at_rim], one.held_force[at_rim] / flat, color=color, lw=5, alpha=0.35)
+    ax.axhline(1.0, color="0.3", lw=1.0)
+    ax.text(FLATTEST, 1.01, "flat face, n → ∞ (Kendall): best for every rise ▸", ha="right", va="bottom", fontsize=9)
+    ax.plot([], [], "k-", label="dead load")
+    ax.plot([], [], "k--", label="fixed grips")
+    ax.plot([], [], "kv", label="worst exponent")
+    ax.plot([], [], "k-", lw=5, alpha=0.35, label="contact as wide as the asperity")
+    ax.set(xscale="log", xlim=(SHARPEST, FLATTEST), ylim=(0.0, 1.08))
+    ax.set_xticks([1, 2, 3, 5, 10, 20, 50, 100], ["1\ncone", "2\nparaboloid", "3", "5", "10", "20", "50", "100"])
+    ax.set(xlabel="exponent n of f = rise (r/width)ⁿ", ylabel="pull-off force / that of a flat face of that width")
+    ax.legend(frameon=False, fontsize=9, loc="lower right")
+    return figure
+
+
+PICTURES: dict[str, Callable[[xr.Dataset], "Figure"]] = {
+    "two_steps.png": draw_two_steps,
+    "pull_off_curves.png": draw_pull_off_curves,
+    "shape_and_pull_off.png": draw_shape_and_pull_off,
+}
+
+
+@click.command(help=(__doc__ or "").split("\n")[0])
+@click.option("-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("results/studies"))
+def main(output: Path) -> None:
+    """Compute, print, write one_asperity.nc and three pictures."""
+    output.mkdir(parents=True, exist_ok=True)
+    result = one_asperity()
+    write(Labelled.of(result), output / "one_asperity.nc")
+    for name, draw in PICTURES.items():
+        with replacing(output / name) as temporary:
+            draw(result).savefig(temporary, dpi=160, format="png")
+    for name in result["shape"].to_numpy():
+        grips, dead = result.pull_off_force.sel(shape=name).to_numpy()
+        click.echo(f"{name:<12} lets go at {dead:.6g} N under dead load, {grips:.6g} N under fixed grips")
+    for ratio in STRETCHES:
+        one = result.sel(relative_stretch=ratio, control="force")
+        click.echo(
+            f"dl(width)/rise = {ratio:<4g} worst exponent {float(one.worst_exponent):.2f}, which holds "
+            f"{float(one.worst_force / one.flat_force):.3f} of a flat face"
+        )
+
+
+if __name__ == "__main__":
+    main()
