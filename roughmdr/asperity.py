@@ -85,6 +85,11 @@ def pull_off(
     with np.errstate(all="ignore"):
         results = contact.pull_off(control)
     radius = results["contact_radius"]
+    for name, numbers in results.items():
+        if not np.isfinite(numbers).all() or (radius == 0.0).any():
+            raise OutOfRange(
+                f"{name} at pull-off is not representable: modulus {modulus:g} Pa, work {work:g} J/m^2, {shape}"
+            )
     extremes = limits.Extremes.of(radius, shape.df(radius), np.array(shape.end))
     names = ("force", "indentation", "contact_radius")
     return _dataset({name: results[name].reshape(()) for name in names}, None, extremes)

@@ -13,6 +13,11 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.shapes.base import Common, check_positive, radii
 from roughmdr.shapes.profile import Form, Profile
 
+_LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
+
+
+_STEEPEST = 1000.0
+
 
 def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
@@ -75,6 +80,8 @@ class PowerSeries(Common):
             )
         for exponent, coefficient in self.terms.items():
             check_positive("power_series", "an exponent of terms", exponent)
+            if float(exponent) > _STEEPEST:
+                raise ShapeError(f"power_series: an exponent of terms is {exponent}; it must be at most {_STEEPEST:g}")
             check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
         terms = {float(n): float(c) for n, c in sorted(self.terms.items(), key=lambda term: float(term[0]))}
         object.__setattr__(self, "terms", terms)
@@ -109,14 +116,13 @@ class PowerSeries(Common):
         (n, c), (n_last, c_last) = next(iter(self.terms.items())), list(self.terms.items())[-1]
         log_width = (math.log(c) - math.log(c_last)) / (n_last - n) if n_last > n else 0.0
         log_width = min(max(log_width, -25.0), 5.0)  # lengths from 1e-11 to 100 m
-        width, rise = math.exp(log_width), math.exp(math.log(c) + n * log_width)
-        parts = [float(len(self.terms))]
-        for exponent, coefficient in self.terms.items():
-            reduced = math.exp(math.log(coefficient) + exponent * log_width - math.log(c) - n * log_width)
-            parts += [exponent, kappa(exponent) * reduced]
-        if not (0.0 < rise < math.inf and min(parts) > 0.0 and max(parts) < math.inf):
+        logs = [math.log(factor) + exponent * log_width for exponent, factor in self.terms.items()]
+        if max(abs(log) for log in (*logs, *(log - logs[0] for log in logs))) > _LOG_LARGEST:
             raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
-        return width, rise, np.array(parts)
+        parts = [float(len(self.terms))]
+        for exponent, log in zip(self.terms, logs, strict=True):
+            parts += [exponent, kappa(exponent) * math.exp(log - logs[0])]
+        return math.exp(log_width), math.exp(logs[0]), np.array(parts)
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         from mpmath import mp

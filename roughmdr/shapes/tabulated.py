@@ -13,6 +13,8 @@ from roughmdr.shapes.base import Common, radii
 from roughmdr.shapes.profile import Profile
 
 _LEAST_POINTS = 3
+_CLOSEST = 1e-6
+_LARGEST = 1e100
 _NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
 
 
@@ -174,12 +176,24 @@ def _check(r: Floats, f: Floats) -> None:
             )
     if f[-1] == 0.0:
         raise ShapeError("tabulated: f is 0 everywhere; that is a FlatPunch")
+    for name, column in (("r", r), ("f", f)):
+        if not 1.0 / _LARGEST < column[-1] < _LARGEST:
+            raise ShapeError(f"tabulated: {name} ends at {column[-1]:g} m; it must end between 1e-100 and 1e100 m")
+    nearest = int(np.argmin(np.diff(r)))
+    if not np.diff(r)[nearest] > _CLOSEST * r[-1]:
+        raise ShapeError(
+            f"tabulated: r[{nearest + 1}] is {r[nearest + 1]!r} m, within {_CLOSEST:g} of the table's length of the point "
+            "before; its points must lie further apart"
+        )
 
 
 def _monotone_slopes(r: Floats, f: Floats) -> Floats:
     """f' at the points: of the not-a-knot cubic, limited so that f does not fall and stays convex where the chords are."""
     from scipy.interpolate import CubicSpline
 
+    # By powers of two, so that no bit changes.
+    r_unit, f_unit = (2.0 ** np.frexp(column[-1])[1] for column in (r, f))
+    r, f = r / r_unit, f / f_unit
     chords = np.diff(f) / np.diff(r)
     before, after = np.append(-np.inf, chords[:-1]), np.append(chords[1:], np.inf)
     steepest = 3.0 * np.minimum(np.append(chords, np.inf), np.insert(chords, 0, np.inf))
@@ -192,4 +206,4 @@ def _monotone_slopes(r: Floats, f: Floats) -> Floats:
         most = min(3.0 * chords[i] - 2.0 * slopes[i], after[i])
         least = max(0.5 * (3.0 * chords[i] - slopes[i]), chords[i])
         slopes[i + 1] = np.clip(slopes[i + 1], min(least, most), most)
-    return slopes
+    return slopes * (f_unit / r_unit)

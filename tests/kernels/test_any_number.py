@@ -13,6 +13,15 @@ KINDS = {
     "cone": lambda p: rm.Cone(slope=p[0]),
     "coefficient": lambda p: rm.PowerLaw(exponent=p[0], coefficient=p[1]),
     "rise": lambda p: rm.PowerLaw(exponent=p[0], width=p[1], rise=p[2]),
+    "flat": lambda p: rm.FlatPunch(radius=p[0]),
+    "sphere": lambda p: rm.Sphere(radius=p[0]),
+    "series": lambda p: rm.PowerSeries({p[0]: p[1], 3.0: p[2]}),
+    "truncated cone": lambda p: rm.TruncatedCone(slope=p[0], flat_radius=p[1]),
+    "truncated paraboloid": lambda p: rm.TruncatedParaboloid(radius=p[0], flat_radius=p[1]),
+    "rounded cone": lambda p: rm.RoundedCone(slope=p[0], blend_radius=p[1]),
+    "capped": lambda p: rm.CappedParaboloid(radius=p[0], cap_radius=p[1], blend_radius=p[2]),
+    "rounded punch": lambda p: rm.RoundedPunch(flat_radius=p[0], edge_radius=p[1]),
+    "table": lambda p: rm.Tabulated([0.0, p[0], p[0] + p[1]], [0.0, p[2], 3.0 * p[2]]),
 }
 compiled = pytest.mark.skipif(
     numba.config.DISABLE_JIT, reason="Python floats raise where compiled ones overflow to inf"
@@ -34,7 +43,7 @@ controls = st.builds(lambda size, sign: sign * size, st.one_of(st.just(0.0), siz
     work=works,
     values=st.lists(controls, max_size=3),
 )
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=60)
 def test_indent(
     kind: str,
     control: str,
@@ -57,7 +66,7 @@ def test_indent(
 @pytest.mark.parametrize("control", ["displacement", "force"])
 @pytest.mark.parametrize("kind", KINDS)
 @given(parameters=st.tuples(sizes, sizes, sizes), modulus=sizes, work=works)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=60)
 def test_pull_off(kind: str, control: str, parameters: tuple[float, float, float], modulus: float, work: float) -> None:
     try:
         with np.errstate(all="ignore"):
@@ -73,7 +82,7 @@ def test_pull_off(kind: str, control: str, parameters: tuple[float, float, float
 @given(values=st.lists(st.floats(-1.0, 1000.0), min_size=1, max_size=5), kind=st.sampled_from(sorted(KINDS)))
 @settings(deadline=None, max_examples=100)
 def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> None:
-    shape = KINDS[kind]((1.5, 0.1, 0.2))
+    shape = KINDS[kind]((1.5, 1.6, 0.2))
     off = rm.pull_off(shape, modulus=1e6, work=0.05)
     contact = rm.indent(shape, modulus=1e6, work=0.05, indentation=np.array(values) * -float(off.indentation))
     assert ((contact.contact_radius > 0.0) == (np.array(values) >= -1.0)).all()
@@ -90,10 +99,10 @@ def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> N
     ],
     ids=str,
 )
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["paraboloid", "cone", "coefficient", "rise"])
 def test_an_overflow_is_refused_without_a_warning(kind: str, given: dict[str, float]) -> None:
     with pytest.raises(rm.OutOfRange, match="representable"):
-        rm.indent(KINDS[kind]((1.5, 1e-6, 1e-6)), modulus=1e13, **given)
+        rm.indent(KINDS[kind]((1.5, 1.6, 1e-6)), modulus=1e13, **given)
 
 
 def test_a_contact_has_an_area() -> None:
