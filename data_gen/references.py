@@ -19,7 +19,7 @@ from typing import Any, TypeAlias
 
 import click
 import numpy as np
-from mpmath import mp  # type: ignore[import-untyped]
+from mpmath import mp
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 

@@ -26,7 +26,7 @@ def check_values(name: str, raw: ArrayLike) -> Floats:
     """A number or a one-dimensional array of numbers as floats; OutOfRange unless all are finite."""
     try:
         values = np.asarray(raw, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise OutOfRange(f"{name} is {raw!r}; it must be a number or a one-dimensional array") from None
     if values.ndim > 1:
         raise OutOfRange(f"{name} has {values.ndim} dimensions; it must be a number or a one-dimensional array")

@@ -109,17 +109,22 @@ class RandomAsperities(Section):
         return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs, fixed=self.fixed)
 
 
-def _terms(value: object) -> dict[float, float]:
+def _terms(value: object) -> dict[str, float]:
     """Reads the terms of a power series, { "exponent" = coefficient }."""
     if not isinstance(value, dict) or not value:
         raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
     terms = {}
     for exponent, coefficient in value.items():
         try:
-            number = quantity(coefficient, DIMENSIONLESS)
-            terms[float(exponent)] = number
-        except (ValueError, RoughmdrError) as error:
-            raise EntryError(str(exponent), coefficient, str(error)) from None
+            float(exponent)
+        except ValueError:
+            raise EntryError(exponent, coefficient, 'the exponent must be a number, as in { "2" = 1e4 }') from None
+        try:
+            terms[exponent] = quantity(coefficient, DIMENSIONLESS)
+        except RoughmdrError as error:
+            hint = '; an exponent with a point needs quotes, as "2.5"' if isinstance(coefficient, dict) else ""
+            raise EntryError(exponent, coefficient, f"{error}{hint}") from None
+    PowerSeries(terms)
     return terms
 
 
@@ -134,12 +139,12 @@ class RandomPowerSeries(RandomAsperities):
     """Asperities that are all the same power series."""
 
     shape: Literal["power_series"]
-    terms: Annotated[dict[float, float], BeforeValidator(_terms)]
+    terms: Annotated[dict[str, float], BeforeValidator(_terms)]
 
     @cached_property
     def fixed(self) -> Common:
         """The series; ShapeError where it is none."""
-        return PowerSeries(self.terms)
+        return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
 
 
 class RandomTabulated(RandomAsperities):
@@ -148,6 +153,13 @@ class RandomTabulated(RandomAsperities):
     shape: Literal["tabulated"]
     r: Annotated[list[float], BeforeValidator(_lengths)]
     f: Annotated[list[float], BeforeValidator(_lengths)]
+
+    @field_validator("f")
+    @classmethod
+    def _is_a_profile(cls, value: list[float], info: ValidationInfo) -> list[float]:
+        if "r" in info.data:
+            Tabulated(info.data["r"], value)
+        return value
 
     @cached_property
     def fixed(self) -> Common:

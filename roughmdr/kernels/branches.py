@@ -26,6 +26,7 @@ energy: Callable[..., float]
 _NEAR = 2e-3  # from here on to a foot the integral of the slope is better than the difference of the values
 _GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
 _FINE = 1e-8  # the square of a last step is below rounding
+_PATIENCE = 6  # steps: the slope of a table can change so much that Newton's method goes in circles
 _LOWEST = 2.0 ** (OCTAVES // 2)  # over which depth the start without adhesion begins
 _LARGEST = 2.0**OCTAVES
 
@@ -47,7 +48,7 @@ def _above(t: float, j: int, row: Floats) -> tuple[float, float]:
 def _root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
     """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
     foot = row[FOOT + j]
-    for _ in range(200):
+    for i in range(200):
         value, slope = _above(t, j, row)
         if value < wanted:
             low = t
@@ -59,7 +60,8 @@ def _root(wanted: float, t: float, low: float, high: float, j: int, row: Floats)
         if abs(step) <= _FINE * (t - foot):
             return t - step
         better = t - step
-        if not low < better < high:
+        circling = i % 3 == 2 and i > _PATIENCE and high < math.inf
+        if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
             if not low < better < high:
                 return t

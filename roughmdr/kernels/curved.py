@@ -25,7 +25,7 @@ find_start: Callable[..., None]
 
 def fill(modulus: float, work: float, width: float, rise: float, control: float, row: Floats) -> None:
     """The row of one asperity, whose numbers of the shape stand in it already."""
-    row[TENSION] = math.sqrt(2.0 * math.pi * work / modulus) * math.sqrt(width) / rise
+    row[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
     row[CONTROL] = control
     find_branches(row)
     if row[COUNT] > 0.0:
@@ -100,7 +100,6 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         "_dip_count": compiled(profile.dip_count),
         "_dip": compiled(profile.dip),
         "_kink": compiled(profile.kink),
-        "_panel_end": compiled(profile.panel_end),
         "_corner": profile.corner,
     }
     ends = (

@@ -104,9 +104,10 @@ class Shape(ABC):
         parameters = self.parameters
         type(self).spelling(set(parameters))
         for name, value in parameters.items():
-            if isinstance(value, bool) or np.ndim(value) != 0:
-                raise ShapeError(f"{type(self).name}: {name} is {value!r}; it must be one number")
+            check_one(type(self).name, name, value)
         self.check(parameters)
+        for name, value in parameters.items():
+            object.__setattr__(self, name, float(value))
 
     @classmethod
     def check(cls, parameters: Mapping[str, ArrayLike]) -> None:
@@ -204,7 +205,10 @@ class Common(Curved):
 
 def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:
     """``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``most``."""
-    numbers = np.asarray(values, dtype=np.float64)
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise OutOfRange(f"{name} is {values!r}; it must be numbers, finite and at least 0") from None
     wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= most))
     if wrong.any():
         above = "" if math.isinf(most) else f" and at most {most:g} m"
@@ -212,12 +216,18 @@ def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:
     return numbers
 
 
+def check_one(owner: str, name: str, value: object) -> None:
+    """ShapeError unless ``value`` is a single thing that can be a number."""
+    if isinstance(value, bool | str | bytes) or np.ndim(value) != 0:  # type: ignore[arg-type]
+        raise ShapeError(f"{owner}: {name} is {value!r}; it must be one number")
+
+
 def check_positive(owner: str, name: str, values: ArrayLike) -> None:
     """ShapeError, naming the first of ``values`` that is not a finite number above 0."""
     try:
         numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise ShapeError(f"{owner}: {name} is {values!r}; it must be a number above 0") from None
+    except (TypeError, ValueError, OverflowError):
+        raise ShapeError(f"{owner}: {name} is {values!r}; it must be a finite number above 0") from None
     bad = ~(np.isfinite(numbers) & (numbers > 0.0))
     if bad.any():
         where = "" if numbers.size == 1 else f" at asperity {int(np.argmax(bad))}"

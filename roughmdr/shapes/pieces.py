@@ -3,12 +3,13 @@
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.shapes.table import DEGREE
+from roughmdr.shapes.table import DEGREE, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
-_FINEST = 2.0**-12  # of the way between two knots
+_NOISE = 1e-11  # below it, what halving does not lower is rounding
+_FINEST = 2.0**-20  # of the way between two knots
 _OCTAVES_BEYOND = 2  # beyond the last knot, until the far field is right: 16^-14 is below rounding
-_LOOKS = 16  # on each piece, for where sqrt(a) g' falls
+_LOOKS = 8  # on each piece, for where sqrt(a) g' falls
 _RIPPLE = 1e-9  # a fall of so little is rounding
 
 _POINTS = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
@@ -27,36 +28,57 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     begins = np.append(knots[:-1], knots[-1] * 2.0 ** np.arange(_OCTAVES_BEYOND))
     reach = np.sqrt((ends - bases) * (ends + bases))
     low = np.sqrt((begins - bases) * (begins + bases)) / reach
-    waiting = [(base, length, start, 1.0) for base, length, start in zip(bases, reach, low, strict=True)]
+    waiting = [(base, length, start, 1.0, np.inf) for base, length, start in zip(bases, reach, low, strict=True)]
     done: list[tuple[float, Floats]] = [_tip(knots, coefficients)]
     waiting = waiting[1:]
     while waiting:
         places = np.array(waiting)
-        base, length, start, stop = places.T
+        base, length, start, stop, before = places.T
         middle, half = 0.5 * (stop + start), 0.5 * (stop - start)
         q = length[:, None] * (middle[:, None] + half[:, None] * _POINTS)
         x = np.sqrt(q * q + base[:, None] ** 2)
         values = integrals(x.ravel(), knots, coefficients).reshape(*x.shape, 3)
         chebyshev = np.einsum("cp,spv->svc", _TO_CHEBYSHEV, values)
-        left = np.abs(chebyshev[..., -2:]).sum(axis=-1)
-        fits = (left <= _EXACT * np.abs(values).max(axis=1)).all(axis=1) | (half < _FINEST)
+        largest = np.abs(values).max(axis=1)
+        left = (np.abs(chebyshev[..., -2:]).sum(axis=-1) / np.where(largest > 0.0, largest, 1.0)).max(axis=1)
+        fits = (left <= _EXACT) | ((left < _NOISE) & (left > 0.5 * before)) | (half < _FINEST)
         powers = chebyshev @ _TO_POWERS
         for i in np.flatnonzero(fits):
             begin = np.hypot(base[i], length[i] * start[i]) if start[i] > 0.0 else base[i]
-            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i]]
+            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0]
             done.append((float(begin), np.concatenate([head, powers[i].ravel()])))
         waiting = [
             part
             for i in np.flatnonzero(~fits)
-            for part in ((base[i], length[i], start[i], middle[i]), (base[i], length[i], middle[i], stop[i]))
+            for part in (
+                (base[i], length[i], start[i], middle[i], left[i]),
+                (base[i], length[i], middle[i], stop[i], left[i]),
+            )
         ]
     done.sort(key=lambda piece: piece[0])
     begins = np.array([begin for begin, _ in done] + [ends[-1]])
     dips = _dips(begins, knots, coefficients)
     parts = [piece for _, piece in done]
-    return np.concatenate(
-        [[len(dips)], np.ravel(dips), [len(done)], begins, *parts, _far(begins[-1], knots, coefficients)]
-    )
+    far = _far(begins[-1], knots, coefficients)
+    form = np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, far])
+    _add_strains(form)
+    return form
+
+
+def _add_strains(form: Floats) -> None:
+    """Fill in the strain at the begin of each piece and of the far field."""
+    from roughmdr._jit import compiled
+
+    panel = compiled(strain_between)
+    first = 2 + 2 * int(form[0])
+    count = int(form[first - 1])
+    begins, total = form[first : first + count + 1], 0.0
+    for i in range(count):
+        at = first + count + 1 + PIECE * i
+        form[at + 3] = total
+        # Just inside, where the piece itself is looked up.
+        total += panel(begins[i], np.nextafter(begins[i + 1], 0.0), form)
+    form[first + count + 1 + PIECE * count + 2] = total
 
 
 def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
@@ -66,7 +88,7 @@ def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
     g[1:4] = c0, c1, c2
     slope[:3] = c0, 2.0 * c1, 3.0 * c2
     push[2:5] = 0.5 * c0, 2.0 / 3.0 * c1, 0.75 * c2
-    return 0.0, np.concatenate([[0.0, 1.0, 0.0], g, slope, push])
+    return 0.0, np.concatenate([[0.0, 1.0, 0.0, 0.0], g, slope, push])
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
@@ -86,7 +108,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     steepness = 0.5 * np.pi * coefficients[-1, 0]
     far = end * np.sum(2.0 * k / (2.0 * k - 1.0) * terms * end ** (-2.0 * k))
     constant = integrals(np.array([end]), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
-    return np.concatenate([[steepness, constant], terms])
+    return np.concatenate([[steepness, constant, 0.0], terms])
 
 
 def steepness(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floats, Floats]:

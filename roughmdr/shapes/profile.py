@@ -27,11 +27,6 @@ def _smooth(low: float, high: float, form: Form) -> bool:
     return False
 
 
-def _octave(t: float, form: Form) -> float:
-    """1, 2, 4, ..."""
-    return 1.0 if t < 1.0 else 2.0 * t
-
-
 class Profile(NamedTuple):
     """A profile in units of its width (radii) and its rise (depths), over the contact radius a; g and G as in H 17."""
 
@@ -51,8 +46,6 @@ class Profile(NamedTuple):
     """(low, high, form) -> whether g' is not smooth from low to high."""
     strain: Callable[..., Any] | None = None
     """(t, form) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
-    panel_end: Callable[[float, Form], float] = _octave
-    """(t, form) -> the next t to which ġ and the push are smooth, but for a root where they begin."""
     corner: bool = False
     """Whether g' jumps up to infinity where it begins to fall."""
     flat: bool = False

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
-from roughmdr.shapes.base import Common, check_positive, radii
+from roughmdr.shapes.base import Common, check_one, check_positive, radii
 from roughmdr.shapes.profile import Form, Profile
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
@@ -78,11 +78,18 @@ class PowerSeries(Common):
             raise ShapeError(
                 f"power_series: terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}"
             )
+        seen = set()
         for exponent, coefficient in self.terms.items():
+            if not isinstance(exponent, str):  # keys of a scene are texts
+                check_one("power_series", "an exponent of terms", exponent)
+            check_one("power_series", f"the coefficient of r^{exponent}", coefficient)
             check_positive("power_series", "an exponent of terms", exponent)
             if float(exponent) > _STEEPEST:
                 raise ShapeError(f"power_series: an exponent of terms is {exponent}; it must be at most {_STEEPEST:g}")
             check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
+            if float(exponent) in seen:
+                raise ShapeError(f"power_series: terms holds the exponent {float(exponent):g} twice; add them up")
+            seen.add(float(exponent))
         terms = {float(n): float(c) for n, c in sorted(self.terms.items(), key=lambda term: float(term[0]))}
         object.__setattr__(self, "terms", terms)
 
@@ -96,7 +103,11 @@ class PowerSeries(Common):
 
     @classmethod
     def of_columns(cls, columns: dict[str, Floats]) -> "PowerSeries":
-        return cls(dict(zip(columns["exponent"].tolist(), columns["terms"].tolist(), strict=True)))
+        exponents = columns["exponent"].tolist()
+        for exponent in exponents:
+            if exponents.count(exponent) > 1:
+                raise ShapeError(f"power_series: terms holds the exponent {exponent:g} twice; add them up")
+        return cls(dict(zip(exponents, columns["terms"].tolist(), strict=True)))
 
     def _summed(self, factors: Mapping[float, float], r: Floats, lower: float) -> Floats:
         """Sum of factor r^(n - lower)."""

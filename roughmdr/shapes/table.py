@@ -1,17 +1,23 @@
 """The MDR profile of a tabulated shape as pieces of polynomials, looked up.
 
 A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
-knot, scale, middle and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a
-constant and coefficients]. Over a piece these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in
-which they are smooth although g' has the kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
+knot, scale, middle, strain at its begin and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end
+its steepness, a constant, the strain at the end and coefficients]. Over a piece these are polynomials in the place
+q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the kink of a root at every knot;
+beyond the end g - steepness a is one in 1/a^2.
 """
 
 import math
 
+import numpy as np
+
 from roughmdr.shapes.profile import Form, Profile
 
 DEGREE = 13
-PIECE = 3 + 3 * (DEGREE + 1)
+PIECE = 4 + 3 * (DEGREE + 1)
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
 def _piece(t: float, form: Form) -> int:
@@ -48,7 +54,7 @@ def _far_sum(t: float, far: int, tilt: float, form: Form) -> float:
     total, u = 0.0, 1.0 / t / t
     for k in range(DEGREE, -1, -1):
         factor = 1.0 if tilt == 0.0 else (-2.0 * k if tilt == 1.0 else 2.0 * k / (2.0 * k - 1.0))
-        total = total * u + factor * form[far + 2 + k]
+        total = total * u + factor * form[far + 3 + k]
     return total
 
 
@@ -59,14 +65,14 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
         slope = steepness + _far_sum(t, -piece, 1.0, form) / t
         return t, 1.0, steepness * t + _far_sum(t, -piece, 0.0, form), slope
     place = _place_on(t, piece, form)
-    return t, 1.0, _sum(place, piece + 3, form), _sum(place, piece + 4 + DEGREE, form)
+    return t, 1.0, _sum(place, piece + 4, form), _sum(place, piece + 5 + DEGREE, form)
 
 
 def _push(t: float, form: Form) -> float:
     piece = _piece(t, form)
     if piece < 0:
         return 0.5 * form[-piece] * t * t + form[1 - piece] + t * _far_sum(t, -piece, 2.0, form)
-    return _sum(_place_on(t, piece, form), piece + 5 + 2 * DEGREE, form)
+    return _sum(_place_on(t, piece, form), piece + 6 + 2 * DEGREE, form)
 
 
 def _swept(t: float, form: Form) -> float:
@@ -94,11 +100,28 @@ def _kink(low: float, high: float, form: Form) -> bool:
     return last < 0 or form[last] != knot or (knot > 0.0 and high - low > 0.1 * (low - knot))
 
 
-def _panel_end(t: float, form: Form) -> float:
-    """The begin of the next piece."""
+def strain_between(low: float, high: float, form: Form) -> float:
+    """2 ∫ g' ∫ x g' dx dx from low to high on one piece, over the fourth power of the place in it."""
+    total = 0.0
+    for i in range(_NODES.size):
+        z = _NODES[i]
+        at = low + (high - low) * z * z * z * z
+        total += 8.0 * (high - low) * _WEIGHTS[i] * z * z * z * _curve(at, form)[3] * _push(at, form)
+    return total
+
+
+def _strain(t: float, form: Form) -> float:
     piece = _piece(t, form)
     begins = 2 + 2 * int(form[0])
-    return form[begins + 1 + (piece - begins - int(form[begins - 1]) - 1) // PIECE] if piece >= 0 else 2.0 * t
+    count = int(form[begins - 1])
+    if piece >= 0:
+        return form[piece + 3] + strain_between(form[begins + (piece - begins - count - 1) // PIECE], t, form)
+    total, low = form[2 - piece], form[begins + count]
+    while low < t < math.inf:
+        high = min(2.0 * low, t)
+        total += strain_between(low, high, form)
+        low = high
+    return total
 
 
-PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, panel_end=_panel_end)
+PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, strain=_strain)

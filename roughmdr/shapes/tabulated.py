@@ -15,6 +15,7 @@ from roughmdr.shapes.profile import Profile
 _LEAST_POINTS = 3
 _CLOSEST = 1e-6
 _LARGEST = 1e100
+_ROUNDING = 4 * np.finfo(float).eps
 _NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
 
 
@@ -151,7 +152,7 @@ def _sine_integral(power: int, angle: Any) -> Any:
 def _column(name: str, values: ArrayLike) -> Floats:
     try:
         column = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ShapeError(f"tabulated: {name} is {values!r}; it must be a list of numbers") from None
     if column.ndim != 1 or column.size < _LEAST_POINTS:
         raise ShapeError(f"tabulated: {name} has the shape {column.shape}; it must hold at least 3 numbers in a row")
@@ -171,9 +172,8 @@ def _check(r: Floats, f: Floats) -> None:
         if falls.any():
             k = int(np.argmax(falls))
             must = "rise from point to point" if name == "r" else "not fall: the tip is the lowest point"
-            raise ShapeError(
-                f"tabulated: {name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m; {name} must {must}"
-            )
+            step = f"{name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m"
+            raise ShapeError(f"tabulated: {step}; {name} must {must}")
     if f[-1] == 0.0:
         raise ShapeError("tabulated: f is 0 everywhere; that is a FlatPunch")
     for name, column in (("r", r), ("f", f)):
@@ -182,13 +182,13 @@ def _check(r: Floats, f: Floats) -> None:
     nearest = int(np.argmin(np.diff(r)))
     if not np.diff(r)[nearest] > _CLOSEST * r[-1]:
         raise ShapeError(
-            f"tabulated: r[{nearest + 1}] is {r[nearest + 1]!r} m, within {_CLOSEST:g} of the table's length of the point "
-            "before; its points must lie further apart"
+            f"tabulated: r[{nearest + 1}] is {r[nearest + 1]:g} m, nearer to the point before than {_CLOSEST:g} of the "
+            "length of the table; its points must lie further apart"
         )
 
 
 def _monotone_slopes(r: Floats, f: Floats) -> Floats:
-    """f' at the points: of the not-a-knot cubic, limited so that f does not fall and stays convex where the chords are."""
+    """f' at the points: the not-a-knot cubic's, so limited that f never falls and is convex where the chords are."""
     from scipy.interpolate import CubicSpline
 
     # By powers of two, so that no bit changes.
@@ -198,7 +198,9 @@ def _monotone_slopes(r: Floats, f: Floats) -> Floats:
     before, after = np.append(-np.inf, chords[:-1]), np.append(chords[1:], np.inf)
     steepest = 3.0 * np.minimum(np.append(chords, np.inf), np.insert(chords, 0, np.inf))
     slopes = np.clip(np.asarray(CubicSpline(r, f, bc_type="not-a-knot")(r, 1)), 0.0, steepest)
-    convex = (before <= chords) & (chords <= after)
+    rounding = _ROUNDING * (np.abs(f[1:]) + chords * r[1:]) / np.diff(r)
+    slack = rounding + np.maximum(np.append(0.0, rounding[:-1]), np.append(rounding[1:], 0.0))
+    convex = (before <= chords + slack) & (chords <= after + slack)
     if convex[0]:
         slopes[0] = min(slopes[0], chords[0])
     for i in np.flatnonzero(convex):
@@ -206,4 +208,5 @@ def _monotone_slopes(r: Floats, f: Floats) -> Floats:
         most = min(3.0 * chords[i] - 2.0 * slopes[i], after[i])
         least = max(0.5 * (3.0 * chords[i] - slopes[i]), chords[i])
         slopes[i + 1] = np.clip(slopes[i + 1], min(least, most), most)
-    return slopes * (f_unit / r_unit)
+    slopes *= f_unit / r_unit
+    return slopes
