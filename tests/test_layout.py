@@ -71,7 +71,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
         ("matplotlib", {"plots"}),
         ("click", {"cli"}),
         ("rich", {"progress"}),
-        ("xarray", {"labelled", "asperity", "ensemble", "aggregate", "runner", "analysis", "plots"}),
+        ("xarray", {"labelled", "asperity", "equilibria", "ensemble", "aggregate", "runner", "analysis", "plots"}),
         ("netCDF4", {"store", "scene"}),
     ],
 )

@@ -41,6 +41,20 @@ BASES: dict[str, dict[str, Any]] = {
         **SCENE,
         "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 10.0},
     },
+    **{
+        shape: {**SCENE, "asperities": {**_DRAWN, "count": 20, "shape": shape, **parameters}, "batch": {}}
+        for shape, parameters in {
+            "flat_punch": {"radius": "2 um"},
+            "sphere": {"radius": "50 um"},
+            "truncated_cone": {"slope": 0.1, "flat_radius": "2 um"},
+            "truncated_paraboloid": {"radius": "50 um", "flat_radius": "2 um"},
+            "rounded_cone": {"slope": 0.1, "blend_radius": "2 um"},
+            "capped_paraboloid": {"radius": "50 um", "cap_radius": "80 um", "blend_radius": "2 um"},
+            "rounded_punch": {"flat_radius": "2 um", "edge_radius": "50 um"},
+            "power_series": {"terms": {"2": 1e4, "4": 1e14}},
+            "tabulated": {"r": [0, "1 um", "3 um"], "f": [0, "10 nm", "100 nm"]},
+        }.items()
+    },
     "a surface": {**SCENE, "asperities": {"source": "surface", "file": "map.nc", "shape": "paraboloid"}, "batch": {}},
 }
 MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
@@ -96,7 +110,7 @@ def misspelt(base: str, key: str) -> Mutation:
     inner = table
     for part in outer:
         inner = inner[part]
-    wrong = last[:-2] + last[-1] + last[-2] + "x"
+    wrong = last[:-2] + last[:-3:-1] + "x"
     inner[wrong] = inner.pop(last)
     return Mutation(base, ".".join([*outer, wrong]), "misspelt", table)
 
@@ -104,7 +118,8 @@ def misspelt(base: str, key: str) -> Mutation:
 def mutations() -> Iterator[Mutation]:
     for base, table in BASES.items():
         for key in paths(table):
-            yield misspelt(base, key)
+            if not key.startswith("asperities.terms."):
+                yield misspelt(base, key)
         for key, reader in readers([Scene], table):
             if value_of(table, key) == {}:
                 continue
@@ -186,7 +201,7 @@ def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> N
 
 def value_is_declared(key: str) -> bool:
     """Whether a key stands in the schema itself, and not in the table of a distribution."""
-    return not any(key.startswith(f"asperities.{name}.") for name in ("height", "radius"))
+    return not any(key.startswith(f"asperities.{name}.") for name in ("height", "radius", "terms"))
 
 
 @pytest.mark.parametrize("mutation", ALL, ids=str)
