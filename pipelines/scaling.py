@@ -27,10 +27,30 @@ from roughmdr.labelled import Labelled
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
+from roughmdr.shapes import SHAPES as KINDS
+from roughmdr.shapes import Shape
 from roughmdr.store import replacing, write
 
 MODULUS, WORK = 4e6, 0.05
-ROWS = {totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR}
+ROWS = frozenset({totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR})
+STATE = frozenset({totals.FORCE, totals.RADIUS, totals.STIFFNESS})
+SHAPES: dict[str, dict[str, Any]] = {
+    "power_law": {
+        "exponent": {"distribution": "uniform", "loc": 1.2, "scale": 3.0},
+        "width": "10 um",
+        "rise": "1 um",
+    },
+    "sphere": {"radius": "50 um"},
+    "truncated_cone": {"slope": 0.1, "flat_radius": "2 um"},
+    "truncated_paraboloid": {"radius": "50 um", "flat_radius": "2 um"},
+    "rounded_cone": {"slope": 0.1, "blend_radius": "5 um"},
+    "capped_paraboloid": {"radius": "50 um", "cap_radius": "90 um", "blend_radius": "5 um"},
+    "rounded_punch": {"flat_radius": "2 um", "edge_radius": "50 um"},
+    "tabulated": {
+        "r": (np.linspace(0.0, 1e-5, 100)).tolist(),
+        "f": (1e-4 * np.linspace(0.0, 1e-5, 100) + np.linspace(0.0, 1e-5, 100) ** 2 / 1e-4).tolist(),
+    },
+}
 SECTION: dict[str, Any] = {
     "source": "random",
     "shape": "paraboloid",
@@ -56,14 +76,14 @@ def per_visit(action: Callable[[], int], repeats: int) -> float:
     return min(times) / visits * 1e9
 
 
-def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int) -> float:
-    """Nanoseconds per visit of the package's sum, all included: force and its error, area, count and stiffness."""
+def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, rows: frozenset[int] = ROWS) -> float:
+    """Nanoseconds per visit of the package's sum, all included."""
     columns = ensemble.columns()
-    law = choose("paraboloid", work, columns[2])
+    law = choose(ensemble.shape, work, columns[2])
     memory = staircase(path) if work else no_memory(path)
 
     def action() -> int:
-        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, work, path, memory, ROWS)
+        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, work, path, memory, set(rows))
         return visits
 
     action()
@@ -114,6 +134,52 @@ def by_brentq(ensemble: Ensemble, path: np.ndarray, work: float) -> float:
                 force += 4.0 * MODULUS * a**3 / (3.0 * R) - np.sqrt(8.0 * np.pi * work * MODULUS * a**3)
                 visits += 1
         return visits
+
+    return per_visit(action, 1)
+
+
+def by_shape(count: int, repeats: int) -> xr.Dataset:
+    """Nanoseconds per delta -> (P, a, k) with JKR, in and out, 200 steps each way; set-up; and brentq for the same."""
+    kept = {name: value for name, value in SECTION.items() if name != "radius"}
+    way_in = np.linspace(4e-6, -0.5e-6, 200)
+    both = np.concatenate([way_in, way_in[::-1]])
+    columns: dict[str, list[float]] = {"ours": [], "brentq": [], "set_up": []}
+    for shape, parameters in SHAPES.items():
+        section = {**kept, "count": count, "shape": shape, **parameters}
+        ensemble = Ensemble.from_dataset(rm.generate(section, seed=1))
+        started = time.perf_counter()
+        ensemble.columns()  # for a table: its pieces
+        columns["set_up"].append(time.perf_counter() - started)
+        columns["ours"].append(by_the_sum(ensemble, both, WORK, repeats, STATE))
+        columns["brentq"].append(by_brentq_on(ensemble))
+    ns = {"units": "ns", "long_name": "time per asperity and step"}
+    return xr.Dataset(
+        {
+            "state_time": ("shape", columns["ours"], ns),
+            "state_time_brentq": ("shape", columns["brentq"], ns),
+            "set_up_time": ("shape", columns["set_up"], {"units": "s", "long_name": "time of the set-up of a profile"}),
+        },
+        coords={"shape": list(SHAPES)},
+    )
+
+
+def by_brentq_on(ensemble: Ensemble) -> float:
+    """A root finder on delta = g(a) - dl(a), for a few hundred contacts of the first asperity."""
+    first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
+    shape: Shape = ensemble.fixed or KINDS[ensemble.shape](**first)
+    fold = float(rm.pull_off(shape, modulus=MODULUS, work=WORK).contact_radius)
+    g = shape.g
+
+    def indentation(a: float, delta: float) -> float:
+        return float(g(a) - np.sqrt(2.0 * np.pi * a * WORK / MODULUS) - delta)
+
+    top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
+
+    def action() -> int:
+        deltas = np.linspace(1e-8, 1e-6, 200)
+        for delta in deltas:
+            brentq(indentation, fold, top, args=(delta,), xtol=1e-15 * fold)
+        return int(deltas.size)
 
     return per_visit(action, 1)
 
@@ -188,15 +254,20 @@ def study(quick: bool) -> xr.Dataset:
     workers = over_workers(count // 10, 16, repeats)
     seconds, size = million(count)
     ns = {"units": "ns", "long_name": "time per visited asperity and step"}
-    return xr.Dataset(
-        {
-            "cost": (("contact", "method"), cost, ns),
-            "batch_time": ("workers", list(workers.values()), {"units": "s", "long_name": "time of a batch"}),
-            "large_time": ((), seconds, {"units": "s", "long_name": "one ensemble, 200 steps in and out, JKR"}),
-            "large_memory": ((), size, {"units": "byte", "long_name": "peak memory above the ensemble"}),
-        },
-        coords={"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"], "workers": list(workers)},
-        attrs={"title": "What the sum costs", "asperities": count},
+    return (
+        by_shape(count // 50, repeats)
+        .assign(
+            {
+                "cost": (("contact", "method"), cost, ns),
+                "batch_time": ("workers", list(workers.values()), {"units": "s", "long_name": "time of a batch"}),
+                "large_time": ((), seconds, {"units": "s", "long_name": "one ensemble, 200 steps in and out, JKR"}),
+                "large_memory": ((), size, {"units": "byte", "long_name": "peak memory above the ensemble"}),
+                "contact": ["Hertz", "JKR"],
+                "method": ["roughmdr", "numpy", "brentq"],
+                "workers": list(workers),
+            }
+        )
+        .assign_attrs(title="What the sum costs", asperities=count)
     )
 
 
@@ -227,6 +298,8 @@ def main(output: Path, quick: bool) -> None:
     write(Labelled.of(result), output / "scaling.nc")
     draw(result, output / "scaling.png")
     click.echo(result["cost"].to_pandas().round(2).to_string())
+    names = ["state_time", "state_time_brentq", "set_up_time"]
+    click.echo(result[names].to_dataframe()[names].round(3).to_string())
     one, two = result["batch_time"].to_numpy()
     click.echo(f"a batch: {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times")
     size = float(result["large_memory"]) / 2**20
