@@ -43,10 +43,11 @@ def _cache_folder() -> str | None:
     return None
 
 
-def njit(function: _Function, *, inline: bool = False) -> _Function:
+def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _Function:
     """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, nothing reordered), no GIL, cached on disk.
 
-    ``inline`` puts its text into every caller: for parts of a loop that are called too often for a call.
+    ``inline`` puts its text into every caller, for parts of a loop that are called too often for a call; ``small`` its
+    machine code, for what vector code is made of.
     """
     folder = _cache_folder()
     before = _config.CACHE_DIR
@@ -54,7 +55,11 @@ def njit(function: _Function, *, inline: bool = False) -> _Function:
         _config.CACHE_DIR = folder
     try:
         compiled = numba.njit(
-            nogil=True, error_model="numpy", cache=folder is not None, inline="always" if inline else "never"
+            nogil=True,
+            error_model="numpy",
+            cache=folder is not None,
+            inline="always" if inline else "never",
+            forceinline=small,
         )(function)
     finally:
         _config.CACHE_DIR = before
@@ -64,11 +69,11 @@ def njit(function: _Function, *, inline: bool = False) -> _Function:
 @cache
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a plain function and the plain functions of roughmdr that it calls."""
-    return njit(rebuilt(function, {}, compiled))
+    return njit(rebuilt(function, {}, compiled), small=True)
 
 
 def specialise(
-    loop: FunctionType, name: str, kernels: dict[str, object], *, inline: bool = False
+    loop: FunctionType, name: str, kernels: dict[str, object], *, inline: bool = False, small: bool = False
 ) -> Callable[..., Any]:
     """A compiled copy of ``loop`` in which the global names in ``kernels`` stand for the given kernels.
 
@@ -78,4 +83,4 @@ def specialise(
     copy = FunctionType(loop.__code__, {**loop.__globals__, **kernels}, name)
     copy.__qualname__ = f"{loop.__qualname__}_{name}"
     copy.__module__ = loop.__module__
-    return njit(copy, inline=inline)
+    return njit(copy, inline=inline, small=small)

@@ -25,6 +25,7 @@ LINES = (
         "_jit",
         "_rebuilt",
         "_extended",
+        "elementary",
         "limits",
     ),
     ("shapes",),

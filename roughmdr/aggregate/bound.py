@@ -6,6 +6,7 @@ from typing import Any
 
 from roughmdr.aggregate.block import least
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
+from roughmdr.aggregate.settle import FORCE, STATE, STIFFNESS
 from roughmdr.arguments import Floats
 
 _UNIT = 2.0**-53  # the largest relative error of one rounding
@@ -20,6 +21,14 @@ _own: Callable[..., Any]
 _mixed: Callable[..., bool]
 
 
+def worst(count: int, z: Floats, h: float, slope: float, push: float, greatest: Floats) -> float:
+    """The error [N] of ``count`` contacts whose reduced stiffness and force are at most ``slope`` and ``push``."""
+    deepest = greatest[DEPTH] if _adhesive else 0.0
+    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
+    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
+    return float(count * each)
+
+
 def bound(
     count: int,
     z: Floats,
@@ -28,7 +37,7 @@ def bound(
     retracted: bool,
     greatest: Floats,
     held: Floats,
-    state: Floats,
+    found: Floats,
     terms: Floats,
 ) -> float:
     """A bound on the error [N] of what the first ``count`` asperities of a block add to the force.
@@ -44,18 +53,16 @@ def bound(
         low = _state(1.0, _own(forms, 0))
         if retracted:
             for i in range(count):
-                terms[i] = state[i] if held[i] > 0.0 else math.inf
+                terms[i] = found[STATE, i] if held[i] > 0.0 else math.inf
             low = max(min(low, least(terms, count)), _UNIT)
     slope = max(abs(_stiffness(low, _own(forms, 0))), abs(_stiffness(high, _own(forms, 0))))
     least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
     push = max(least_push, abs(_force(high, _own(forms, 0))))
     if _mixed(forms):
         for i in range(count):
-            slope = max(slope, abs(_stiffness(max(state[i], low), _own(forms, i))))
-            push = max(push, abs(_force(state[i], _own(forms, i))))
-    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
-    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
-    return float(count * each)
+            slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(forms, i))))
+            push = max(push, abs(_force(found[STATE, i], _own(forms, i))))
+    return worst(count, z, h, slope, push, greatest)
 
 
 def bound_curved(
@@ -66,17 +73,13 @@ def bound_curved(
     retracted: bool,
     greatest: Floats,
     held: Floats,
-    state: Floats,
+    found: Floats,
     terms: Floats,
 ) -> float:
     """The same where each asperity has scales of its own, and k need not grow along its branch: one by one."""
     slope, push = 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:
-            form = _own(forms, i)
-            slope = max(slope, abs(_stiffness(state[i], form)))
-            push = max(push, abs(_force(state[i], form)))
-    deepest = greatest[DEPTH] if _adhesive else 0.0
-    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
-    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
-    return float(count * each)
+            slope = max(slope, abs(found[STIFFNESS, i]))
+            push = max(push, abs(found[FORCE, i]))
+    return worst(count, z, h, slope, push, greatest)

@@ -9,15 +9,27 @@ import math
 from collections.abc import Callable
 from functools import cache
 from types import FunctionType
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr._jit import njit, specialise
 from roughmdr.aggregate.block import BLOCK, accumulate, run_on
-from roughmdr.aggregate.bound import bound, bound_curved
-from roughmdr.aggregate.scales import DEPTH, PER_DEPTH, SCALES, SIZE, WORTH, measure
+from roughmdr.aggregate.bound import bound, bound_curved, worst
+from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
+from roughmdr.aggregate.settle import (
+    FOUND,
+    force_at,
+    force_found,
+    hold,
+    radius_at,
+    radius_found,
+    settle,
+    settle_curved,
+    stiffness_at,
+    stiffness_found,
+)
 from roughmdr.aggregate.staircase import Staircase
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.arguments import Floats
@@ -28,11 +40,6 @@ _NOT_REPRESENTABLE = -1
 
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
-_state: Callable[..., float]
-_radius: Callable[..., float]
-_state_on: Callable[..., float]
-_rung: Callable[..., float]
-_own: Callable[..., Any]
 _prepare: Callable[..., Floats]
 
 
@@ -63,62 +70,6 @@ def _lowest(h: float, begin: int, end: int, bottom: Floats, top: Floats, deepest
     return lowest
 
 
-def _settle(
-    count: int,
-    z: Floats,
-    forms: Floats,
-    h: float,
-    begin: int,
-    end: int,
-    bottom: Floats,
-    top: Floats,
-    scales: Floats,
-    held: Floats,
-    state: Floats,
-) -> None:
-    """The state of the first ``count`` contacts with the flat at h, and whether each holds on (1) or not (0).
-
-    Without adhesion all of them do, and ``held`` is left alone.
-    """
-    depth, per_depth = scales[DEPTH], scales[PER_DEPTH]
-    if _adhesive:
-        low, high = bottom[begin], top[begin]
-        for i in range(count):
-            held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
-        for j in range(begin + 1, end):
-            low, high = bottom[j], top[j]
-            for i in range(count):
-                held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
-        for i in range(count):
-            x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = _state(x if x > 0.0 else 0.0, _own(forms, i))
-    else:
-        for i in range(count):
-            state[i] = _state((z[i] - h) * per_depth[i], _own(forms, i))
-
-
-def _settle_branched(
-    count: int,
-    z: Floats,
-    forms: Floats,
-    h: float,
-    begin: int,
-    end: int,
-    bottom: Floats,
-    top: Floats,
-    scales: Floats,
-    held: Floats,
-    state: Floats,
-) -> None:
-    """The same where contacts can be on one of several branches: ``held``, from the step before, is its number."""
-    depth, per_depth = scales[DEPTH], scales[PER_DEPTH]
-    for i in range(count):
-        form = _own(forms, i)
-        x = ((z[i] - h) + depth[i]) * per_depth[i]
-        held[i] = _rung(x if z[i] < h else max(x, 1.0), held[i], form)
-        state[i] = _state_on(x, held[i], form) if held[i] > 0.0 else 0.0
-
-
 def _loop(
     height: Floats,
     width: Floats,
@@ -145,7 +96,7 @@ def _loop(
     turn = np.argmin(separation)
     closest = separation[turn]
     scales, greatest = np.empty((SCALES, BLOCK)), np.empty(SCALES)
-    held, held_before, state, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    held, held_before, found, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty((FOUND, BLOCK)), np.empty(BLOCK)
     energetic = wanted[ENERGY] or wanted[DISSIPATED]
     for start in range(0, height.size, BLOCK):
         block = slice(start, min(start + BLOCK, height.size))
@@ -164,10 +115,10 @@ def _loop(
             count = _within_reach(z, _lowest(h, begin, end, bottom, top, greatest[DEPTH]))
             if count > 0:
                 visits += count
-                _settle(count, z, n, h, begin, end, bottom, top, scales, held, state)
+                settle(count, z, n, h, begin, end, bottom, top, scales, held, found, terms)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or top[begin] > bottom[begin]
-                    error = bound(count, z, n, h, retracted, greatest, held, state, terms)
+                    error = bound(count, z, n, h, retracted, greatest, held, found, terms)
                     accumulate(total[ERROR], carried[ERROR], step, error)
             if _adhesive:
                 held[count:count_before] = 0.0  # out of reach
@@ -178,9 +129,9 @@ def _loop(
             if step == turn:
                 for i in range(count):
                     if not _adhesive or held[i] > 0.0:
-                        reached[start + i] = scales[SIZE, i] * _radius(state[i], _own(n, i))
+                        reached[start + i] = scales[SIZE, i] * radius_at(i, found, n)
             if count > 0:
-                tally(count, n, scales, held, state, terms, wanted, step, total, carried)
+                tally(count, n, scales, held, found, terms, wanted, step, total, carried)
     for row in range(ROWS):
         for step in range(separation.size):
             total[row, step] += carried[row, step]
@@ -195,7 +146,12 @@ def _compiled(law: Law) -> Callable[..., int]:
     parts = {
         "measure": measure,
         "_lowest": _lowest,
-        "_settle": _settle_branched if law.branched else _settle,
+        "hold": hold,
+        "radius_at": radius_found if law.curved else radius_at,
+        "force_at": force_found if law.curved else force_at,
+        "stiffness_at": stiffness_found if law.curved else stiffness_at,
+        "settle": settle_curved if law.curved else settle,
+        "worst": worst,
         "bound": bound_curved if law.curved else bound,
         "jumps": jumps_branched if law.branched else jumps,
         "tally": tally,

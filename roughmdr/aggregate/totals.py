@@ -9,21 +9,22 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate.block import accumulate, add_up
 from roughmdr.aggregate.scales import LOAD, RIGIDITY, SIZE, WORTH
+from roughmdr.aggregate.settle import STATE
 from roughmdr.arguments import Floats
 
 # Rows of the totals.
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR = range(8)
 ROWS = 8
 
-# Names that ``specialise`` fills with the kernels of a law.
+# Names that ``specialise`` fills with the kernels of a law, and the parts of ``settle``.
 _adhesive: bool
 _state: Callable[..., float]
-_radius: Callable[..., float]
-_force: Callable[..., float]
-_stiffness: Callable[..., float]
 _energy: Callable[..., float]
 _own: Callable[..., Any]
 _spent: Callable[..., float]
+radius_at: Callable[..., float]
+force_at: Callable[..., float]
+stiffness_at: Callable[..., float]
 
 
 def tally(
@@ -31,7 +32,7 @@ def tally(
     forms: Floats,
     scales: Floats,
     held: Floats,
-    state: Floats,
+    found: Floats,
     terms: Floats,
     wanted: NDArray[np.bool_],
     step: int,
@@ -45,24 +46,24 @@ def tally(
     size, load, rigidity, worth = scales[SIZE], scales[LOAD], scales[RIGIDITY], scales[WORTH]
     if wanted[FORCE]:
         for i in range(count):
-            terms[i] = load[i] * _force(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = load[i] * force_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[FORCE], carried[FORCE], step, add_up(terms, count))
     if wanted[RADIUS]:
         for i in range(count):
-            terms[i] = size[i] * _radius(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = size[i] * radius_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[RADIUS], carried[RADIUS], step, add_up(terms, count))
     if wanted[AREA]:
         for i in range(count):
-            a = size[i] * _radius(state[i], _own(forms, i))
+            a = size[i] * radius_at(i, found, forms)
             terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[AREA], carried[AREA], step, add_up(terms, count))
     if wanted[STIFFNESS]:
         for i in range(count):
-            terms[i] = rigidity[i] * _stiffness(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = rigidity[i] * stiffness_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[STIFFNESS], carried[STIFFNESS], step, add_up(terms, count))
     if wanted[ENERGY]:
         for i in range(count):
-            terms[i] = worth[i] * _energy(state[i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = worth[i] * _energy(found[STATE, i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[ENERGY], carried[ENERGY], step, add_up(terms, count))
     if wanted[COUNT]:
         for i in range(count):

@@ -20,13 +20,22 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
+def stretched(t: float, row: Floats) -> tuple[float, float]:
+    """The indentation at t > 0, and its slope over t."""
+    a, da, g, dg = _curve(t, row)
+    root, tension = math.sqrt(a), row[TENSION]
+    return g - tension * root, dg - 0.5 * tension * da / root
+
+
 def load(t: float, row: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over t."""
     tension = row[TENSION]
+    if row[CONTROL] == 0.0 and tension > 0.0:
+        return stretched(t, row)
     a, da, g, dg = _curve(t, row)
-    root = math.sqrt(a)
     if row[CONTROL] == 0.0:
-        return (g - tension * root, dg - 0.5 * tension * da / root) if tension > 0.0 else (g, dg)
+        return g, dg
+    root = math.sqrt(a)
     slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
     return _push(t, row) - tension * a * root, a * slope
 
@@ -42,20 +51,23 @@ def radius(t: float, row: Floats) -> float:
     return _curve(t, row)[0]
 
 
+def answer(t: float, row: Floats) -> tuple[float, float, float]:
+    """a over width, P over 2 E* width rise, and k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl)."""
+    a, da, _, dg = _curve(t, row)
+    root, tension = math.sqrt(a), row[TENSION]
+    rising, pull = root * dg, 0.5 * tension * da
+    k = a * (rising - 3.0 * pull) / (rising - pull) if tension > 0.0 else a
+    return a, _push(t, row) - tension * a * root, k
+
+
 def force(t: float, row: Floats) -> float:
     """P over 2 E* width rise."""
-    a = _curve(t, row)[0]
-    return _push(t, row) - row[TENSION] * a * math.sqrt(a)
+    return answer(t, row)[1]
 
 
 def stiffness(t: float, row: Floats) -> float:
-    """k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl), infinite at a smooth fold."""
-    a, da, _, dg = _curve(t, row)
-    tension = row[TENSION]
-    if tension == 0.0:
-        return a
-    rising, pull = math.sqrt(a) * dg, 0.5 * tension * da
-    return a * (rising - 3.0 * pull) / (rising - pull)
+    """k over 2 E* width, infinite at a smooth fold."""
+    return answer(t, row)[2]
 
 
 def strain(t: float, row: Floats) -> float:
@@ -79,4 +91,14 @@ def energy(t: float, row: Floats) -> float:
     return (strain(t, row) - 2.0 * stretch * _push(t, row) + 0.5 * stretch * stretch * a) / (2.0 * row[DEPTH])
 
 
-PARTS: tuple[Callable[..., Any], ...] = (load, distance, radius, force, stiffness, strain, energy)
+PARTS: tuple[Callable[..., Any], ...] = (
+    stretched,
+    load,
+    distance,
+    radius,
+    answer,
+    force,
+    stiffness,
+    strain,
+    energy,
+)

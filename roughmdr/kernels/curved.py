@@ -11,16 +11,18 @@ import numpy as np
 from roughmdr._extended import Pair
 from roughmdr._jit import compiled, specialise
 from roughmdr.arguments import Floats
-from roughmdr.kernels import balance, branches, folds
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, SIZE, TENSION
+from roughmdr.elementary import octave
+from roughmdr.kernels import balance, branches, folds, root, start
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, TENSION, first_node
 from roughmdr.shapes.base import Curved
 
 # Names that ``specialise`` fills.
+NODE: int
 _place: Callable[..., float]
 state: Callable[..., float]
 radius: Callable[..., float]
 find_branches: Callable[..., None]
-find_start: Callable[..., None]
+find_starts: Callable[..., None]
 
 
 def fill(modulus: float, work: float, width: float, rise: float, control: float, row: Floats) -> None:
@@ -28,18 +30,17 @@ def fill(modulus: float, work: float, width: float, rise: float, control: float,
     row[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
     row[CONTROL] = control
     find_branches(row)
-    if row[COUNT] > 0.0:
-        find_start(row)
 
 
 def prepare(
     modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
 ) -> Floats:
     """A row for each of the asperities from start to stop."""
-    rows = np.zeros((stop - start, 1 + SIZE))
+    rows = np.zeros((stop - start, 1 - NODE))
     for i in range(stop - start):
         rows[i, 0] = form[start + i]
         fill(modulus, work, width[start + i], rise[start + i], control, rows[i])
+    find_starts(rows)
     return rows
 
 
@@ -47,9 +48,10 @@ def prepare_common(
     modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
 ) -> Floats:
     """The one row of asperities that are all alike."""
-    rows = np.zeros((1, form.shape[1] + SIZE))
+    rows = np.zeros((1, form.shape[1] - NODE))
     rows[0, : form.shape[1]] = form[0]
     fill(modulus, work, width[0], rise[0], control, rows[0])
+    find_starts(rows)
     return rows
 
 
@@ -89,10 +91,23 @@ def radius_of_force(x: float, row: Floats) -> float:
     return radius(state(x, row), row)
 
 
+_SPLIT = 5  # parts of an octave where all asperities share one row
+_VECTOR_CODE = (
+    balance.stretched,
+    balance.answer,
+    start.scale,
+    start.guess,
+    start.place,
+    start.extrapolated,
+    root.nearer,
+    root.arrived,
+)
+
+
 @cache
 def build(shape: type[Curved]) -> dict[str, Any]:
     """The kernels of a shape, by the names that ``Law`` has for them."""
-    profile = shape.profile
+    profile, split = shape.profile, _SPLIT if shape.common else 0
     kernels: dict[str, Any] = {
         "_curve": compiled(profile.curve),
         "_push": compiled(profile.push),
@@ -101,6 +116,9 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         "_dip": compiled(profile.dip),
         "_kink": compiled(profile.kink),
         "_corner": profile.corner,
+        "octave": compiled(octave),
+        "SPLIT": split,
+        "NODE": first_node(split),
     }
     ends = (
         prepare,
@@ -113,9 +131,15 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         state_of_force,
         radius_of_force,
     )
-    for part in (*balance.PARTS, *folds.PARTS, *branches.PARTS, fill, *ends):
+    for part in (*balance.PARTS, *folds.PARTS, *root.PARTS, *start.PARTS, *branches.PARTS, fill, *ends):
         known = compiled(profile.strain) if part is balance.strain and profile.strain is not None else None
-        kernels[part.__name__] = known or specialise(cast(FunctionType, part), shape.name, kernels)
+        kernels[part.__name__] = known or specialise(
+            cast(FunctionType, part),
+            shape.name,
+            kernels,
+            inline=part in (own, common),
+            small=part in _VECTOR_CODE,
+        )
     if shape.common:
         kernels |= {"prepare": kernels["prepare_common"], "own": kernels["common"]}
     return kernels

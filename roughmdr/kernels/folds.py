@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, MOST, TENSION, TOP, TOP_X
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, LAST, LAST_X, MOST, TENSION, TOP, TOP_X
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _curve: Callable[..., tuple[float, float, float, float]]
@@ -104,6 +104,7 @@ def find_branches(row: Floats) -> None:
     row[COUNT], row[FOLD], row[DEPTH] = 0.0, 0.0, 1.0
     if row[TENSION] == 0.0:
         row[FOOT], row[TOP], row[FOOT_X], row[TOP_X], row[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
+        row[LAST], row[LAST_X] = 0.0, 0.0
         return
     count = _list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row)
     row[DEPTH] = -math.inf
@@ -116,7 +117,7 @@ def find_branches(row: Floats) -> None:
     for j in range(count):
         row[FOOT_X + j] = load(row[FOOT + j], row)[0] / row[DEPTH] + 1.0
         row[TOP_X + j] = load(row[TOP + j], row)[0] / row[DEPTH] + 1.0 if j < count - 1 else math.inf
-    row[COUNT] = float(count)
+    row[COUNT], row[LAST], row[LAST_X] = float(count), row[FOOT + count - 1], row[FOOT_X + count - 1]
 
 
 PARTS: tuple[Callable[..., Any], ...] = (_steepness, _excess, _crossing, _branch, _list_branches, find_branches)

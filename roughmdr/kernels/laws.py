@@ -55,9 +55,19 @@ class Law(NamedTuple):
     energy: Kernel
     """(state, form) -> elastic and surface energy over natural force times natural depth."""
     mixed: Kernel | None = None
-    """forms -> whether they differ; None where the law is curved."""
+    """forms -> whether they differ; None where the law is curved. What follows is there only where it is."""
+    passes: int = 0
+    """How many steps of Newton's method bring most contacts to their state."""
+    guess: Kernel | None = None
+    """(x, form) -> where Newton's method begins."""
+    nearer: Callable[..., tuple[float, float, float]] | None = None
+    """(state, x, form) -> the state one step nearer, the step, and d(state)/dx."""
+    arrived: Callable[..., bool] | None = None
+    """(state, step, x, rung, form) -> whether the last step has come to the state on branch number ``rung``."""
+    answer: Callable[..., tuple[float, float, float]] | None = None
+    """(state, form) -> radius, force and stiffness."""
     state_on: Kernel | None = None
-    """(x, rung, form) -> the state on branch number ``rung``; this and what follows only where the law is branched."""
+    """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None
     """(x, rung before, form) -> the branch after a way in one direction, 0 out of contact."""
     spent: Kernel | None = None
@@ -81,7 +91,8 @@ def _curved(shape: type[Curved], adhesive: bool) -> Law:
     built = curved.build(shape)
     kernels = {name: built[name] for name in Law._fields if name in built}
     name = f"{'jkr' if adhesive else 'elastic'}_{shape.name}"
-    return Law(name, adhesive, curved=True, branched=adhesive and shape.branched(), **kernels)
+    branched = adhesive and shape.branched()
+    return Law(name, adhesive, curved=True, branched=branched, passes=1 if shape.common else 3, **kernels)
 
 
 _ELASTIC = {

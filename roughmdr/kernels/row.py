@@ -13,8 +13,11 @@ CONTROL = -2  # 0: fixed grips, 1: dead load
 DEPTH = -3  # how far below first touch the lowest foot lies, in the controlled quantity; 1 without adhesion
 FOLD = -4  # t of the lowest foot
 COUNT = -5  # of stable branches; 0 where there are too many, or none that floats can hold
-FOOT, TOP = COUNT - MOST, COUNT - 2 * MOST  # t of the first
-FOOT_X, TOP_X = COUNT - 3 * MOST, COUNT - 4 * MOST  # distance to the lowest foot, over DEPTH
-NODE = TOP_X - OCTAVES - 1  # t at each octave of the first guess
-SLOPE = NODE - OCTAVES - 1  # and its change over the octave
-SIZE = -SLOPE
+LAST, LAST_X = -6, -7  # the foot of the last branch: its t, and its distance to the lowest foot over DEPTH
+FOOT, TOP = LAST_X - MOST, LAST_X - 2 * MOST  # t of the first
+FOOT_X, TOP_X = LAST_X - 3 * MOST, LAST_X - 4 * MOST  # the distances
+
+
+def first_node(split: int) -> int:
+    """The place of the nodes of the first guess, with octaves in 2^split parts: for each t and y dt/dy."""
+    return TOP_X - 2 * ((OCTAVES << split) + 1)

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr import elementary
 from roughmdr._rebuilt import rebuilt
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
@@ -142,9 +143,12 @@ class Curved(Shape):
         from mpmath import mp
 
         def remake(function: Callable[..., Any]) -> Callable[..., Any]:
-            return rebuilt(function, {"math": mp}, remake)
+            if function.__module__ == elementary.__name__:
+                return getattr(mp, function.__name__, function)
+            return rebuilt(function, {"NEAR": -1.0}, remake)
 
-        with mp.workdps(40):
+        lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
+        with mp.workdps(40 + int(4.0 * lost)):
             exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
             width, rise, form = (column[0] for column in self.stretch(exact))
             a, _, g, _ = remake(self.profile.curve)(mp.mpf(t), [form])

@@ -1,6 +1,5 @@
 """The capped paraboloid: a blunter cap on a paraboloid."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
+from roughmdr.elementary import sqrt
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile, swung
 
@@ -21,7 +21,7 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     if t <= 1.0:
         return t, 1.0, c * t * t, 2.0 * c * t
     q = c * (t - 1.0)
-    a = math.sqrt(1.0 + q * q)
+    a = sqrt(1.0 + q * q)
     return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
 
 
@@ -31,7 +31,7 @@ def _push(t: float, form: Form) -> float:
         return 2.0 * c * t * t * t / 3.0
     q = c * (t - 1.0)
     square = 1.0 + q * q
-    return 2.0 * c * square * math.sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
+    return 2.0 * c * square * sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
 
 
 def _swept(t: float, form: Form) -> float:
@@ -40,7 +40,7 @@ def _swept(t: float, form: Form) -> float:
         return c * t * t * t / 3.0
     q = c * (t - 1.0)
     square = 1.0 + q * q
-    return (c * square * math.sqrt(square) + (1.0 - c) * q * q * q) / 3.0
+    return (c * square * sqrt(square) + (1.0 - c) * q * q * q) / 3.0
 
 
 def _place(radius: float, width: float, form: Form) -> float:
@@ -60,7 +60,7 @@ def _dip(index: int, form: Form) -> tuple[float, float]:
     for _ in range(60):
         q = 0.5 * (low + high)
         square = 1.0 + q * q
-        if 3.0 * c * math.sqrt(square) * q * q * q + 0.5 * (1.0 - c) * ((6.0 * square - 9.0) * square + 1.0) < 0.0:
+        if 3.0 * c * sqrt(square) * q * q * q + 0.5 * (1.0 - c) * ((6.0 * square - 9.0) * square + 1.0) < 0.0:
             low = q
         else:
             high = q

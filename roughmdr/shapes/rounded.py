@@ -1,6 +1,5 @@
 """Profiles with a rounded tip or edge: the rounded cone and the rounded punch."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
+from roughmdr.elementary import atan, sqrt
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile, swung
 from roughmdr.shapes.special import less_atan, less_atan_and_cube
@@ -19,23 +19,23 @@ def _cone_curve(a: float, form: Form) -> tuple[float, float, float, float]:
     """g = a^2; beyond the blend g = a (a - q) + a atan q, q = sqrt(a^2 - 1)."""
     if a <= 1.0:
         return a, 1.0, a * a, 2.0 * a
-    q = math.sqrt((a - 1.0) * (a + 1.0))
-    angle = math.atan(q)
+    q = sqrt((a - 1.0) * (a + 1.0))
+    angle = atan(q)
     return a, 1.0, a / (a + q) + a * angle, 2.0 / (a + q) + angle
 
 
 def _cone_push(a: float, form: Form) -> float:
     if a <= 1.0:
         return 2.0 * a * a * a / 3.0
-    q = math.sqrt((a - 1.0) * (a + 1.0))
-    return 0.5 * (a * a * math.atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
+    q = sqrt((a - 1.0) * (a + 1.0))
+    return 0.5 * (a * a * atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
 
 
 def _cone_swept(a: float, form: Form) -> float:
     if a <= 1.0:
         return a * a * a / 3.0
-    q = math.sqrt((a - 1.0) * (a + 1.0))
-    return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * math.atan(q) - less_atan(q))
+    q = sqrt((a - 1.0) * (a + 1.0))
+    return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - less_atan(q))
 
 
 def _cone_place(radius: float, width: float, form: Form) -> float:
@@ -85,7 +85,7 @@ class RoundedCone(Curved):
 
 def _punch_curve(q: float, form: Form) -> tuple[float, float, float, float]:
     """g = a (q - atan q), a = sqrt(1 + q^2)."""
-    a, excess = math.sqrt(1.0 + q * q), less_atan(q)
+    a, excess = sqrt(1.0 + q * q), less_atan(q)
     return a, q / a, a * excess, q * (excess + q) / a
 
 

@@ -1,37 +1,23 @@
-"""Differences of elementary functions that cancel, written so that they do not; plain Python, for any number of digits.
+"""Differences of elementary functions that cancel, written so that they do not."""
 
-Each is a power series near 0 and the difference itself elsewhere.
-"""
+from roughmdr.elementary import atan, fifth_series, third_series
 
-import math
-
-_NEAR = 0.3  # the difference itself loses a digit and a half there
-_TERMS = 50  # enough for 50 digits there
-
-
-def _odd_series(x: float, first: float, ratio: float) -> float:
-    """x^n/n + ratio x^(n + 2)/(n + 2) + ratio^2 x^(n + 4)/(n + 4) + ..., n = ``first`` 3 or 5."""
-    power = x * x * x if first == 3.0 else x * x * x * x * x
-    total, odd = power / first, first
-    for _ in range(_TERMS):
-        power = ratio * power * x * x
-        odd = odd + 2.0
-        before, total = total, total + power / odd
-        if total == before:
-            break
-    return total
+NEAR = 0.4142  # up to here the series; the difference itself loses a digit and a half there, with many digits nothing
 
 
 def less_atan(q: float) -> float:
     """q - atan q for q >= 0: q^3/3 - q^5/5 + ..."""
-    return q - math.atan(q) if q > _NEAR else _odd_series(q, 3.0, -1.0)
+    return q - atan(q) if q > NEAR else q * q * q * third_series(-q * q)
 
 
 def less_atan_and_cube(q: float) -> float:
     """q^3/3 - (q - atan q) for q >= 0: q^5/5 - q^7/7 + ..."""
-    return q * q * q / 3.0 - (q - math.atan(q)) if q > _NEAR else _odd_series(q, 5.0, -1.0)
+    square = q * q
+    if q > NEAR:
+        return q * square / 3.0 - (q - atan(q))
+    return q * square * square * fifth_series(-square)
 
 
 def beyond_tanh(t: float, x: float) -> float:
     """t - x for x = tanh t >= 0: x^3/3 + x^5/5 + ..."""
-    return t - x if x > _NEAR else _odd_series(x, 3.0, 1.0)
+    return t - x if x > NEAR else x * x * x * third_series(x * x)

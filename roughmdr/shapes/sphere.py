@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
+from roughmdr.elementary import expm1, tanh
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile
 from roughmdr.shapes.special import beyond_tanh
@@ -15,7 +16,7 @@ from roughmdr.shapes.special import beyond_tanh
 
 def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     """a = tanh t, g = a artanh a."""
-    growth = math.expm1(2.0 * min(t, 300.0))
+    growth = expm1(2.0 * min(t, 300.0))
     a = growth / (growth + 2.0)
     narrowing = 4.0 * (growth + 1.0) / (growth + 2.0) / (growth + 2.0)  # 1 - a^2
     return a, narrowing, a * t, a + t * narrowing
@@ -23,13 +24,13 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
 
 def _push(t: float, form: Form) -> float:
     """[(1 + a^2) artanh a - a]/2."""
-    a = math.tanh(t)
+    a = tanh(t)
     return 0.5 * (beyond_tanh(t, a) + a * a * t)
 
 
 def _swept(t: float, form: Form) -> float:
     """[(a^2 - 1) artanh a + a]/2."""
-    a = math.tanh(t)
+    a = tanh(t)
     return 0.5 * (a * a * t - beyond_tanh(t, a))
 
 

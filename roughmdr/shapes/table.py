@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from roughmdr.elementary import sqrt
 from roughmdr.shapes.profile import Form, Profile
 
 DEGREE = 13
@@ -26,27 +27,25 @@ def _piece(t: float, form: Form) -> int:
     count = int(form[first - 1])
     if t >= form[first + count]:
         return -(first + count + 1 + PIECE * count)
-    low, high = 0, count
-    while high - low > 1:
-        middle = (low + high) // 2
-        if t >= form[first + middle]:
-            low = middle
-        else:
-            high = middle
+    low, left = 0, count
+    while left > 1:
+        half = left // 2
+        low, left = (low + half if t >= form[first + low + half] else low), left - half
     return first + count + 1 + PIECE * low
 
 
 def _sum(place: float, begin: int, form: Form) -> float:
     """The polynomial whose coefficients stand from ``begin`` on."""
-    total = form[begin + DEGREE]
-    for i in range(DEGREE - 1, -1, -1):
-        total = total * place + form[begin + i]
-    return total
+    square = place * place
+    even, odd = form[begin + DEGREE - 1], form[begin + DEGREE]
+    for i in range(DEGREE - 3, -1, -2):
+        even, odd = even * square + form[begin + i], odd * square + form[begin + i + 1]
+    return even + place * odd
 
 
 def _place_on(t: float, piece: int, form: Form) -> float:
     knot = form[piece]
-    return form[piece + 1] * math.sqrt((t - knot) * (t + knot)) - form[piece + 2]
+    return form[piece + 1] * sqrt((t - knot) * (t + knot)) - form[piece + 2]
 
 
 def _far_sum(t: float, far: int, tilt: float, form: Form) -> float:

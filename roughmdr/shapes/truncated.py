@@ -1,6 +1,5 @@
 """Profiles with a flat tip that ends in a corner: the truncated cone and the truncated paraboloid."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
+from roughmdr.elementary import atan, sqrt
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile, swung
 from roughmdr.shapes.special import less_atan
@@ -27,16 +27,16 @@ def _place(radius: float, width: float, form: Form) -> float:
 
 def _cone_curve(q: float, form: Form) -> tuple[float, float, float, float]:
     """g = a acos(1/a) = a atan q, a = sqrt(1 + q^2)."""
-    a, angle = math.sqrt(1.0 + q * q), math.atan(q)
+    a, angle = sqrt(1.0 + q * q), atan(q)
     return a, q / a, a * angle, (q * angle + 1.0) / a
 
 
 def _cone_push(q: float, form: Form) -> float:
-    return 0.5 * ((1.0 + q * q) * math.atan(q) + q)
+    return 0.5 * ((1.0 + q * q) * atan(q) + q)
 
 
 def _cone_swept(q: float, form: Form) -> float:
-    return 0.5 * (q * q * math.atan(q) - less_atan(q))
+    return 0.5 * (q * q * atan(q) - less_atan(q))
 
 
 def _cone_dip(index: int, form: Form) -> tuple[float, float]:
@@ -73,7 +73,7 @@ class TruncatedCone(Curved):
 
 def _paraboloid_curve(q: float, form: Form) -> tuple[float, float, float, float]:
     """g = a q."""
-    a = math.sqrt(1.0 + q * q)
+    a = sqrt(1.0 + q * q)
     return a, q / a, a * q, (1.0 + 2.0 * q * q) / a
 
 

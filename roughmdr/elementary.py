@@ -1,0 +1,92 @@
+"""Elementary functions without branches or calls, so that a loop over asperities becomes vector code.
+
+Plain Python on floats, to be compiled, and within two roundings of the function; with mpmath its own stand for them.
+"""
+
+import math
+
+import numpy as np
+
+_LOG_2_HIGH, _LOG_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # the first times a whole number is exact
+_WHOLE = 6755399441055744.0  # 1.5 2^52: added to a number it leaves the nearest whole one, in the last bits
+_ODD = tuple(1.0 / (2 * k + 5) for k in range(20))
+_FACTORIAL = tuple(1.0 / math.factorial(k + 2) for k in range(12))
+_TAN_22_5, _TAN_67_5 = math.sqrt(2.0) - 1.0, math.sqrt(2.0) + 1.0
+_MANTISSA, _ONE = np.int64(0xFFFFFFFFFFFFF), np.int64(0x3FF0000000000000)
+_LARGEST, _LEAST = 709.0, -60.0  # e^709 is a float, e^-60 - 1 is -1
+
+
+def sqrt(x: float) -> float:
+    """The square root of x >= 0."""
+    return math.sqrt(x)
+
+
+def fifth_series(v: float) -> float:
+    """1/5 + v/7 + v^2/9 + ... for |v| < 0.172."""
+    square = v * v
+    even, odd = 0.0, 0.0
+    for k in range(18, -1, -2):
+        even, odd = even * square + _ODD[k], odd * square + _ODD[k + 1]
+    return even + v * odd
+
+
+def third_series(v: float) -> float:
+    """The series 1/3 + v/5 + v^2/7 + ...: atan q = q - q^3 third_series(-q^2), artanh x = x + x^3 third_series(x^2), |v| < 0.172."""
+    return 1.0 / 3.0 + v * fifth_series(v)
+
+
+def atan(q: float) -> float:
+    """atan q for q >= 0, from that of the tangent of an angle below pi/8."""
+    steep, middling = q > _TAN_67_5, q > _TAN_22_5
+    above = -1.0 if steep else (q - 1.0 if middling else q)
+    below = q if steep else (q + 1.0 if middling else 1.0)
+    z = above / below
+    begin = 0.5 * math.pi if steep else (0.25 * math.pi if middling else 0.0)
+    return begin + (z - z * z * z * third_series(-z * z))
+
+
+def _power_of_two(whole: float) -> float:
+    """2^k for the k, -1022 to 1023, that was added to _WHOLE."""
+    return float(np.int64((np.float64(whole).view(np.int64) + np.int64(1023)) << np.int64(52)).view(np.float64))
+
+
+def expm1(x: float) -> float:
+    """e^x - 1; inf beyond 709."""
+    bounded = max(min(x, _LARGEST), _LEAST)
+    whole = bounded / math.log(2.0) + _WHOLE
+    k = whole - _WHOLE
+    r = (bounded - k * _LOG_2_HIGH) - k * _LOG_2_LOW
+    square = r * r
+    even, odd = 0.0, 0.0
+    for j in range(10, -1, -2):
+        even, odd = even * square + _FACTORIAL[j], odd * square + _FACTORIAL[j + 1]
+    scale = _power_of_two(whole)
+    return math.inf if x > _LARGEST else scale * (r + square * (even + r * odd)) + (scale - 1.0)
+
+
+def tanh(t: float) -> float:
+    """The hyperbolic tangent of t >= 0."""
+    growth = expm1(2.0 * min(t, 300.0))
+    return growth / (growth + 2.0)
+
+
+def octave(y: float, split: int) -> tuple[int, float]:
+    """In which octave a normal y > 0 lies, 0 from 1 to 2, and where in it from 0 to 1; octaves in 2^split equal parts."""
+    bits = np.float64(y).view(np.int64)
+    within = np.int64(((bits << split) & _MANTISSA) | _ONE).view(np.float64)
+    return (bits >> np.int64(52 - split)) - (np.int64(1023) << split), float(within) - 1.0
+
+
+def log(x: float) -> float:
+    """ln x for a normal x > 0."""
+    k, beyond = octave(x, 0)
+    high = beyond > math.sqrt(2.0) - 1.0
+    m, power = (0.5 + 0.5 * beyond if high else 1.0 + beyond), float(k + 1 if high else k)
+    z = (m - 1.0) / (m + 1.0)
+    return power * _LOG_2_HIGH + (2.0 * (z + z * z * z * third_series(z * z)) + power * _LOG_2_LOW)
+
+
+def log1p(y: float) -> float:
+    """ln(1 + y) for y >= 0."""
+    above = 1.0 + y
+    return log(above) + (y - (above - 1.0)) / above

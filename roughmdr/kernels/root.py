@@ -1,0 +1,74 @@
+"""The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``row``."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, TENSION
+
+# Names that ``specialise`` fills with the functions of a profile and of ``balance``.
+_kink: Callable[..., bool]
+load: Callable[..., tuple[float, float]]
+stretched: Callable[..., tuple[float, float]]
+
+_NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
+_GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
+_FINE = 1e-8  # the square of a last step is below rounding
+_PATIENCE = 6  # steps: the slope of a table can change so much that Newton's method goes in circles
+
+
+def above(t: float, j: int, row: Floats) -> tuple[float, float]:
+    """How far the controlled quantity lies above the lowest foot, and its slope; t on branch j."""
+    value, slope = load(t, row)
+    foot = row[FOOT + j]
+    step = t - foot
+    if row[TENSION] == 0.0:
+        return value, slope
+    if step > _NEAR * t or _kink(foot, t, row):
+        return value + row[DEPTH], slope
+    middle = foot + 0.5 * step
+    outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]
+    return row[FOOT_X + j] * row[DEPTH] + step * (5.0 * outer + 8.0 * load(middle, row)[1]) / 18.0, slope
+
+
+def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
+    """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
+    foot = row[FOOT + j]
+    for i in range(200):
+        value, slope = above(t, j, row)
+        if value < wanted:
+            low = t
+        elif value > wanted:
+            high = t
+        else:
+            return t
+        step = (value - wanted) / slope if slope > 0.0 else math.inf
+        if abs(step) <= _FINE * (t - foot):
+            return t - step
+        better = t - step
+        circling = i % 3 == 2 and i > _PATIENCE and high < math.inf
+        if circling or not low < better < high:
+            better = 0.5 * (low + high) if high < math.inf else 2.0 * t
+            if not low < better < high:
+                return t
+        t = better
+    return math.nan
+
+
+def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
+    """One step of Newton's method on the last branch under fixed grips, as it comes: the new t, the step, and dt/dx."""
+    value, slope = stretched(t, row)
+    lift = row[DEPTH] if row[TENSION] > 0.0 else 0.0
+    step = ((value + lift) - x * row[DEPTH]) / slope
+    return t - step, step, row[DEPTH] / slope
+
+
+def arrived(t: float, step: float, x: float, rung: float, row: Floats) -> bool:
+    """Whether a last ``nearer`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
+    beyond = t - row[LAST]
+    is_last = (rung == row[COUNT]) & (x > row[LAST_X])
+    return is_last & (beyond > _NEAR * t) & (abs(step) <= _FINE * beyond)
+
+
+PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)
