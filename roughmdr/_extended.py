@@ -7,6 +7,7 @@ Source: T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The Art of Comput
 """
 
 import math
+from fractions import Fraction
 
 from roughmdr._jit import njit
 
@@ -15,7 +16,8 @@ Pair = tuple[float, float]
 _SPLITTER = 134217729.0  # 2^27 + 1
 LOG_2 = (0.6931471805599453, 2.3190468138462996e-17)
 LOG_3 = (1.0986122886681098, -9.07129723500153e-17)
-LOG_PI = (1.1447298858494002, 1.0265951162707826e-17)
+_ODD = tuple(1.0 / j for j in range(1, 23, 2))
+_ODD_REST = tuple(float(Fraction(1, j) - Fraction(1.0 / j)) for j in range(1, 23, 2))
 PI = (3.141592653589793, 1.2246467991473532e-16)
 
 
@@ -71,14 +73,15 @@ def log(x: Pair) -> Pair:
     if m < math.sqrt(0.5):
         m *= 2.0
         k -= 1
-    # Two steps, since 2^-k alone overflows when x is the smallest float there is.
-    half = k // 2
-    reduced = (m, x[1] * 2.0**-half * 2.0 ** (half - k))
+    reduced = (m, math.ldexp(x[1], -k))
     z = divide(add(reduced, (-1.0, 0.0)), add(reduced, (1.0, 0.0)))
     square = multiply(z, z)
-    series = (0.0, 0.0)
-    for j in range(43, 0, -2):  # |z| < 0.1716: the first term left out is below 1e-34
-        series = add(multiply(series, square), divide((1.0, 0.0), (float(j), 0.0)))
+    tail = 0.0
+    for j in range(43, 22, -2):  # |z| < 0.1716: the first term left out is below 1e-34
+        tail = tail * square[0] + 1.0 / j
+    series = (tail, 0.0)  # times z^22 < 1e-16
+    for i in range(10, -1, -1):
+        series = add(multiply(series, square), (_ODD[i], _ODD_REST[i]))
     series = multiply(multiply(series, z), (2.0, 0.0))
     return add(series, multiply((float(k), 0.0), LOG_2))
 

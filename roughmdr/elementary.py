@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 _LOG_2_HIGH, _LOG_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # the first times a whole number is exact
+_PER_LOG_2 = 1.0 / math.log(2.0)
 _WHOLE = 6755399441055744.0  # 1.5 2^52: added to a number it leaves the nearest whole one, in the last bits
 _ODD = tuple(1.0 / (2 * k + 5) for k in range(20))
 _FACTORIAL = tuple(1.0 / math.factorial(k + 2) for k in range(12))
@@ -31,7 +32,7 @@ def fifth_series(v: float) -> float:
 
 
 def third_series(v: float) -> float:
-    """The series 1/3 + v/5 + v^2/7 + ...: atan q = q - q^3 third_series(-q^2), artanh x = x + x^3 third_series(x^2), |v| < 0.172."""
+    """1/3 + v/5 + ... for |v| < 0.172, so that atan q = q - q^3 S(-q^2) and artanh x = x + x^3 S(x^2)."""
     return 1.0 / 3.0 + v * fifth_series(v)
 
 
@@ -53,7 +54,7 @@ def _power_of_two(whole: float) -> float:
 def expm1(x: float) -> float:
     """e^x - 1; inf beyond 709."""
     bounded = max(min(x, _LARGEST), _LEAST)
-    whole = bounded / math.log(2.0) + _WHOLE
+    whole = bounded * _PER_LOG_2 + _WHOLE
     k = whole - _WHOLE
     r = (bounded - k * _LOG_2_HIGH) - k * _LOG_2_LOW
     square = r * r
@@ -71,10 +72,10 @@ def tanh(t: float) -> float:
 
 
 def octave(y: float, split: int) -> tuple[int, float]:
-    """In which octave a normal y > 0 lies, 0 from 1 to 2, and where in it from 0 to 1; octaves in 2^split equal parts."""
+    """Which octave a normal y > 0 lies in, 0 from 1 to 2, and where, from 0 to 1; octaves in 2^split equal parts."""
     bits = np.float64(y).view(np.int64)
     within = np.int64(((bits << split) & _MANTISSA) | _ONE).view(np.float64)
-    return (bits >> np.int64(52 - split)) - (np.int64(1023) << split), float(within) - 1.0
+    return int((bits >> np.int64(52 - split)) - (np.int64(1023) << split)), float(within) - 1.0
 
 
 def log(x: float) -> float:

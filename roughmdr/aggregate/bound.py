@@ -65,7 +65,7 @@ def bound(
     return worst(count, z, h, slope, push, greatest)
 
 
-def bound_curved(
+def bound_found(
     count: int,
     z: Floats,
     forms: Floats,
@@ -76,7 +76,7 @@ def bound_curved(
     found: Floats,
     terms: Floats,
 ) -> float:
-    """The same where each asperity has scales of its own, and k need not grow along its branch: one by one."""
+    """The same where P and k were found with the state: one by one."""
     slope, push = 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:

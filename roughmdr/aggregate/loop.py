@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 
 from roughmdr._jit import njit, specialise
 from roughmdr.aggregate.block import BLOCK, accumulate, run_on
-from roughmdr.aggregate.bound import bound, bound_curved, worst
+from roughmdr.aggregate.bound import bound, bound_found, worst
 from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.settle import (
     FOUND,
+    conclude,
     force_at,
     force_found,
     hold,
+    leave,
     radius_at,
     radius_found,
     settle,
@@ -142,17 +144,18 @@ def _loop(
 
 @cache
 def _compiled(law: Law) -> Callable[..., int]:
-    kernels = law.kernels
+    kernels, together = law.kernels, law.answer is not None
     parts = {
         "measure": measure,
         "_lowest": _lowest,
         "hold": hold,
-        "radius_at": radius_found if law.curved else radius_at,
-        "force_at": force_found if law.curved else force_at,
-        "stiffness_at": stiffness_found if law.curved else stiffness_at,
+        "radius_at": radius_found if together else radius_at,
+        "force_at": force_found if together else force_at,
+        "stiffness_at": stiffness_found if together else stiffness_at,
+        "conclude": conclude if together else leave,
         "settle": settle_curved if law.curved else settle,
         "worst": worst,
-        "bound": bound_curved if law.curved else bound,
+        "bound": bound_found if together else bound,
         "jumps": jumps_branched if law.branched else jumps,
         "tally": tally,
     }

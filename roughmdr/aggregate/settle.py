@@ -1,7 +1,7 @@
 """The state of each contact of a block at one step, and what follows from it.
 
-``found`` has a row for the state, and where the law is curved one each for a, P and k, which then come together; else
-each is computed from the state when it is asked for.
+``found`` has a row for the state, and where the law has an ``answer`` one each for a, P and k, which then come
+together; else each is computed from the state when it is asked for.
 """
 
 from collections.abc import Callable
@@ -41,6 +41,17 @@ def hold(count: int, z: Floats, begin: int, end: int, bottom: Floats, top: Float
             held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
 
 
+def conclude(count: int, forms: Floats, found: Floats) -> None:
+    """Find a, P and k of the first ``count`` contacts."""
+    a, force, stiffness = found[RADIUS], found[FORCE], found[STIFFNESS]
+    for i in range(count):
+        a[i], force[i], stiffness[i] = _answer(found[STATE, i], _own(forms, i))
+
+
+def leave(count: int, forms: Floats, found: Floats) -> None:
+    """Leave a, P and k to who asks for them."""
+
+
 def settle(
     count: int,
     z: Floats,
@@ -68,6 +79,7 @@ def settle(
     else:
         for i in range(count):
             state[i] = _state((z[i] - h) * per_depth[i], _own(forms, i))
+    conclude(count, forms, found)
 
 
 def settle_curved(
@@ -89,7 +101,6 @@ def settle_curved(
     Where a contact can be on one of several branches ``held``, from the step before, is its number.
     """
     depth, per_depth, state, x = scales[DEPTH], scales[PER_DEPTH], found[STATE], found[RADIUS]
-    a, force, stiffness = found[RADIUS], found[FORCE], found[STIFFNESS]
     lift = 1.0 if _adhesive else 0.0
     for i in range(count):
         x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
@@ -107,8 +118,7 @@ def settle_curved(
         rung = held[i] if _adhesive else 1.0
         if rung > 0.0 and not _arrived(state[i], terms[i], x[i], rung, _own(forms, i)):
             state[i] = _state_on(x[i], rung, _own(forms, i))
-    for i in range(count):
-        a[i], force[i], stiffness[i] = _answer(state[i], _own(forms, i))
+    conclude(count, forms, found)
 
 
 def radius_at(i: int, found: Floats, forms: Floats) -> float:

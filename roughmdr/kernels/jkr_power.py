@@ -12,75 +12,92 @@ holds with u = (tau/tau_P)^3, tau_P^e = 3, in place of tau, e/3 in place of e, a
 """
 
 import math
+from functools import partial
 
 from roughmdr import _extended as extended
 from roughmdr._extended import Pair
-from roughmdr._jit import njit
-from roughmdr.shapes.kappa import log_kappa
+from roughmdr._jit import compiled, njit
+from roughmdr.elementary import expm1, log, log1p
+from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
+_TINY = 1e-150
+_expm1, _log, _log1p = (compiled(part) for part in (expm1, log, log1p))
+_vector = partial(njit, small=True)
 
 
 @njit
-def _log_fold(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, Pair]:
-    """ln a_c and ln dl(a_c): (a_c/width)^e = 2 pi w width/(E* (2 n kappa rise)^2)."""
-    e = extended.two_sum(2.0 * n, -1.0)
-    ratio = extended.add(extended.log((work, 0.0)), extended.multiply((-1.0, 0.0), extended.log((modulus, 0.0))))
-    ratio = extended.add(ratio, extended.add(extended.LOG_2, extended.LOG_PI))
-    log_width = extended.log((width, 0.0))
-    slope = extended.add(log_kappa(n), extended.add(extended.log((rise, 0.0)), extended.log((2.0 * n, 0.0))))
-    power = extended.add(extended.add(ratio, log_width), extended.multiply((-2.0, 0.0), slope))
-    log_radius = extended.add(log_width, extended.divide(power, e))
-    return log_radius, extended.multiply((0.5, 0.0), extended.add(ratio, log_radius))
+def _length(modulus: float, work: float) -> tuple[Pair, int]:
+    """2 pi w/E* [m], and the power of two that goes with it, for range."""
+    (w, w_power), (stiff, stiff_power) = math.frexp(work), math.frexp(modulus)
+    return extended.divide(extended.multiply(extended.PI, (w, 0.0)), (stiff, 0.0)), 1 + w_power - stiff_power
+
+
+@njit
+def _log_growth(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
+    """ln(a_c/width): (a_c/width)^e = 2 pi w width/(E* (2 n kappa rise)^2), powers of two apart."""
+    length, length_power = _length(modulus, work)
+    (size, size_power), (high, high_power), (half, n_power) = math.frexp(width), math.frexp(rise), math.frexp(n)
+    steepness = extended.multiply(precise_kappa(n), extended.two_product(half, high))
+    ratio = extended.divide(extended.multiply(length, (size, 0.0)), extended.multiply(steepness, steepness))
+    power = length_power + size_power - 2 * (1 + high_power + n_power)
+    log_ratio = extended.add(extended.log(ratio), extended.multiply((float(power), 0.0), extended.LOG_2))
+    return extended.divide(log_ratio, extended.two_sum(2.0 * n, -1.0))
 
 
 @njit
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
-    log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
-    e = extended.two_sum(2.0 * n, -1.0)
-    depth = extended.add(log_stretch, extended.log(extended.divide(e, (2.0 * n, 0.0))))
-    if not (abs(depth[0]) < _LOG_LARGEST and abs(log_radius[0]) < _LOG_LARGEST):
+    growth = _log_growth(modulus, work, width, rise, n)
+    if not abs(growth[0]) < _LOG_LARGEST:
         return (0.0, 0.0), 0.0, 0.0, 0.0
-    a_c = extended.exp(log_radius)[0]
-    return extended.exp(depth), a_c, 2.0 * modulus * a_c * extended.exp(log_stretch)[0], 2.0 * modulus * a_c
+    a_c = extended.multiply((width, 0.0), extended.exp(growth))
+    length, power = _length(modulus, work)
+    if power % 2 != 0:
+        length, power = (2.0 * length[0], 2.0 * length[1]), power - 1
+    root = extended.sqrt(extended.multiply(length, a_c))
+    stretch = math.ldexp(root[0], power // 2), math.ldexp(root[1], power // 2)
+    e = extended.two_sum(2.0 * n, -1.0)
+    depth = extended.multiply(stretch, extended.divide(e, (2.0 * n, 0.0)))
+    return depth, a_c[0], 2.0 * modulus * a_c[0] * stretch[0], 2.0 * modulus * a_c[0]
 
 
-@njit
-def _distance(l: float, e: float) -> tuple[float, float, float]:
-    """X, dX/dl and d2X/dl2 at l; X is exact to a few roundings of l tau."""
-    tau, excess = math.exp(l), math.expm1(e * l)
-    slope = tau * (1.0 + e) * excess / e
-    return tau * excess / e - math.expm1(l), slope, slope + tau * (1.0 + e) * (excess + 1.0)
+@_vector
+def _distance(l: float, e: float, per_e: float) -> tuple[float, float, float]:
+    """X, dX/dl and (d2X/dl2)/(dX/dl) at l; X is exact to a few roundings of l tau."""
+    above, excess = _expm1(l), _expm1(e * l)
+    tau, q = 1.0 + above, excess * per_e
+    return tau * q - above, tau * (1.0 + e) * q, 1.0 + (excess + 1.0) / q
 
 
-@njit
+@_vector
+def _halley(value: float, slope: float, bend: float, x: float, ratio: float) -> float:
+    """The step to X = x by Halley's method: on X, or on ln X where ``ratio`` = ln(X/x) is not 0."""
+    residual = ratio * value if x > 1.0 else value - x
+    return 2.0 * residual / ((2.0 + ratio) * slope - residual * bend)
+
+
+@_vector
 def branch(x: float, e: float) -> float:
     """The l >= 0 with X(l) = x >= 0: the stable branch.
 
     The start has the right limits, l ~ sqrt(2 x/(1 + e)) and l ~ ln(x)/(1 + e); Halley's method, on X near the fold and
-    on ln X away from it, is at rounding error after one to three steps for e from 2e-4 to 400 and x up to 1e300.
+    on ln X away from it, is at rounding error after three steps for e from 2e-4 to 400 and x up to 1e300. After the
+    first ln(X/x) = 2 (X - x)/(X + x) is as near.
     """
-    if x <= 0.0:
-        return 0.0
     p = 1.0 + e
-    l = 2.0 / p * math.asinh(0.5 * p * math.sqrt(2.0 * x / p))
-    for _ in range(8):
-        value, slope, curve = _distance(l, e)
-        if x > 1.0:
-            residual = math.log(value / x)
-            curve = curve / value - (slope / value) ** 2
-            slope = slope / value
-        else:
-            residual = value - x
-        step = 2.0 * residual * slope / (2.0 * slope * slope - residual * curve)
-        l -= step
-        if abs(step) < 1e-6 * l:
-            break
-    return l
+    z = max(0.5 * p * math.sqrt(2.0 * x / p), _TINY)
+    l = 2.0 / p * _log1p(z + z / (1.0 / z + math.sqrt(1.0 + 1.0 / z / z)))  # asinh z
+    far, per_e = x > 1.0, 1.0 / e
+    value, slope, bend = _distance(l, e, per_e)
+    l -= _halley(value, slope, bend, x, _log(value / x) if far else 0.0)
+    for _ in range(2):
+        value, slope, bend = _distance(l, e, per_e)
+        l -= _halley(value, slope, bend, x, 2.0 * (value - x) / (value + x) if far else 0.0)
+    return l if x > 0.0 else 0.0
 
 
-@njit
+@_vector
 def state(x: float, n: float) -> float:
     """l at the distance x >= 0 to the fold."""
     return branch(x, 2.0 * n - 1.0)
@@ -111,26 +128,40 @@ def state_of_force(x: float, n: float) -> float:
 @njit
 def distance(l: float, n: float) -> float:
     """X(l)."""
-    return _distance(l, 2.0 * n - 1.0)[0]
+    e = 2.0 * n - 1.0
+    return _distance(l, e, 1.0 / e)[0]
+
+
+@_vector
+def answer(l: float, n: float) -> tuple[float, float, float]:
+    """a/a_c, P over 2 E* a_c dl(a_c), and k over 2 E* a_c.
+
+    k goes to -inf from the right at the fold l = 0, which the caller keeps away from.
+    """
+    tau, excess = 1.0 + _expm1(l), _expm1((2.0 * n - 1.0) * l)
+    square = tau * tau
+    return square, square * tau * ((excess + 1.0) / (2.0 * n + 2.0) - 1.0), square * (excess - 2.0) / excess
 
 
 @njit
 def radius(l: float, n: float) -> float:
     """a/a_c."""
-    return math.exp(2.0 * l)
+    a, _, _ = answer(l, n)
+    return a
 
 
 @njit
 def force(l: float, n: float) -> float:
     """P over 2 E* a_c dl(a_c)."""
-    return math.exp(3.0 * l) * (math.exp((2.0 * n - 1.0) * l) / (2.0 * n + 2.0) - 1.0)
+    _, push, _ = answer(l, n)
+    return push
 
 
 @njit
 def stiffness(l: float, n: float) -> float:
-    """k over 2 E* a_c; -inf from the right at the fold l = 0, which the caller keeps away from."""
-    excess = math.expm1((2.0 * n - 1.0) * l)
-    return math.exp(2.0 * l) * (excess - 2.0) / excess
+    """k over 2 E* a_c."""
+    _, _, k = answer(l, n)
+    return k
 
 
 @njit
@@ -143,9 +174,15 @@ def energy(l: float, n: float) -> float:
 
 @njit
 def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
-    """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable."""
-    log_radius, log_stretch = _log_fold(modulus, work, width, rise, n)
+    """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable.
+
+    All in logarithms: near n = 1/2 these can be ordinary where a_c is not.
+    """
     e = extended.two_sum(2.0 * n, -1.0)
+    length, power = _length(modulus, work)
+    log_length = extended.add(extended.log(length), extended.multiply((float(power), 0.0), extended.LOG_2))
+    log_radius = extended.add(extended.log((width, 0.0)), _log_growth(modulus, work, width, rise, n))
+    log_stretch = extended.multiply((0.5, 0.0), extended.add(log_length, log_radius))
     log_tau = extended.divide(extended.LOG_3, e)
     log_force = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * modulus, 0.0)))
     log_force = extended.add(log_force, extended.multiply((3.0, 0.0), log_tau))

@@ -54,6 +54,8 @@ class Law(NamedTuple):
     """(state, form) -> k over natural stiffness."""
     energy: Kernel
     """(state, form) -> elastic and surface energy over natural force times natural depth."""
+    answer: Callable[..., tuple[float, float, float]] | None = None
+    """(state, form) -> radius, force and stiffness, where they are found together."""
     mixed: Kernel | None = None
     """forms -> whether they differ; None where the law is curved. What follows is there only where it is."""
     passes: int = 0
@@ -64,8 +66,6 @@ class Law(NamedTuple):
     """(state, x, form) -> the state one step nearer, the step, and d(state)/dx."""
     arrived: Callable[..., bool] | None = None
     """(state, step, x, rung, form) -> whether the last step has come to the state on branch number ``rung``."""
-    answer: Callable[..., tuple[float, float, float]] | None = None
-    """(state, form) -> radius, force and stiffness."""
     state_on: Kernel | None = None
     """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None

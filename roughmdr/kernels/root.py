@@ -68,7 +68,7 @@ def arrived(t: float, step: float, x: float, rung: float, row: Floats) -> bool:
     """Whether a last ``nearer`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
     beyond = t - row[LAST]
     is_last = (rung == row[COUNT]) & (x > row[LAST_X])
-    return is_last & (beyond > _NEAR * t) & (abs(step) <= _FINE * beyond)
+    return bool(is_last & (beyond > _NEAR * t) & (abs(step) <= _FINE * beyond))
 
 
 PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)

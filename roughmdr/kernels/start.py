@@ -67,7 +67,7 @@ def extrapolated(node: int, interval: float, row: Floats) -> float:
     foot, at = row[LAST], NODE + 2 * node
     way, step = row[at - 2] - foot, row[at - 1] * interval
     power = step / way if way > 0.0 else 0.0
-    return row[at - 2] + step * (1.0 + power * (0.5 + power / 6.0))
+    return float(row[at - 2] + step * (1.0 + power * (0.5 + power / 6.0)))
 
 
 def find_first_node(row: Floats) -> None:
