@@ -53,7 +53,7 @@ def _power_of_two(whole: float) -> float:
 
 def expm1(x: float) -> float:
     """e^x - 1; inf beyond 709."""
-    bounded = max(min(x, _LARGEST), _LEAST)
+    bounded = _LARGEST if x > _LARGEST else (_LEAST if x < _LEAST else x)
     whole = bounded * _PER_LOG_2 + _WHOLE
     k = whole - _WHOLE
     r = (bounded - k * _LOG_2_HIGH) - k * _LOG_2_LOW
@@ -67,7 +67,7 @@ def expm1(x: float) -> float:
 
 def tanh(t: float) -> float:
     """The hyperbolic tangent of t >= 0."""
-    growth = expm1(2.0 * min(t, 300.0))
+    growth = expm1(600.0 if t > 300.0 else 2.0 * t)
     return growth / (growth + 2.0)
 
 

@@ -1,12 +1,11 @@
 """The study of one asperity: its numbers are those of the theory, whatever its pictures look like."""
 
-import importlib.util
 import math
 import tomllib
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
+import one_asperity as study
 import pytest
 import xarray as xr
 from scipy.optimize import brentq
@@ -19,22 +18,12 @@ from roughmdr.store import write
 PIPELINES = Path(__file__).parents[1] / "pipelines"
 
 
-def loaded() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("one_asperity", PIPELINES / "one_asperity.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-STUDY = loaded()
-E, W = STUDY.MODULUS, STUDY.WORK
+E, W = study.MODULUS, study.WORK
 
 
 @pytest.fixture(scope="module")
 def result() -> xr.Dataset:
-    return STUDY.one_asperity(points=41)
+    return study.one_asperity(points=41)
 
 
 def kappa(n: np.ndarray) -> np.ndarray:
@@ -46,12 +35,12 @@ def test_the_second_step_lifts_by_the_stretch_of_the_outermost_spring(result: xr
     a = float(lifted.stage_contact_radius)
     dl = math.sqrt(2 * math.pi * a * W / E)
     assert float(pressed.stage_contact_radius) == a
-    assert float(pressed.stage_indentation) == pytest.approx(0.5 * math.pi * STUDY.SLOPE * a, rel=1e-12)
-    assert float(lifted.stage_indentation) == pytest.approx(0.5 * math.pi * STUDY.SLOPE * a - dl, rel=1e-12)
-    assert float(pressed.stage_force) == pytest.approx(0.5 * math.pi * E * STUDY.SLOPE * a**2, rel=1e-12)
+    assert float(pressed.stage_indentation) == pytest.approx(0.5 * math.pi * study.SLOPE * a, rel=1e-12)
+    assert float(lifted.stage_indentation) == pytest.approx(0.5 * math.pi * study.SLOPE * a - dl, rel=1e-12)
+    assert float(pressed.stage_force) == pytest.approx(0.5 * math.pi * E * study.SLOPE * a**2, rel=1e-12)
     # In the row a lift at fixed radius costs its stiffness times the lift, 2 E* a dl(a).
     assert float(pressed.stage_force - lifted.stage_force) == pytest.approx(2 * E * a * dl, rel=1e-12)
-    inside = np.abs(result.spring) <= STUDY.INSIDE
+    inside = np.abs(result.spring) <= study.INSIDE
     np.testing.assert_allclose((lifted.spring_end - pressed.spring_end)[inside], dl, rtol=1e-12)
     assert (lifted.spring_end[~inside] == 0.0).all()
 
@@ -59,7 +48,7 @@ def test_the_second_step_lifts_by_the_stretch_of_the_outermost_spring(result: xr
 @pytest.mark.parametrize("stage", ["lifted", "pull-off"])
 def test_the_outermost_springs_hang_at_the_stretch_at_which_they_let_go(result: xr.Dataset, stage: str) -> None:
     row = result.sel(stage=stage)
-    for number in (-STUDY.INSIDE, STUDY.INSIDE):
+    for number in (-study.INSIDE, study.INSIDE):
         assert abs(float(row.spring_position.sel(spring=number))) == float(row.stage_contact_radius)
         assert float(row.spring_end.sel(spring=number)) == pytest.approx(float(row.stage_stretch), rel=1e-12)
     left = float(row.stage_indentation - (row.stage_depth - row.stage_stretch))
@@ -69,7 +58,7 @@ def test_the_outermost_springs_hang_at_the_stretch_at_which_they_let_go(result: 
 def test_the_cone_lets_go_at_a_quarter_of_its_first_contact(result: xr.Dataset) -> None:
     """t^2 = a/a0 with 2n t^(2n-1) = 1 under fixed grips, 3 under dead load."""
     a0, d0 = float(result.touch_radius), float(result.touch_depth)
-    assert a0 == pytest.approx(8 * W / (math.pi * E * STUDY.SLOPE**2), rel=1e-12)
+    assert a0 == pytest.approx(8 * W / (math.pi * E * study.SLOPE**2), rel=1e-12)
     cone = result.sel(shape="cone")
     np.testing.assert_allclose(cone.pull_off_radius / a0, [0.25, 2.25], rtol=1e-12)
     np.testing.assert_allclose(cone.pull_off_indentation / d0, [-0.25, 0.75], rtol=1e-12)
@@ -79,7 +68,7 @@ def test_the_pull_off_forces_of_theory(result: xr.Dataset) -> None:
     np.testing.assert_allclose(result.pull_off_force, result.known_force, rtol=1e-12)
     ratio = result.pull_off_force.sel(control="displacement") / result.pull_off_force.sel(control="force")
     np.testing.assert_allclose(ratio, [1 / 9, 5 / 9, 1.0], rtol=1e-12)
-    kendall = -math.sqrt(8 * math.pi * E * W * STUDY.FLAT**3)
+    kendall = -math.sqrt(8 * math.pi * E * W * study.FLAT**3)
     np.testing.assert_allclose(result.pull_off_force.sel(shape="flat punch"), kendall, rtol=1e-12)
 
 
@@ -87,7 +76,7 @@ def test_the_curves_meet_where_they_should(result: xr.Dataset) -> None:
     force, depth = result.curve_force, result.curve_indentation
     touch = force.sel(course="loading").isel(point=0)
     a0 = float(result.touch_radius)
-    jump = [-math.pi / 2 * E * STUDY.SLOPE * a0**2, -4 / 3 * math.pi * W * STUDY.RADIUS, 0.0]
+    jump = [-math.pi / 2 * E * study.SLOPE * a0**2, -4 / 3 * math.pi * W * study.RADIUS, 0.0]
     np.testing.assert_allclose(touch, jump, rtol=1e-12)
     for control in ("displacement", "force"):
         least = force.sel(course="unloading").min("point")
@@ -107,16 +96,16 @@ def test_the_curves_meet_where_they_should(result: xr.Dataset) -> None:
 
 def test_shapes_of_one_size_hold_as_the_scaling_says(result: xr.Dataset) -> None:
     n, ratio = result.exponent, result.relative_stretch
-    dead = -result.held_force.sel(control="force") / math.sqrt(8 * math.pi * E * W * STUDY.WIDTH**3)
-    grips = -result.held_force.sel(control="displacement") / math.sqrt(8 * math.pi * E * W * STUDY.WIDTH**3)
+    dead = -result.held_force.sel(control="force") / math.sqrt(8 * math.pi * E * W * study.WIDTH**3)
+    grips = -result.held_force.sel(control="displacement") / math.sqrt(8 * math.pi * E * W * study.WIDTH**3)
     edge = ratio / (n * kappa(n))  # dl/(n g) at the width
     free = (2 * n - 1) / (2 * n + 2) * (1.5 * edge) ** (3 / (2 * n - 1))
     pinned = 1 - n / (n + 1) * kappa(n) / ratio
     np.testing.assert_allclose(dead, xr.where(1.5 * edge > 1, pinned, free).transpose(*dead.dims), rtol=1e-11)
     expected = (2 * n + 1) / (2 * n + 2) * (0.5 * edge) ** (3 / (2 * n - 1))
     np.testing.assert_allclose(grips, expected.transpose(*grips.dims), rtol=1e-11)
-    assert (result.held_radius <= STUDY.WIDTH).all()
-    assert float(result.held_radius.max()) == STUDY.WIDTH
+    assert (result.held_radius <= study.WIDTH).all()
+    assert float(result.held_radius.max()) == study.WIDTH
 
 
 def test_the_worst_exponent(result: xr.Dataset) -> None:
@@ -143,7 +132,7 @@ def test_every_number_has_a_unit_and_a_name_and_goes_to_a_file(result: xr.Datase
     write(Labelled.of(result), tmp_path / "one_asperity.nc")
     with xr.open_dataset(tmp_path / "one_asperity.nc") as read:
         xr.testing.assert_equal(read.load(), result)
-    for draw in STUDY.PICTURES.values():
+    for draw in study.PICTURES.values():
         draw(result).savefig(tmp_path / "one.png", dpi=50)
         assert (tmp_path / "one.png").stat().st_size > 5000
 

@@ -145,7 +145,7 @@ class Curved(Shape):
         def remake(function: Callable[..., Any]) -> Callable[..., Any]:
             if function.__module__ == elementary.__name__:
                 return getattr(mp, function.__name__, function)
-            return rebuilt(function, {"NEAR": -1.0}, remake)
+            return rebuilt(function, {"math": mp, "NEAR": -1.0}, remake)
 
         lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
         with mp.workdps(40 + int(4.0 * lost)):

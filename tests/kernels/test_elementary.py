@@ -1,0 +1,83 @@
+"""The elementary functions against mpmath. Bounds are relative; the worst found over 4000 draws stands beside each."""
+
+import math
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from twins import Real, mp
+
+from roughmdr import elementary
+from roughmdr._jit import compiled
+from roughmdr.shapes import special
+
+UNIT = 2.0**-53
+
+
+def decades(lowest: float, highest: float) -> st.SearchStrategy[float]:
+    return st.builds(lambda d, m: m * 10.0**d, st.floats(lowest, highest), st.floats(1.0, 2.0))
+
+
+FUNCTIONS: dict[str, tuple[Callable[[float], float], Callable[[Real], Real], st.SearchStrategy[float], float]] = {
+    "atan": (elementary.atan, mp.atan, decades(-300.0, 300.0), 4.0),  # 2.1
+    "expm1": (elementary.expm1, mp.expm1, st.floats(-50.0, 709.0), 4.0),  # 1.5
+    "expm1 near 0": (elementary.expm1, mp.expm1, decades(-300.0, 0.0), 4.0),  # 1.5
+    "tanh": (elementary.tanh, mp.tanh, decades(-300.0, 300.0), 5.0),  # 2.7
+    "log": (elementary.log, mp.log, decades(-307.0, 307.0), 4.0),  # 1.6
+    "log near 1": (elementary.log, mp.log, decades(-15.0, -0.4).map(lambda d: 1.0 + d), 5.0),  # 2.6
+    "log1p": (elementary.log1p, mp.log1p, decades(-300.0, 300.0), 5.0),  # 2.8
+    "less atan": (special.less_atan, lambda q: q - mp.atan(q), decades(-50.0, 100.0), 60.0),  # 39 at 0.42
+    "less atan and cube": (
+        special.less_atan_and_cube,
+        lambda q: q**3 / 3 - (q - mp.atan(q)),
+        decades(-50.0, 100.0),
+        500.0,  # 370 at 0.42
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_to_a_few_roundings(name: str) -> None:
+    function, exact, numbers, roundings = FUNCTIONS[name]
+    kernel = compiled(function)
+
+    @given(numbers)
+    @settings(deadline=None, max_examples=200)
+    def check(x: float) -> None:
+        with mp.workdps(400):  # enough for what cancels
+            wanted = exact(mp.mpf(x))
+            assert abs(mp.mpf(kernel(x)) - wanted) <= roundings * UNIT * abs(wanted)
+
+    check()
+
+
+@given(decades(-50.0, 2.5))
+@settings(deadline=None, max_examples=200)
+def test_beyond_tanh(t: float) -> None:
+    with mp.workdps(400):
+        x = float(mp.tanh(mp.mpf(t)))
+        # The difference for the rounded tanh: where it is near 1 it has no more of t to give.
+        wanted = mp.atanh(mp.mpf(x)) - mp.mpf(x) if x < 0.4 else mp.mpf(t) - mp.mpf(x)
+        assert abs(mp.mpf(compiled(special.beyond_tanh)(t, x)) - wanted) <= 30.0 * UNIT * abs(wanted)  # 13
+
+
+@pytest.mark.parametrize("split", [0, 5])
+@given(decades(-300.0, 300.0))
+@settings(deadline=None, max_examples=200)
+def test_an_octave_and_the_place_in_it_are_the_number(split: int, y: float) -> None:
+    part, place = compiled(elementary.octave)(y, split)
+    whole, within = part >> split, part & ((1 << split) - 1)
+    assert 0.0 <= place < 1.0
+    assert math.ldexp(1.0 + (within + place) * 2.0**-split, whole) == y
+
+
+def test_the_ends() -> None:
+    assert compiled(elementary.expm1)(800.0) == math.inf
+    assert compiled(elementary.expm1)(-1e300) == -1.0
+    assert compiled(elementary.expm1)(0.0) == 0.0
+    assert compiled(elementary.atan)(0.0) == 0.0
+    assert compiled(elementary.tanh)(1e300) == 1.0
+    assert compiled(elementary.log)(1.0) == 0.0
+    for function in (elementary.atan, elementary.expm1, elementary.tanh):
+        assert math.isnan(compiled(function)(math.nan))
