@@ -1,6 +1,6 @@
 """What the kernels need to know of a profile: its MDR profile along the contact radius, in units of width and rise.
 
-The functions are plain Python on ``math`` alone, so that they can be compiled, or run with any number of digits.
+The functions are plain Python on ``elementary``, so that they can be compiled, or run with any number of digits.
 ``t`` is the parameter that the shape chooses to count its contact radius by, growing with it: where a contact radius
 needs more digits than a float has (a corner, the equator of a sphere) it is not the radius itself. ``form`` holds the
 numbers, beside width and rise, that tell profiles of one shape apart.
