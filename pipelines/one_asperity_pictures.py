@@ -21,7 +21,11 @@ def draw_two_steps(result: xr.Dataset) -> "Figure":
     from matplotlib.figure import Figure
 
     a0, d0 = float(result.touch_radius), float(result.touch_depth)
-    cone, inside, springs = rm.Cone(slope=result.attrs["slope"]), int(result.attrs["springs_inside"]), int(result.spring.max())
+    cone, inside, springs = (
+        rm.Cone(slope=result.attrs["slope"]),
+        int(result.attrs["springs_inside"]),
+        int(result.spring.max()),
+    )
     figure = Figure(figsize=(13, 4.6), layout="constrained")
     titles = (
         "1  pressed by g(a), without adhesion",

@@ -9,14 +9,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
 import xarray as xr
-from scipy.optimize import brentq
+from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
@@ -27,8 +26,6 @@ from roughmdr.labelled import Labelled
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-from roughmdr.shapes import SHAPES as KINDS
-from roughmdr.shapes import Shape
 from roughmdr.store import replacing, write
 
 MODULUS, WORK = 4e6, 0.05
@@ -66,18 +63,8 @@ def ensemble_of(count: int) -> Ensemble:
     return Ensemble.from_dataset(rm.generate({**SECTION, "count": count}, seed=1))
 
 
-def per_visit(action: Callable[[], int], repeats: int) -> float:
-    """The shortest wall time of ``action`` over the visits that it returns [ns]."""
-    times, visits = [], 1
-    for _ in range(repeats):
-        started = time.perf_counter()
-        visits = action()
-        times.append(time.perf_counter() - started)
-    return min(times) / visits * 1e9
-
-
-def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, rows: frozenset[int] = ROWS) -> float:
-    """Nanoseconds per visit of the package's sum, all included."""
+def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, rows: frozenset[int] = ROWS) -> Cost:
+    """What the package's sum costs, all included."""
     columns = ensemble.columns()
     law = choose(ensemble.shape, work, columns[2])
     memory = staircase(path) if work else no_memory(path)
@@ -87,101 +74,45 @@ def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, 
         return visits
 
     action()
-    return per_visit(action, repeats)
-
-
-def by_numpy(ensemble: Ensemble, path: np.ndarray, work: float) -> float:
-    """The same with vectors, as most would write it: loading only, JKR by six Newton steps on t^4 - t = delta/d0."""
-    height, radius = ensemble.height, ensemble.parameters["radius"]
-
-    def action() -> int:
-        visits = 0
-        for h in path:
-            touching = height > h
-            delta, R = height[touching] - h, radius[touching]
-            visits += delta.size
-            if work:
-                a0 = np.cbrt(2.0 * np.pi * work * R * R / MODULUS)
-                d0 = a0 * a0 / R
-                t = 1.0 + np.sqrt(np.sqrt(delta / d0))
-                for _ in range(6):
-                    t -= (t**4 - t - delta / d0) / (4.0 * t**3 - 1.0)
-                a = a0 * t * t
-                force = 2.0 * MODULUS * a0 * d0 * (2.0 / 3.0 * t**6 - t**3)
-                stiffness = 2.0 * MODULUS * a * (4.0 * t**3 - 3.0) / (4.0 * t**3 - 1.0)
-            else:
-                a = np.sqrt(R * delta)
-                force, stiffness = 4.0 / 3.0 * MODULUS * a * delta, 2.0 * MODULUS * a
-            np.array([force.sum(), np.pi * (a * a).sum(), delta.size, stiffness.sum()])
-        return visits
-
-    return per_visit(action, 1)
-
-
-def by_brentq(ensemble: Ensemble, path: np.ndarray, work: float) -> float:
-    """The same with a root finder for each contact: loading only, a few hundred asperities."""
-    height, radius = ensemble.height[:300], ensemble.parameters["radius"][:300]
-
-    def indentation(a: float, R: float, delta: float) -> float:
-        return float(a * a / R - np.sqrt(2.0 * np.pi * a * work / MODULUS) - delta)
-
-    def action() -> int:
-        visits, force = 0, 0.0
-        for h in path:
-            for z, R in zip(height[height > h], radius[height > h], strict=True):
-                fold = np.cbrt(np.pi * work * R * R / (8.0 * MODULUS))
-                a = brentq(indentation, fold, fold + 2.0 * np.sqrt(R * (z - h)) + 8.0 * fold, args=(R, z - h))
-                force += 4.0 * MODULUS * a**3 / (3.0 * R) - np.sqrt(8.0 * np.pi * work * MODULUS * a**3)
-                visits += 1
-        return visits
-
-    return per_visit(action, 1)
+    return cost_of(action, repeats)
 
 
 def by_shape(count: int, repeats: int) -> xr.Dataset:
-    """Nanoseconds per delta -> (P, a, k) with JKR, in and out, 200 steps each way; set-up; and brentq for the same."""
+    """What delta -> (P, a, k) costs with JKR, in and out, and what is found out about each asperity before.
+
+    The two are told apart by paths of few steps and of many.
+    """
     kept = {name: value for name, value in SECTION.items() if name != "radius"}
-    way_in = np.linspace(4e-6, -0.5e-6, 200)
-    both = np.concatenate([way_in, way_in[::-1]])
-    columns: dict[str, list[float]] = {"ours": [], "brentq": [], "set_up": []}
+    few, many = (np.linspace(4e-6, -0.5e-6, steps) for steps in (200, 2000))
+    rows = []
     for shape, parameters in SHAPES.items():
         section = {**kept, "count": count, "shape": shape, **parameters}
         ensemble = Ensemble.from_dataset(rm.generate(section, seed=1))
         started = time.perf_counter()
         ensemble.columns()  # for a table: its pieces
-        columns["set_up"].append(time.perf_counter() - started)
-        columns["ours"].append(by_the_sum(ensemble, both, WORK, repeats, STATE))
-        columns["brentq"].append(by_brentq_on(ensemble))
-    ns = {"units": "ns", "long_name": "time per asperity and step"}
+        profile = time.perf_counter() - started
+        short, long = (
+            by_the_sum(ensemble, np.concatenate([way_in, way_in[::-1]]), WORK, repeats, STATE) for way_in in (few, many)
+        )
+        each = (long.seconds - short.seconds) / (long.visits - short.visits)
+        before = (short.seconds - each * short.visits) / count
+        rows.append((each * 1e9, before * 1e9, short.each, profile, by_brentq_on(ensemble, MODULUS, WORK).each))
+    each_ns, before_ns, path_ns, profile_s, brentq_ns = np.array(rows).T
     return xr.Dataset(
         {
-            "state_time": ("shape", columns["ours"], ns),
-            "state_time_brentq": ("shape", columns["brentq"], ns),
-            "set_up_time": ("shape", columns["set_up"], {"units": "s", "long_name": "time of the set-up of a profile"}),
+            "state_time": ("shape", each_ns, ns("time per asperity and step")),
+            "asperity_time": ("shape", before_ns, ns("time per asperity, once")),
+            "path_time": ("shape", path_ns, ns("time per asperity and step over 200 steps in and out, all included")),
+            "state_time_brentq": ("shape", brentq_ns, ns("time per asperity and step")),
+            "profile_time": ("shape", profile_s, {"units": "s", "long_name": "time to set up the profiles"}),
         },
         coords={"shape": list(SHAPES)},
     )
 
 
-def by_brentq_on(ensemble: Ensemble) -> float:
-    """A root finder on delta = g(a) - dl(a), for a few hundred contacts of the first asperity."""
-    first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
-    shape: Shape = ensemble.fixed or KINDS[ensemble.shape](**first)
-    fold = float(rm.pull_off(shape, modulus=MODULUS, work=WORK).contact_radius)
-    g = shape.g
-
-    def indentation(a: float, delta: float) -> float:
-        return float(g(a) - np.sqrt(2.0 * np.pi * a * WORK / MODULUS) - delta)
-
-    top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
-
-    def action() -> int:
-        deltas = np.linspace(1e-8, 1e-6, 200)
-        for delta in deltas:
-            brentq(indentation, fold, top, args=(delta,), xtol=1e-15 * fold)
-        return int(deltas.size)
-
-    return per_visit(action, 1)
+def ns(name: str) -> dict[str, str]:
+    """The attributes of a time in nanoseconds."""
+    return {"units": "ns", "long_name": name}
 
 
 def over_workers(count: int, realizations: int, repeats: int) -> dict[int, float]:
@@ -247,18 +178,21 @@ def study(quick: bool) -> xr.Dataset:
     small = ensemble_of(count // 10)
     cost = np.array(
         [
-            [by_the_sum(ensemble, both, work, repeats), by_numpy(small, way_in, work), by_brentq(small, way_in, work)]
+            [
+                by_the_sum(ensemble, both, work, repeats).each,
+                by_numpy(small, way_in, MODULUS, work).each,
+                by_brentq(small, way_in, MODULUS, work).each,
+            ]
             for work in (0.0, WORK)
         ]
     )
     workers = over_workers(count // 10, 16, repeats)
     seconds, size = million(count)
-    ns = {"units": "ns", "long_name": "time per visited asperity and step"}
     return (
         by_shape(count // 50, repeats)
         .assign(
             {
-                "cost": (("contact", "method"), cost, ns),
+                "cost": (("contact", "method"), cost, ns("time per visited asperity and step")),
                 "batch_time": ("workers", list(workers.values()), {"units": "s", "long_name": "time of a batch"}),
                 "large_time": ((), seconds, {"units": "s", "long_name": "one ensemble, 200 steps in and out, JKR"}),
                 "large_memory": ((), size, {"units": "byte", "long_name": "peak memory above the ensemble"}),
@@ -272,18 +206,33 @@ def study(quick: bool) -> xr.Dataset:
 
 
 def draw(result: xr.Dataset, path: Path) -> None:
-    """Bars of time per visit, on a logarithmic axis."""
+    """Bars of time per visit, on logarithmic axes."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 3.6), layout="constrained")
-    ax = figure.subplots()
+    figure = Figure(figsize=(13, 4), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=[1, 1.8])
     for row, contact in enumerate(result["contact"].to_numpy()):
         values = result["cost"].sel(contact=contact).to_numpy()
-        bars = ax.bar(np.arange(3) + 0.4 * row, values, 0.38, label=contact)
-        ax.bar_label(bars, [f"{value:.3g}" for value in values], fontsize=8)
-    ax.set(yscale="log", ylabel="ns per asperity and step", title="Sum over asperities, one core")
-    ax.set_xticks(np.arange(3) + 0.2, ["roughmdr\n(in and out)", "NumPy\n(in only)", "scipy brentq\n(in only)"])
-    ax.legend(frameon=False)
+        bars = left.bar(np.arange(3) + 0.4 * row, values, 0.38, label=contact)
+        left.bar_label(bars, [f"{value:.3g}" for value in values], fontsize=8)
+    left.set(yscale="log", ylabel="ns per asperity and step", title="Paraboloids: the sum, one core")
+    left.set_xticks(np.arange(3) + 0.2, ["roughmdr\n(in and out)", "NumPy\n(in only)", "scipy brentq\n(in only)"])
+    left.legend(frameon=False)
+    places = np.arange(result.sizes["shape"])
+    for row, (name, label) in enumerate(
+        [
+            ("state_time", "one more step"),
+            ("path_time", "200 steps in and out, set-up included"),
+            ("state_time_brentq", "scipy brentq"),
+        ]
+    ):
+        values = result[name].to_numpy()
+        bars = right.bar(places + 0.28 * row, values, 0.26, label=label)
+        right.bar_label(bars, [f"{value:.3g}" for value in values], fontsize=7)
+    right.set(yscale="log", title="Other shapes with JKR: force, radius and stiffness")
+    right.set_xticks(places + 0.28, [str(shape).replace("_", "\n") for shape in result["shape"].to_numpy()])
+    right.set_ylim(top=50.0 * float(result["state_time_brentq"].max()))
+    right.legend(frameon=False, ncols=3, loc="upper left")
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=160, format="png")
 
@@ -298,7 +247,7 @@ def main(output: Path, quick: bool) -> None:
     write(Labelled.of(result), output / "scaling.nc")
     draw(result, output / "scaling.png")
     click.echo(result["cost"].to_pandas().round(2).to_string())
-    names = ["state_time", "state_time_brentq", "set_up_time"]
+    names = ["state_time", "asperity_time", "path_time", "state_time_brentq", "profile_time"]
     click.echo(result[names].to_dataframe()[names].round(3).to_string())
     one, two = result["batch_time"].to_numpy()
     click.echo(f"a batch: {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times")

@@ -90,9 +90,8 @@ def _loop(
 ) -> int:
     """Add all asperities to total[row, step] (zeros before) for the rows wanted; returns the number of visits.
 
-    ``reached`` (zeros before) becomes the contact radius of each where the flat is closest.
-
-    That is _NOT_REPRESENTABLE where a scale of an asperity within reach is so.
+    That is _NOT_REPRESENTABLE where a scale of an asperity within reach is so. ``reached`` (zeros before) becomes the
+    contact radius of each where the flat is closest.
     """
     visits = 0
     turn = np.argmin(separation)

@@ -117,7 +117,8 @@ def settle_curved(
     for i in range(count):
         rung = held[i] if _adhesive else 1.0
         if rung > 0.0 and not _arrived(state[i], terms[i], x[i], rung, _own(forms, i)):
-            state[i] = _state_on(x[i], rung, _own(forms, i))
+            t, step, _ = _nearer(state[i], x[i], _own(forms, i))
+            state[i] = t if _arrived(t, step, x[i], rung, _own(forms, i)) else _state_on(x[i], rung, _own(forms, i))
     conclude(count, forms, found)
 
 

@@ -79,10 +79,13 @@ class Law(NamedTuple):
         return {f"_{name}": value for name, value in self._asdict().items()}
 
 
-def _scalar(name: str, module: ModuleType, adhesive: bool, **others: Callable[..., Any]) -> Law:
-    """The law of a module's kernels; ``others`` are those that have another name there."""
+def _scalar(name: str, module: ModuleType, adhesive: bool, suffix: str = "", **others: Callable[..., Any]) -> Law:
+    """The law of a module's kernels, those that end in ``suffix`` before others, and of ``others``."""
     kernels: dict[str, Any] = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed}
-    kernels |= {kernel: getattr(module, kernel) for kernel in Law._fields if hasattr(module, kernel)}
+    for kernel in Law._fields:
+        function = getattr(module, kernel + suffix, None) or getattr(module, kernel, None)
+        if function is not None:
+            kernels[kernel] = function
     return Law(name, adhesive, curved=False, branched=False, **{**kernels, **others})
 
 
@@ -96,33 +99,9 @@ def _curved(shape: type[Curved], adhesive: bool) -> Law:
 
 
 _ELASTIC = {
-    "paraboloid": _scalar(
-        "elastic_paraboloid",
-        elastic,
-        False,
-        natural=elastic.natural_paraboloid,
-        state=elastic.state_paraboloid,
-        force=elastic.force_paraboloid,
-        energy=elastic.energy_paraboloid,
-    ),
-    "cone": _scalar(
-        "elastic_cone",
-        elastic,
-        False,
-        natural=elastic.natural_cone,
-        state=elastic.state_cone,
-        force=elastic.force_cone,
-        energy=elastic.energy_cone,
-    ),
-    "power_law": _scalar(
-        "elastic_power_law",
-        elastic,
-        False,
-        natural=elastic.natural_power,
-        state=elastic.state_power,
-        force=elastic.force_power,
-        energy=elastic.energy_power,
-    ),
+    "paraboloid": _scalar("elastic_paraboloid", elastic, False, "_paraboloid"),
+    "cone": _scalar("elastic_cone", elastic, False, "_cone"),
+    "power_law": _scalar("elastic_power_law", elastic, False, "_power"),
     "flat_punch": _scalar("elastic_flat_punch", flat, False, state_of_force=flat.state, radius_of_force=flat.radius),
 }
 _JKR = {
@@ -130,14 +109,7 @@ _JKR = {
     "cone": _scalar("jkr_cone", jkr_cone, True),
     "power_law": _scalar("jkr_power_law", jkr_power, True),
     "flat_punch": _scalar(
-        "jkr_flat_punch",
-        flat,
-        True,
-        state=flat.state_jkr,
-        state_of_force=flat.state_jkr,
-        radius_of_force=flat.radius,
-        distance=flat.distance_jkr,
-        energy=flat.energy_jkr,
+        "jkr_flat_punch", flat, True, "_jkr", state_of_force=flat.state_jkr, radius_of_force=flat.radius
     ),
 }
 

@@ -14,9 +14,7 @@ from roughmdr.shapes.base import Common, check_one, check_positive, radii
 from roughmdr.shapes.profile import Form, Profile
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
-
-
-_STEEPEST = 1000.0
+_STEEPEST = 1000.0  # exponent: of a steeper term floats hold radii within a factor of two only
 
 
 def _curve(t: float, form: Form) -> tuple[float, float, float, float]:

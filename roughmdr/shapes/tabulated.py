@@ -13,9 +13,9 @@ from roughmdr.shapes.base import Common, radii
 from roughmdr.shapes.profile import Profile
 
 _LEAST_POINTS = 3
-_CLOSEST = 1e-6
-_LARGEST = 1e100
-_ROUNDING = 4 * np.finfo(float).eps
+_CLOSEST = 1e-6  # of the last radius: nearer points leave no digits to the spline between them
+_LARGEST = 1e100  # the squares of radii and heights are floats
+_ROUNDING = 4 * np.finfo(float).eps  # of a chord's slope, from the rounding of the points
 _NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
 
 
