@@ -7,7 +7,7 @@ import hashlib
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeVar, cast
@@ -67,9 +67,11 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
 
 
 @cache
-def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a plain function and the plain functions of roughmdr that it calls."""
-    return njit(rebuilt(function, {}, compiled), small=True)
+def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[..., Any]:
+    """Compile a plain function and the plain functions of roughmdr that it calls; ``small`` as in ``njit``."""
+    copy = rebuilt(function, {}, partial(compiled, small=small))
+    copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
+    return njit(copy, small=small)
 
 
 def specialise(

@@ -116,10 +116,13 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         "_dip": compiled(profile.dip),
         "_kink": compiled(profile.kink),
         "_corner": profile.corner,
-        "octave": compiled(octave),
+        "octave": compiled(octave, small=True),
         "SPLIT": split,
         "NODE": first_node(split),
     }
+    # What a table looks up is no vector code.
+    vector = {} if shape.common else {"_curve": profile.curve, "_push": profile.push}
+    small = {name: compiled(part, small=True) for name, part in vector.items()}
     ends = (
         prepare,
         prepare_common,
@@ -136,7 +139,7 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         kernels[part.__name__] = known or specialise(
             cast(FunctionType, part),
             shape.name,
-            kernels,
+            {**kernels, **small} if part in _VECTOR_CODE else kernels,
             inline=part in (own, common),
             small=part in _VECTOR_CODE,
         )

@@ -22,7 +22,7 @@ from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
 _TINY = 1e-150
-_expm1, _log, _log1p = (compiled(part) for part in (expm1, log, log1p))
+_expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)
 
 

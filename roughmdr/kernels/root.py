@@ -15,6 +15,7 @@ stretched: Callable[..., tuple[float, float]]
 _NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
 _GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
 _FINE = 1e-8  # the square of a last step is below rounding
+_LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
 _PATIENCE = 6  # steps: the slope of a table can change so much that Newton's method goes in circles
 
 
@@ -57,11 +58,11 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
 
 
 def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
-    """One step of Newton's method on the last branch under fixed grips, as it comes: the new t, the step, and dt/dx."""
+    """One step of Newton's method on the last branch under fixed grips, not below its foot: t, the step, and dt/dx."""
     value, slope = stretched(t, row)
     lift = row[DEPTH] if row[TENSION] > 0.0 else 0.0
     step = ((value + lift) - x * row[DEPTH]) / slope
-    return t - step, step, row[DEPTH] / slope
+    return max(t - step, row[LAST] + _LEAST_WAY * (t - row[LAST])), step, row[DEPTH] / slope
 
 
 def arrived(t: float, step: float, x: float, rung: float, row: Floats) -> bool:
