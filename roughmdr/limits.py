@@ -28,7 +28,7 @@ class Extremes(NamedTuple):
         if not (radius > 0.0).any():
             return cls()
         with np.errstate(all="ignore"):
-            steepest = np.where((radius > 0.0) & np.isfinite(slopes), slopes, 0.0)
+            steepest = np.where((radius > 0.0) & ~np.isnan(slopes), slopes, 0.0)
             return cls(float(np.max(steepest)), float(np.max(np.where(np.isfinite(radius), radius / ends, 0.0))))
 
     def joined(self, other: "Extremes") -> "Extremes":

@@ -137,6 +137,44 @@ def test_the_sum_is_that_of_its_asperities(kind: str, work: float) -> None:
     assert float(law.numerical_error) < 1e-9
 
 
+def any_shape(kind: str, rng: np.random.Generator) -> Any:
+    size, slope, ratio = 10.0 ** rng.uniform((-9.0, -2.5, 0.0), (-3.0, 0.0, 2.0))
+    return {
+        "power_law": lambda: rm.PowerLaw(exponent=0.52 + ratio, width=size, rise=slope * size),
+        "sphere": lambda: rm.Sphere(size),
+        "truncated_cone": lambda: rm.TruncatedCone(slope, size),
+        "truncated_paraboloid": lambda: rm.TruncatedParaboloid(size / slope, size),
+        "rounded_cone": lambda: rm.RoundedCone(slope, size),
+        "capped_paraboloid": lambda: rm.CappedParaboloid(size / slope, ratio * size / slope, size),
+        "rounded_punch": lambda: rm.RoundedPunch(size, size / slope),
+    }[kind]()
+
+
+@pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
+@pytest.mark.parametrize("kind", ["power_law", *list(COLUMNS)[1:]])
+def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
+    """Few steps for many at once, against a search that is held: any shape, from the fold to 1e4 times its depth."""
+    rng = np.random.default_rng([53, *kind.encode()])
+    for _ in range(20):
+        shape, modulus = any_shape(kind, rng), 10.0 ** rng.uniform(5.0, 12.0)
+        work = tension(shape, 10.0 ** rng.uniform(-4.0, 2.5)) * modulus / E
+        off = rm.pull_off(shape, modulus=modulus, work=work)
+        depth, holds = (
+            -float(off.indentation),
+            -float(rm.pull_off(shape, modulus=modulus, work=work, control="force").force),
+        )
+        X = 10.0 ** np.sort(rng.uniform(-9.0, 4.0, 60))[::-1]
+        alone = rm.indent(shape, modulus=modulus, work=work, indentation=depth * (X - 1.0))
+        columns = {name: [value] for name, value in shape.parameters.items() if value is not None}
+        law = rm.load_separation(
+            ensemble([0.0], shape=kind, **columns), separation=depth * (1.0 - X), modulus=modulus, work=work
+        )
+        bound = 1e-12 + 3e-15 / np.sqrt(X)
+        assert (law.contact_count == 1.0).all()
+        assert (np.abs(law.force.values - alone.force) <= bound * np.maximum(holds, np.abs(alone.force))).all(), shape
+        assert (np.abs(np.sqrt(law.contact_area.values / alone.contact_area) - 1.0) <= bound).all(), shape
+
+
 PARAMETERS: dict[str, dict[str, Any]] = {
     **{kind: {name: sum(ends) / 2.0 for name, ends in columns.items()} for kind, columns in COLUMNS.items()},
     "power_series": {"terms": {"2": 1e4, "4": 1e14}},
@@ -176,6 +214,8 @@ def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
         deep = rm.indent(rm.Paraboloid(1e-6), modulus=1e9, indentation=[1e-9, 2e-6])
     assert "1.41 times" in deep.attrs["warnings"]
     assert "slopes of up to 1.41" in deep.attrs["warnings"]
+    with pytest.warns(rm.LimitWarning, match=r"slopes of up to inf"):  # a is R to the last digit
+        rm.indent(rm.Sphere(1e-5), modulus=1e6, work=0.01, indentation=0.3)
     table = rm.Tabulated([0.0, 1e-6, 2e-6], [0.0, 1e-8, 4e-8])
     with pytest.warns(rm.LimitWarning, match=r"times the radius where the profile"):
         rm.indent(table, modulus=1e9, indentation=1e-6)

@@ -56,7 +56,8 @@ class Sphere(Curved):
     @classmethod
     def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
         radius = parameters["radius"]
-        return np.asarray(r / np.sqrt((radius - r).clip(min=0.0) * (radius + r)))
+        with np.errstate(divide="ignore"):  # at the equator it is vertical
+            return np.asarray(r / np.sqrt((radius - r).clip(min=0.0) * (radius + r)))
 
     @classmethod
     def ends(cls, parameters: dict[str, Floats]) -> Floats:
