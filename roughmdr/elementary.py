@@ -1,6 +1,6 @@
 """Elementary functions without branches or calls, so that a loop over asperities becomes vector code.
 
-Plain Python on floats, to be compiled, and within two roundings of the function; with mpmath its own stand for them.
+Plain Python on floats, to be compiled, and within three roundings of the function; with mpmath its own stand for them.
 """
 
 import math
@@ -13,6 +13,7 @@ _WHOLE = 6755399441055744.0  # 1.5 2^52: added to a number it leaves the nearest
 _ODD = tuple(1.0 / (2 * k + 5) for k in range(20))
 _FACTORIAL = tuple(1.0 / math.factorial(k + 2) for k in range(12))
 _TAN_22_5, _TAN_67_5 = math.sqrt(2.0) - 1.0, math.sqrt(2.0) + 1.0
+_NORMAL = float(np.finfo(np.float64).tiny)
 _MANTISSA, _ONE = np.int64(0xFFFFFFFFFFFFF), np.int64(0x3FF0000000000000)
 _LARGEST, _LEAST = 709.0, -60.0  # e^709 is a float, e^-60 - 1 is -1
 
@@ -79,12 +80,13 @@ def octave(y: float, split: int) -> tuple[int, float]:
 
 
 def log(x: float) -> float:
-    """ln x for a normal x > 0."""
+    """ln x for a normal x > 0, NaN elsewhere."""
     k, beyond = octave(x, 0)
     high = beyond > math.sqrt(2.0) - 1.0
     m, power = (0.5 + 0.5 * beyond if high else 1.0 + beyond), float(k + 1 if high else k)
     z = (m - 1.0) / (m + 1.0)
-    return power * _LOG_2_HIGH + (2.0 * (z + z * z * z * third_series(z * z)) + power * _LOG_2_LOW)
+    series = 2.0 * (z + z * z * z * third_series(z * z))
+    return power * _LOG_2_HIGH + (series + power * _LOG_2_LOW) if _NORMAL <= x < math.inf else math.nan
 
 
 def log1p(y: float) -> float:

@@ -68,14 +68,14 @@ def settle(
 ) -> None:
     """Find the first ``count`` contacts with the flat at h, and in ``held`` whether each holds on (1) or not (0).
 
-    Without adhesion all of them do, and ``held`` is left alone.
+    Without adhesion all of them do, and ``held`` is left alone. What does not hold on has the state of first touch.
     """
     depth, per_depth, state = scales[DEPTH], scales[PER_DEPTH], found[STATE]
     if _adhesive:
         hold(count, z, begin, end, bottom, top, depth, held)
         for i in range(count):
             x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = _state(x if x > 0.0 else 0.0, _own(forms, i))
+            state[i] = _state(x if held[i] > 0.0 else 1.0, _own(forms, i))
     else:
         for i in range(count):
             state[i] = _state((z[i] - h) * per_depth[i], _own(forms, i))
@@ -109,6 +109,9 @@ def settle_curved(
             held[i] = _rung(x[i] if z[i] < h else max(x[i], 1.0), held[i], _own(forms, i))
     elif _adhesive:
         hold(count, z, begin, end, bottom, top, depth, held)
+    if _adhesive:
+        for i in range(count):
+            x[i] = x[i] if held[i] > 0.0 else 1.0
     for i in range(count):
         state[i] = _guess(x[i], _own(forms, i))
     for _ in range(_passes):

@@ -91,7 +91,8 @@ def radius_of_force(x: float, row: Floats) -> float:
     return radius(state(x, row), row)
 
 
-_SPLIT = 5  # parts of an octave where all asperities share one row
+_SPLIT = 5  # times an octave of the first guess is halved where all asperities share one row
+_PASSES, _PASSES_OF_SPLIT = 3, 1  # of Newton's method, after which nine in ten contacts have arrived
 _VECTOR_CODE = (
     balance.stretched,
     balance.answer,
@@ -119,6 +120,7 @@ def build(shape: type[Curved]) -> dict[str, Any]:
         "octave": compiled(octave, small=True),
         "SPLIT": split,
         "NODE": first_node(split),
+        "passes": _PASSES_OF_SPLIT if shape.common else _PASSES,
     }
     # What a table looks up is no vector code.
     vector = {} if shape.common else {"_curve": profile.curve, "_push": profile.push}

@@ -21,7 +21,7 @@ from roughmdr.elementary import expm1, log, log1p
 from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
-_TINY = 1e-150
+_TINY = 1e-150  # 1/z^2 of a lesser z is no float
 _expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)
 
@@ -49,9 +49,11 @@ def _log_growth(modulus: float, work: float, width: float, rise: float, n: float
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
     growth = _log_growth(modulus, work, width, rise, n)
-    if not abs(growth[0]) < _LOG_LARGEST:
+    if not (abs(growth[0]) < _LOG_LARGEST and abs(growth[0] + math.log(width)) < _LOG_LARGEST):
         return (0.0, 0.0), 0.0, 0.0, 0.0
-    a_c = extended.multiply((width, 0.0), extended.exp(growth))
+    size, size_power = math.frexp(width)
+    a_c = extended.multiply((size, 0.0), extended.exp(growth))
+    a_c = math.ldexp(a_c[0], size_power), math.ldexp(a_c[1], size_power)
     length, power = _length(modulus, work)
     if power % 2 != 0:
         length, power = (2.0 * length[0], 2.0 * length[1]), power - 1

@@ -57,7 +57,7 @@ class Law(NamedTuple):
     answer: Callable[..., tuple[float, float, float]] | None = None
     """(state, form) -> radius, force and stiffness, where they are found together."""
     mixed: Kernel | None = None
-    """forms -> whether they differ; None where the law is curved. What follows is there only where it is."""
+    """forms -> whether they differ; None where the law is curved. What follows is used only where it is."""
     passes: int = 0
     """How many steps of Newton's method bring most contacts to their state."""
     guess: Kernel | None = None
@@ -95,7 +95,7 @@ def _curved(shape: type[Curved], adhesive: bool) -> Law:
     kernels = {name: built[name] for name in Law._fields if name in built}
     name = f"{'jkr' if adhesive else 'elastic'}_{shape.name}"
     branched = adhesive and shape.branched()
-    return Law(name, adhesive, curved=True, branched=branched, passes=1 if shape.common else 3, **kernels)
+    return Law(name, adhesive, curved=True, branched=branched, **kernels)
 
 
 _ELASTIC = {

@@ -1,5 +1,4 @@
-"""Where Newton's method begins on the last branch: a cubic over octaves of y or parts of them, a power law
-outside.
+"""Where Newton's method begins on the last branch: cubics over octaves of y, or parts of them, and power laws outside.
 
 y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
 ``row``.

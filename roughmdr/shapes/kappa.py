@@ -6,6 +6,7 @@ from roughmdr import _extended as extended
 from roughmdr._extended import Pair
 from roughmdr._jit import njit
 
+_LEAST, _LARGEST = 1e-18, 1e18  # beyond them the limits are right to the last digit
 _EULER = (-1.0, 5.0, -61.0, 1385.0, -50521.0, 2702765.0, -199360981.0)  # E_2, E_4, ... E_14
 
 
@@ -33,6 +34,10 @@ def _gamma_step(z: float) -> Pair:
 @njit
 def precise_kappa(exponent: float) -> Pair:
     """kappa(n) = sqrt(pi)/2 n Gamma(n/2)/Gamma((n + 1)/2), the factor from f to g (H 26)."""
+    if exponent < _LEAST:
+        return extended.two_sum(1.0, exponent * math.log(2.0))  # and terms of its square
+    if exponent > _LARGEST:
+        return math.sqrt(0.5 * math.pi) * math.sqrt(exponent), 0.0  # and 1/4 of its inverse
     half = (0.5 * exponent, 0.0)
     return extended.divide(extended.multiply(extended.sqrt(extended.PI), half), _gamma_step(half[0]))
 

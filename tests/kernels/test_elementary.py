@@ -79,5 +79,7 @@ def test_the_ends() -> None:
     assert compiled(elementary.atan)(0.0) == 0.0
     assert compiled(elementary.tanh)(1e300) == 1.0
     assert compiled(elementary.log)(1.0) == 0.0
+    for x in (math.nan, 0.0, -1.0, math.inf, 5e-324):
+        assert math.isnan(compiled(elementary.log)(x))
     for function in (elementary.atan, elementary.expm1, elementary.tanh):
         assert math.isnan(compiled(function)(math.nan))
