@@ -1,5 +1,6 @@
 """What most would write instead of the package's sum: vectors, or a root finder for each contact. And a clock."""
 
+import math
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -8,8 +9,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 import roughmdr as rm
+from roughmdr._jit import compiled
 from roughmdr.ensemble import Ensemble
-from roughmdr.shapes import SHAPES, Shape
+from roughmdr.shapes import SHAPES, Curved, PowerLaw, Shape
+from roughmdr.shapes.kappa import kappa
 
 
 class Cost(NamedTuple):
@@ -82,15 +85,28 @@ def by_brentq(ensemble: Ensemble, path: np.ndarray, modulus: float, work: float)
     return cost_of(action, 1)
 
 
+def scalar_g(shape: Shape) -> Callable[[float], float]:
+    """g(a) of one shape, floats in, floats out: what a root finder calls fastest."""
+    width, rise, form = shape.stretched()
+    if isinstance(shape, PowerLaw):
+        factor, n = kappa(form) * rise, form
+        return lambda a: factor * (a / width) ** n
+    assert isinstance(shape, Curved)
+    curve, place = compiled(shape.profile.curve), compiled(shape.profile.place)
+    numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
+    return lambda a: rise * curve(place(a, width, numbers), numbers)[2]
+
+
 def by_brentq_on(ensemble: Ensemble, modulus: float, work: float) -> Cost:
     """A root finder on delta = g(a) - dl(a), for a few hundred contacts of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
     shape: Shape = ensemble.fixed or SHAPES[ensemble.shape](**first)
     fold = float(rm.pull_off(shape, modulus=modulus, work=work).contact_radius)
-    g = shape.g
+    g = scalar_g(shape)
+    g(fold)  # compiled before the clock runs
 
     def indentation(a: float, delta: float) -> float:
-        return float(g(a) - np.sqrt(2.0 * np.pi * a * work / modulus) - delta)
+        return g(a) - math.sqrt(2.0 * math.pi * a * work / modulus) - delta
 
     top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
 
