@@ -14,6 +14,7 @@ _KERNEL_ERROR = 1e-13  # of the force of a contact over its natural scale, as th
 
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
+_curved: bool
 _state: Callable[..., float]
 _force: Callable[..., float]
 _stiffness: Callable[..., float]
@@ -77,7 +78,8 @@ def bound_found(
     terms: Floats,
 ) -> float:
     """The same where P and k were found with the state: one by one."""
-    slope, push = 0.0, 0.0
+    slope = 0.0
+    push = 1.0 if _adhesive and not _curved else 0.0  # that of a shape with a width is no force of this contact
     for i in range(count):
         if not _adhesive or held[i] > 0.0:
             slope = max(slope, abs(found[STIFFNESS, i]))

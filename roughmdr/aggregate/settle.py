@@ -100,7 +100,8 @@ def settle_curved(
 
     Where a contact can be on one of several branches ``held``, from the step before, is its number.
     """
-    depth, per_depth, state, x = scales[DEPTH], scales[PER_DEPTH], found[STATE], found[RADIUS]
+    depth, per_depth, state = scales[DEPTH], scales[PER_DEPTH], found[STATE]
+    x = found[RADIUS]  # until a is found
     lift = 1.0 if _adhesive else 0.0
     for i in range(count):
         x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)

@@ -105,6 +105,11 @@ def test_an_overflow_is_refused_without_a_warning(kind: str, given: dict[str, fl
         rm.indent(KINDS[kind]((1.5, 1.6, 1e-6)), modulus=1e13, **given)
 
 
+def test_a_fold_that_is_no_float_is_refused() -> None:
+    with pytest.raises(rm.OutOfRange, match="representable"):
+        rm.indent(rm.PowerLaw(exponent=1.5, width=1e-200, rise=1e45), modulus=1e6, work=1.0, indentation=0.0)
+
+
 def test_a_contact_has_an_area() -> None:
     with pytest.raises(rm.OutOfRange, match=r"contact_area .* is not representable"):
         rm.indent(rm.Cone(slope=1.0), modulus=1e6, contact_radius=1e-163)

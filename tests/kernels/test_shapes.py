@@ -62,6 +62,13 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
                 assert error <= (exponent + 8.0) * sys.float_info.epsilon, name
 
 
+@pytest.mark.parametrize("n", [5e-324, 1e-18, 0.99e-18, 3e-5, 0.99e18, 1.01e18, 1.7e308])
+def test_kappa_of_any_exponent(n: float) -> None:
+    with mp.workdps(60):
+        exact = mp.sqrt(mp.pi * mp.mpf(n) / 2) if n > 1e15 else kappa(mp.mpf(n))
+    assert abs(mp.mpf(kappa_of_package(n)) / exact - 1) <= 5e-16
+
+
 def test_known_kappa() -> None:
     assert kappa_of_package(1.0) == pytest.approx(np.pi / 2, rel=4e-16)
     assert kappa_of_package(2.0) == pytest.approx(2.0, rel=4e-16)
