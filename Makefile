@@ -12,8 +12,8 @@ demo: setup
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png
 
 test: setup lint
-	$(BIN)/python -m pytest
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels tests/test_sum.py
+	$(BIN)/python -m pytest -n auto --dist loadfile
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto --dist loadfile tests/kernels tests/test_sum.py
 
 lint: setup
 	$(BIN)/ruff check .

@@ -18,6 +18,7 @@ import xarray as xr
 from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
+from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import no_memory, staircase
 from roughmdr.ensemble import Ensemble
@@ -66,11 +67,11 @@ def ensemble_of(count: int) -> Ensemble:
 def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, rows: frozenset[int] = ROWS) -> Cost:
     """What the package's sum costs, all included."""
     columns = ensemble.columns()
-    law = choose(ensemble.shape, work, columns[2])
+    law = choose(ensemble.shape, Adhesion(work), columns[2])
     memory = staircase(path) if work else no_memory(path)
 
     def action() -> int:
-        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, work, path, memory, set(rows))
+        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, Adhesion(work), path, memory, set(rows))
         return visits
 
     action()

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from roughmdr import theory
     from roughmdr.aggregate import load_separation
-    from roughmdr.asperity import indent, pull_off
+    from roughmdr.asperity import indent, pull_off, tabor
     from roughmdr.ensemble import generate
     from roughmdr.equilibria import equilibria
     from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
+    from roughmdr.fields import axis_stress, pressure, surface_displacement
     from roughmdr.runner import run
     from roughmdr.scene import Scene
     from roughmdr.shapes import (
@@ -51,13 +52,17 @@ _HOME = {
     "StoreError": "errors",
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
+    "axis_stress": "fields",
     "effective_modulus": "units",
     "equilibria": "equilibria",
     "generate": "ensemble",
     "indent": "asperity",
     "load_separation": "aggregate",
+    "pressure": "fields",
     "pull_off": "asperity",
     "run": "runner",
+    "surface_displacement": "fields",
+    "tabor": "asperity",
 }
 
 __all__ = [
@@ -80,13 +85,17 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "axis_stress",
     "effective_modulus",
     "equilibria",
     "generate",
     "indent",
     "load_separation",
+    "pressure",
     "pull_off",
     "run",
+    "surface_displacement",
+    "tabor",
     "theory",
 ]
 

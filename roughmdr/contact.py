@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from roughmdr.adhesion import Adhesion
 from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.elementwise import apply
@@ -23,7 +24,7 @@ class Contact(NamedTuple):
     law: Law
     shape: Shape
     modulus: float
-    work: float
+    adhesion: Adhesion
     form: Any
     depth: tuple[float, float]
     radius: float
@@ -31,17 +32,17 @@ class Contact(NamedTuple):
     stiffness: float
 
     @classmethod
-    def of(cls, shape: Shape, modulus: float, work: float) -> "Contact":
+    def of(cls, shape: Shape, modulus: float, adhesion: Adhesion) -> "Contact":
         """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         modulus = check_number("modulus", modulus, "Pa")
-        work = check_number("work", work, "J/m^2", zero=True)
         width, rise, form = shape.stretched()
-        law = choose(shape.name, work, np.array([form]))
+        law = choose(shape.name, adhesion, np.array([form]))
         with np.errstate(all="ignore"):  # what overflows is refused below
-            form = _prepared(law, shape, modulus, work, _FIXED_GRIPS)
-            contact = cls(law, shape, modulus, work, form, *law.natural(modulus, work, width, rise, form))
+            form = _prepared(law, shape, modulus, adhesion, _FIXED_GRIPS)
+            scales = law.natural(modulus, adhesion.work, width, rise, form)
+            contact = cls(law, shape, modulus, adhesion, form, *scales)
         contact._check(
             indentation=contact.depth[0],
             contact_radius=contact.radius,
@@ -54,23 +55,23 @@ class Contact(NamedTuple):
         """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
         width, rise, _ = self.shape.stretched()
         with np.errstate(all="ignore"):
-            form = _prepared(self.law, self.shape, self.modulus, self.work, _DEAD_LOAD)
-            force, radius = self.law.natural_force(self.modulus, self.work, width, rise, form)
+            form = _prepared(self.law, self.shape, self.modulus, self.adhesion, _DEAD_LOAD)
+            force, radius = self.law.natural_force(self.modulus, self.adhesion.work, width, rise, form)
         self._check(force=force[0], contact_radius=radius)
         return self._exact(force, form), radius, form
 
     def _exact(self, depth: tuple[float, float], form: Any) -> tuple[float, float]:
         """A natural depth with the digits that the fold needs."""
-        if not (self.law.adhesive and self.law.curved):
+        if not (self.law.adhesive and self.law.curved) or self.adhesion.cohesive:
             return depth
-        return exact_depth(cast(Curved, self.shape), self.modulus, self.work, form)
+        return exact_depth(cast(Curved, self.shape), self.modulus, self.adhesion.work, form)
 
     def _check(self, **scales: float) -> None:
         for quantity, scale in scales.items():
             if not np.finfo(float).tiny <= scale < math.inf:
                 raise OutOfRange(
                     f"the natural {quantity} is not representable (2e-308 to 2e308 in SI): "
-                    f"modulus {self.modulus:g} Pa, work {self.work:g} J/m^2, {self.shape}"
+                    f"modulus {self.modulus:g} Pa, {self.adhesion}, {self.shape}"
                 )
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
@@ -103,6 +104,7 @@ class Contact(NamedTuple):
             "contact_radius": self.radius * apply(law.radius, state, self.form),
             "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
         }
+        results |= self._cohesive(state)
         return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
 
     def at_force(self, force: Floats) -> Results:
@@ -120,6 +122,7 @@ class Contact(NamedTuple):
             "indentation": self._indentation(state),
             "contact_radius": radius_there * apply(law.radius_of_force, distance, form),
             "stiffness": self.stiffness * apply(law.stiffness, state, self.form),
+            **self._cohesive(state),
         }
         return {**{name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}, "force": force}
 
@@ -137,6 +140,10 @@ class Contact(NamedTuple):
                     f"contact_radius is {radius[on_the_flat][0]:g} m, on the flat of the {shape.name}, where contacts "
                     f"are not stable; it must be 0, or at least {self.radius:g} m"
                 )
+        if self.adhesion.cohesive and (radius == 0.0).any():
+            raise ShapeError(
+                "contact_radius is 0 m, which does not tell the state: the surfaces can attract each other"
+            )
         touching = radius > 0.0
         a = np.where(touching, radius, self.radius)
         state = apply(law.state_of_radius, a, self.radius, self.form)
@@ -148,8 +155,15 @@ class Contact(NamedTuple):
             "indentation": self._indentation(state),
             "force": self.force * apply(law.force, state, self.form),
             "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
+            **self._cohesive(state),
         }
         return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+
+    def _cohesive(self, state: Floats) -> Results:
+        """The cohesive radius [m] of each state, where adhesion has a range."""
+        if self.law.cohesive_radius is None:
+            return {}
+        return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.form)}
 
     def _indentation(self, state: Floats) -> Floats:
         """Indentation [m] of each state."""
@@ -159,6 +173,6 @@ class Contact(NamedTuple):
         return self.depth[0] * (distance - 1.0) - self.depth[1]
 
 
-def _prepared(law: Law, shape: Shape, modulus: float, work: float, control: float) -> Any:
+def _prepared(law: Law, shape: Shape, modulus: float, adhesion: Adhesion, control: float) -> Any:
     width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.stretched())
-    return law.own(law.prepare(modulus, work, width, rise, form, 0, 1, control), 0)
+    return law.own(law.prepare(modulus, adhesion.work, adhesion.strength, width, rise, form, 0, 1, control), 0)

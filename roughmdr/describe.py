@@ -41,6 +41,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         ("variables", ", ".join(held_variables(result))),
         *_pull_off(result),
         *_open_ends(result),
+        *_adhesion(result),
         *_several("warning", tuple(attrs.get("warnings", "").splitlines())),
         ("run time", _run_time(result, elapsed)),
         ("error", f"numerical error at most {_array(result, 'numerical_error').max():.1e} of the largest force"),
@@ -107,6 +108,17 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
         return "none: never tensile"
     some = "" if tensile == pull_off.curves else f", {tensile} of {pull_off.curves} tensile"
     return f"{mean:.4g} N{'' if math.isnan(error) else f' ± {error:.2g} N'} [{pull_off.change[cell]:.1g} N]{some}"
+
+
+def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Which laws of adhesion were taken, where the Tabor number is known."""
+    if "tabor_number" in result.variables:
+        law = result.variables["adhesion_law"]
+        names = law.attrs["flag_meanings"].split()
+        taken = ", ".join(f"{names[i]} in {int((law.values == i).sum())}" for i in np.unique(law.values))
+        tabor = _array(result, "tabor_number")
+        if np.isfinite(tabor).any():
+            yield "adhesion", f"{taken} of {law.values.size}; least Tabor number {np.nanmin(tabor):.3g}"
 
 
 def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:

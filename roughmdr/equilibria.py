@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roughmdr.adhesion import Adhesion
 from roughmdr.arguments import Floats, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
@@ -34,7 +35,7 @@ def equilibria(shape: Shape, *, modulus: float, work: float, indentation: float)
     delta = check_values("indentation", indentation)
     if delta.ndim != 0:
         raise OutOfRange(f"indentation has {delta.ndim} dimensions; equilibria takes one number")
-    contact = Contact.of(shape, modulus, work)
+    contact = Contact.of(shape, modulus, Adhesion.checked("jkr", work, None))
     with np.errstate(all="ignore"):  # what overflows is refused below
         found = [*_stable(contact, float(delta)), *_unstable(contact, float(delta))]
     columns = np.array(sorted(found), dtype=np.float64).reshape(-1, 3).T
@@ -66,7 +67,7 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
         for number in range(1, int(contact.form[COUNT]) + 1):
             # A way that begins on a branch ends there just where the branch reaches so far.
-            if law.rung(x, float(number), contact.form) == number:
+            if law.rung(x, float(number), True, contact.form) == number:
                 state = law.state_on(x, float(number), contact.form)
                 yield (
                     contact.radius * law.radius(state, contact.form),
@@ -88,7 +89,7 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
     edge = contact.radius if isinstance(shape, FlatPunch) or (isinstance(shape, Curved) and shape.profile.flat) else 0.0
 
     def stretch(a: float) -> float:
-        return math.sqrt(2.0 * math.pi * a) * math.sqrt(contact.work / modulus)
+        return math.sqrt(2.0 * math.pi * a) * math.sqrt(contact.adhesion.work / modulus)
 
     def excess(log_a: float, most: float) -> float:
         a = min(math.exp(log_a), most)

@@ -1,5 +1,6 @@
 """What a run will cost, before it runs: time and memory, from a short calibration on a small part of it."""
 
+import math
 import os
 import subprocess
 import sys
@@ -91,7 +92,7 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
         started = time.perf_counter()
         ensemble = section.ensemble(scene.seed, 0)
         made = time.perf_counter()
-        compute(ensemble, route, modulus=scene.modulus, work=scene.work, variables=plan.scene.output.variables)
+        compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=plan.scene.output.variables)
         return made - started, time.perf_counter() - made
 
     tracemalloc.start()
@@ -109,7 +110,11 @@ def _start_up(cell: Cell) -> float:
     asperities = {"source": "random", "shape": shape.name, "count": 1, "patch": 1.0, "height": 0.0}
     smallest = {
         "material": {"effective_modulus": 1.0},
-        "adhesion": {"model": "jkr", "work": cell.scene.work and 1.0},
+        "adhesion": {
+            "model": cell.scene.law.model,
+            "work": cell.scene.work and 1.0,
+            **({"strength": 1.0} if cell.scene.law.strength < math.inf else {}),
+        },
         "asperities": {**asperities, **shape.example()},
         "path": {"separation": [0.0]},
     }

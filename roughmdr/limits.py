@@ -1,5 +1,6 @@
 """Where a result leaves what its theory supposes: contacts beyond the end of a profile, slopes that are not small."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,9 @@ Linear elasticity supposes small strains, and a half-space: a contact small besi
 Johnson, Contact Mechanics, 1985, section 4.1). At a/R = 0.3 a sphere and its paraboloid part by 3 % in g.
 """
 
+TABOR = 3.0
+"""The Tabor number below which there is a warning."""
+
 
 class Extremes(NamedTuple):
     """The most that any contact comes to."""
@@ -21,6 +25,8 @@ class Extremes(NamedTuple):
     """f'(a) [1]."""
     extent: float = 0.0
     """a over the radius where the profile ends."""
+    tabor: float = math.inf
+    """The least Tabor number of contacts that are taken for JKR's."""
 
     @classmethod
     def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "Extremes":
@@ -33,7 +39,7 @@ class Extremes(NamedTuple):
 
     def joined(self, other: "Extremes") -> "Extremes":
         """The more extreme of both."""
-        return Extremes(max(self.slope, other.slope), max(self.extent, other.extent))
+        return Extremes(max(self.slope, other.slope), max(self.extent, other.extent), min(self.tabor, other.tabor))
 
     @property
     def warnings(self) -> list[str]:
@@ -49,4 +55,14 @@ class Extremes(NamedTuple):
                 f"contact radii of up to {self.extent:.3g} times the radius where the profile, or the body that it "
                 "stands for, ends: what lies beyond is extrapolated"
             )
-        return found
+        return [*found, *short_range(self.tabor)]
+
+
+def short_range(tabor: float) -> list[str]:
+    """What to say of JKR at a Tabor number."""
+    if tabor >= TABOR:
+        return []
+    return [
+        f"a Tabor number of {tabor:.3g}: adhesion reaches further than JKR supposes (warned of below {TABOR:g}); "
+        "adhesion = 'dugdale' has a range"
+    ]

@@ -138,8 +138,12 @@ def _seconds(cell: Cell) -> float:
 
 def prepare_all(plan: Plan) -> None:
     """Compile the sums that a plan needs, once, before several threads or a clock need them."""
-    for shape, adhesive in {(cell.scene.asperities.shape, cell.scene.work > 0.0) for cell in plan.cells}:
-        prepare(shape, adhesive=adhesive)
+    needed = {}
+    for cell in plan.cells:
+        law = cell.scene.law
+        needed[cell.scene.asperities.shape, law.work > 0.0, law.candidates, law.known] = law
+    for (shape, *_), law in needed.items():
+        prepare(shape, law)
 
 
 def left_out(scene: Scene) -> list[str]:
@@ -154,6 +158,10 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "adhesion: the scene has no [adhesion]"
     elif scene.work == 0.0:
         yield "adhesion: adhesion.work is 0"
+    if scene.law.model == "auto":
+        yield f"range of the adhesion: where JKR is off by less than {scene.law.error:g}, see tabor_number"
+    elif scene.work > 0.0 and not scene.law.cohesive:
+        yield "range of the adhesion: adhesion.model is 'jkr'"
     if scene.work == 0.0:
         yield "hysteresis: without adhesion a contact has no memory"
     if scene.asperities.drawn:

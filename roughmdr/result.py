@@ -17,15 +17,29 @@ _REFERENCES = (
 DONE, FAILED, NOT_RUN = 0, 1, 2
 
 
+LAWS = ("none", "jkr", "dugdale")
+
+
 def assemble(
-    plan: Plan, variables: dict[str, Floats], run_time: Floats, error: Floats, extremes: Extremes, command: str
+    plan: Plan,
+    variables: dict[str, Floats],
+    extremes: Extremes,
+    command: str,
+    *,
+    run_time: Floats,
+    numerical_error: Floats,
+    tabor: Floats,
+    adhesion_law: Floats,
 ) -> Labelled:
-    """The result, from ``variables`` [run, step] in SI, run times [s] and numerical errors [run]."""
+    """The result, from ``variables`` [run, step] in SI, and over the runs: run times [s], numerical errors, the least
+    Tabor numbers and the laws of adhesion that were taken.
+    """
     scene = plan.scene
     swept, realization = tuple(plan.sizes), ("realization",)
     shape = (*plan.sizes.values(), scene.batch.realizations)
     curves = {name: values.reshape(*shape, -1) for name, values in variables.items()}
-    run_time, error = run_time.reshape(shape), error.reshape(shape)
+    run_time, error = run_time.reshape(shape), numerical_error.reshape(shape)
+    tabor, laws = np.where(np.isfinite(tabor), tabor, np.nan).reshape(shape), adhesion_law.reshape(shape)
     coordinates = plan.coordinates()
     data = {}
     if scene.output.keep == "curves":
@@ -38,11 +52,16 @@ def assemble(
             data |= summarise(name, (*dims, "step"), curves.pop(name), snaps)
         data["realization_count"] = Array(dims, np.full(shape[:-1], count), RUN["realization_count"].attrs)
         run_time, error = run_time.sum(axis=-1), error.max(axis=-1)
+        tabor, laws = tabor.min(axis=-1), laws.max(axis=-1)
     status = np.full(run_time.shape, DONE, dtype=np.int8)
     flags = {"flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8), "flag_meanings": "done failed not_run"}
     data["run_time"] = Array(dims, run_time, RUN["run_time"].attrs)
     data["numerical_error"] = Array(dims, error, RUN["numerical_error"].attrs)
     data["status"] = Array(dims, status, {"long_name": RUN["status"].long_name, **flags})
+    if any(cell.scene.law.known for cell in plan.cells):
+        flags = {"flag_values": np.arange(len(LAWS), dtype=np.int8), "flag_meanings": " ".join(LAWS)}
+        data["tabor_number"] = Array(dims, tabor, RUN["tabor_number"].attrs)
+        data["adhesion_law"] = Array(dims, laws.astype(np.int8), {"long_name": RUN["adhesion_law"].long_name, **flags})
     attrs = {"references": _REFERENCES, "seed": scene.seed, "scene": scene.toml, "left_out": "\n".join(plan.left_out)}
     if extremes.warnings:
         attrs["warnings"] = "\n".join(extremes.warnings)

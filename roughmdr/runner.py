@@ -15,7 +15,7 @@ from roughmdr.labelled import Labelled
 from roughmdr.limits import Extremes
 from roughmdr.plan import Plan, make_plan, prepare_all
 from roughmdr.progress import Advance, progress
-from roughmdr.result import assemble
+from roughmdr.result import LAWS, assemble
 from roughmdr.scene import Scene, read
 from roughmdr.store import check_writable, write
 
@@ -29,6 +29,9 @@ class Shard(NamedTuple):
     variables: dict[str, Floats]
     run_time: Floats
     numerical_error: Floats
+    tabor: Floats
+    adhesion_law: Floats
+    """Numbers as in ``result.LAWS``."""
     extremes: list[Extremes]
 
 
@@ -68,10 +71,12 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
     variables = {
         name: np.concatenate([shard.variables.pop(name) for shard in shards]) for name in plan.scene.output.variables
     }
-    run_time = np.concatenate([shard.run_time for shard in shards])
-    numerical_error = np.concatenate([shard.numerical_error for shard in shards])
+    beside = {
+        name: np.concatenate([getattr(shard, name) for shard in shards])
+        for name in ("run_time", "numerical_error", "tabor", "adhesion_law")
+    }
     extremes = reduce(Extremes.joined, (each for shard in shards for each in shard.extremes))
-    result = assemble(plan, variables, run_time, numerical_error, extremes, command)
+    result = assemble(plan, variables, extremes, command, **beside)
     if target is not None:
         write(result, target)
     return result
@@ -106,8 +111,7 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
     names, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
     shard = Shard(
         {name: np.empty((len(runs), steps)) for name in names},
-        np.empty(len(runs)),
-        np.empty(len(runs)),
+        *(np.empty(len(runs)) for _ in range(4)),
         [],
     )
     for row, number in enumerate(runs):
@@ -115,12 +119,14 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
         started = time.perf_counter()
         ensemble = scene.asperities.ensemble(scene.seed, realization)
         try:
-            result = compute(ensemble, route, modulus=scene.modulus, work=scene.work, variables=names)
+            result = compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=names)
         except RoughmdrError as error:
             raise type(error)(f"{plan.name_of(number)}: {error}") from None
         for name in names:
             shard.variables[name][row] = result.variables[name]
         shard.numerical_error[row] = result.numerical_error
+        shard.tabor[row] = result.tabor
+        shard.adhesion_law[row] = LAWS.index(result.model if scene.work > 0.0 else "none")
         shard.extremes.append(result.extremes)
         shard.run_time[row] = time.perf_counter() - started
     return shard

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.adhesion import Adhesion
 from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
@@ -23,7 +24,7 @@ def greenwood_williamson(*, separation: ArrayLike, modulus: float, radius: float
     (1966) 300. modulus E* [Pa], radius R [m], std of the heights [m], density eta of summits [1/m2].
     OutOfRange where an argument is not above 0. Accurate to about 1e-13 of itself to six standard deviations.
     """
-    contact = Contact.of(Paraboloid(radius), modulus, 0.0)
+    contact = Contact.of(Paraboloid(radius), modulus, Adhesion())
     return _pressure(contact, separation, std, density, lambda h: h)
 
 
@@ -44,7 +45,7 @@ def fuller_tabor(
     reached and have not let go, z >= max(turning, h + delta_c). work [J/m^2]; the others as for
     ``greenwood_williamson``. OutOfRange where an argument is not above 0, or a separation lies below ``turning``.
     """
-    contact = Contact.of(Paraboloid(radius), modulus, check_number("work", work, "J/m^2"))
+    contact = Contact.of(Paraboloid(radius), modulus, Adhesion(check_number("work", work, "J/m^2")))
     if turning is None:
         return _pressure(contact, separation, std, density, lambda h: h)
     lowest = float(check_values("turning", turning))

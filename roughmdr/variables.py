@@ -40,9 +40,23 @@ ASPERITY = _table(
     ("force", "N", "normal force, compression positive"),
     ("contact_radius", "m", "radius of the contact"),
     ("contact_area", "m2", "area of the contact"),
+    ("cohesive_radius", "m", "radius up to which the surfaces attract each other"),
     ("stiffness", "N m-1", "slope dP/d(delta) of the branch"),
 )
 """Variables of a single asperity."""
+
+FIELDS = _table(
+    ("r", "m", "distance from the axis of the asperity"),
+    ("z", "m", "depth below the surface of the half-space"),
+    ("pressure", "Pa", "normal pressure on the surface, compression positive"),
+    ("surface_displacement", "m", "normal displacement of the surface, positive into the half-space"),
+    ("sigma_zz", "Pa", "normal stress along the axis, tension positive"),
+    ("sigma_rr", "Pa", "normal stress across the axis, tension positive"),
+    ("shear", "Pa", "largest shear stress at a point of the axis, half of |sigma_zz - sigma_rr|"),
+    ("largest_shear", "Pa", "largest shear stress on the axis"),
+    ("largest_shear_depth", "m", "depth at which the shear stress on the axis is largest"),
+)
+"""Variables of the half-space under a single asperity."""
 
 COORDINATES = _table(
     ("separation", "m", "rigid flat above the datum plane"),
@@ -57,5 +71,7 @@ RUN = _table(
     ("realization_count", "1", "number of realizations that the statistics are of"),
     ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
     ("status", "1", "what became of the realization"),
+    ("tabor_number", "1", "least Tabor number of the asperities"),
+    ("adhesion_law", "1", "law of adhesion that was taken"),
 )
 """Variables that stand in every result."""

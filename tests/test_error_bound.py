@@ -9,6 +9,7 @@ from scenes import ensemble
 from twins import Twin, mp
 
 import roughmdr as rm
+from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import no_memory
 from roughmdr.kernels.laws import choose
@@ -71,7 +72,7 @@ def test_blocks_are_added_without_loss() -> None:
     columns = tuple(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0))
     h = np.array([0.0])
     total, _, _ = loop.add_asperities(
-        choose("paraboloid", 0.0, columns[2]), z, columns, E, 0.0, h, no_memory(h), {totals.FORCE}
+        choose("paraboloid", Adhesion(), columns[2]), z, columns, E, Adhesion(), h, no_memory(h), {totals.FORCE}
     )
     terms = 4.0 / 3.0 * E * math.sqrt(5e-5) * z**1.5
     assert total[totals.FORCE, 0] == pytest.approx(math.fsum(terms), rel=4e-16)

@@ -27,6 +27,7 @@ LINES = (
         "_extended",
         "elementary",
         "limits",
+        "adhesion",
     ),
     ("shapes",),
     ("kernels",),

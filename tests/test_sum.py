@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from scenes import ensemble
 
 import roughmdr as rm
+from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.law import Route, compute
 from roughmdr.ensemble import Ensemble
@@ -151,7 +152,7 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
     way_in = np.linspace(4e-6, 0.0, 50)
     route = Route.along(way_in, unload=True, adhesive=work > 0.0)
     asperities = Ensemble.from_dataset(data)
-    result = compute(asperities, route, modulus=E, work=work, variables=["force", "contact_count"])
+    result = compute(asperities, route, modulus=E, adhesion=Adhesion(work), variables=["force", "contact_count"])
     z = asperities.height
     needed = sum(int((z > h).sum()) for h in way_in) + sum(int(((z > h - fold) & (z >= 0.0)).sum()) for h in way_in)
     assert result.visits == needed
@@ -163,8 +164,8 @@ def test_only_the_asked_totals_are_computed() -> None:
     asperities = Ensemble.from_dataset(ensemble([1e-6, 2e-6], radius=5e-5))
     route = Route.along(np.array([0.0]), unload=False, adhesive=True)
     columns = asperities.columns()
-    law = choose("paraboloid", W, columns[2])
-    total, _, _ = loop.add_asperities(law, asperities.height, columns, E, W, *route, rows={totals.RADIUS})
+    law = choose("paraboloid", Adhesion(W), columns[2])
+    total, _, _ = loop.add_asperities(law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS})
     assert total[totals.RADIUS, 0] > 0.0
     others = [row for row in range(totals.ROWS) if row != totals.RADIUS]
     assert not total[others].any()

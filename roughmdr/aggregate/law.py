@@ -1,18 +1,21 @@
 """The load-separation law of an ensemble: which totals the asked variables need, and the face in xarray."""
 
+import math
 import warnings
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.adhesion import Adhesion, Model
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.route import Route
 from roughmdr.aggregate.staircase import no_memory
+from roughmdr.aggregate.tabor import range_of
 from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import LimitWarning, OutOfRange, SceneError
+from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.laws import choose
 from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
@@ -47,12 +50,16 @@ class LoadSeparation(NamedTuple):
     """The most that any contact comes to."""
     visits: int
     """How often an asperity was visited."""
+    tabor: float
+    """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
+    model: str
+    """The law of adhesion that was taken."""
 
 
 def compute(
-    ensemble: Ensemble, route: Route, *, modulus: float, work: float, variables: Iterable[str]
+    ensemble: Ensemble, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
-    """The law of ``ensemble`` along a route; E* [Pa], work [J/m^2].
+    """The law of ``ensemble`` along a route; E* [Pa].
 
     SceneError where a variable needs a nominal area and there is none, OutOfRange where the contact of an asperity is
     not representable.
@@ -61,14 +68,15 @@ def compute(
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
         raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
     columns = ensemble.columns()
-    law = choose(ensemble.shape, work, columns[2])
-
+    reach = range_of(ensemble.shape, ensemble.height, columns, modulus, adhesion)
+    adhesion = adhesion.settled(reach.jkr_error)
+    law = choose(ensemble.shape, adhesion, columns[2])
     total, reached, visits = loop.add_asperities(
         law,
         ensemble.height,
         columns,
         modulus,
-        work,
+        adhesion,
         route.separation,
         route.memory,
         {totals.ERROR, totals.FORCE, *(_ROW[name] for name in names)},
@@ -82,17 +90,22 @@ def compute(
     largest = float(np.max(np.abs(total[totals.FORCE])))
     error = float(np.max(total[totals.ERROR]))
     relative = error / largest if largest > 0.0 else 0.0
-    return LoadSeparation(results, relative, ensemble.extremes(reached), visits)
+    extremes = ensemble.extremes(reached)._replace(tabor=reach.tabor if adhesion.model == "jkr" else math.inf)
+    return LoadSeparation(results, relative, extremes, visits, reach.tabor, adhesion.model)
 
 
-def prepare(shape: str, *, adhesive: bool) -> None:
-    """Compile the sum for a shape with or without adhesion, once, before several threads or a clock need it."""
+def prepare(shape: str, adhesion: Adhesion) -> None:
+    """Compile the sum for a shape and a law of adhesion, once, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in example.stretched())
     columns = (width, rise, form)
-    law = choose(shape, float(adhesive), form)
-    loop.add_asperities(law, np.zeros(1), columns, 1.0, 1.0, np.zeros(1), no_memory(np.zeros(1)), set())
+    for model in adhesion.candidates:
+        one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
+        law = choose(shape, one, form)
+        loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+    if adhesion.known:
+        range_of(shape, np.zeros(1), columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
 
 def load_separation(
@@ -101,7 +114,8 @@ def load_separation(
     separation: ArrayLike,
     modulus: float,
     work: float = 0.0,
-    adhesion: Literal["jkr"] = "jkr",
+    adhesion: Model = "jkr",
+    strength: float | None = None,
     unload: bool = False,
     variables: Iterable[str] = DEFAULT,
 ) -> "xr.Dataset":
@@ -109,8 +123,9 @@ def load_separation(
 
     ensemble is a Dataset over ``asperity`` as ``generate`` returns it; separation [m] the path of the flat, coming from
     infinity; with ``unload`` the same separations follow reversed, the turning point repeated. modulus is E* [Pa], work
-    the work of adhesion [J/m^2], 0 for none. The result lies over ``step`` with the coordinates separation [m] and
-    branch; every variable in SI, ``numerical_error`` beside them.
+    the work of adhesion [J/m^2], 0 for none. Adhesion "dugdale" has a range and needs the stress ``strength`` [Pa] of
+    the attraction; "jkr" with a strength warns where it is not right. The result lies over ``step`` with the
+    coordinates separation [m] and branch; every variable in SI, ``numerical_error`` beside them.
 
     SceneError where the ensemble or a name is wrong, OutOfRange where a number is.
     """
@@ -118,10 +133,11 @@ def load_separation(
 
     if not isinstance(ensemble, xr.Dataset):
         raise SceneError(f"ensemble is a {type(ensemble).__name__}; it must be a Dataset as generate returns it")
-    if adhesion != "jkr":
-        raise SceneError(f"adhesion is {adhesion!r}; it must be 'jkr'")
     modulus = check_number("modulus", modulus, "Pa")
-    work = check_number("work", work, "J/m^2", zero=True)
+    try:
+        asked = Adhesion.checked(adhesion, work, strength)
+    except RoughmdrError as error:
+        raise error if isinstance(error, OutOfRange) else SceneError(str(error)) from None
     path = np.atleast_1d(check_values("separation", separation))
     if path.size == 0:
         raise OutOfRange("separation is empty; it must hold at least one number")
@@ -129,8 +145,8 @@ def load_separation(
     for name in names:
         if name not in LAW:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(LAW)}")
-    route = Route.along(path, unload=unload, adhesive=work > 0.0)
-    result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, work=work, variables=names)
+    route = Route.along(path, unload=unload, adhesive=asked.work > 0.0)
+    result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, adhesion=asked, variables=names)
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)

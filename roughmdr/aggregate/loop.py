@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr._jit import njit, specialise
+from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate.block import BLOCK, accumulate, run_on
 from roughmdr.aggregate.bound import bound, bound_found, worst
 from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
@@ -79,6 +80,8 @@ def _loop(
     form: Floats,
     modulus: float,
     work: float,
+    strength: float,
+    reach: float,
     separation: Floats,
     first: NDArray[np.int64],
     bottom: Floats,
@@ -90,12 +93,13 @@ def _loop(
 ) -> int:
     """Add all asperities to total[row, step] (zeros before) for the rows wanted; returns the number of visits.
 
-    That is _NOT_REPRESENTABLE where a scale of an asperity within reach is so. ``reached`` (zeros before) becomes the
-    contact radius of each where the flat is closest.
+    That is _NOT_REPRESENTABLE where a scale of an asperity within reach is so. ``bottom`` is by ``reach`` lower than
+    the flat was: from so far away the surfaces attract each other. ``reached`` (zeros before) becomes the contact
+    radius of each where the flat is closest.
     """
     visits = 0
     turn = np.argmin(separation)
-    closest = separation[turn]
+    closest = separation[turn] - reach
     scales, greatest = np.empty((SCALES, BLOCK)), np.empty(SCALES)
     held, held_before, found, terms = np.empty(BLOCK), np.empty(BLOCK), np.empty((FOUND, BLOCK)), np.empty(BLOCK)
     energetic = wanted[ENERGY] or wanted[DISSIPATED]
@@ -104,7 +108,7 @@ def _loop(
         z = height[block]
         if z[0] < closest:
             break
-        n = _prepare(modulus, work, width, rise, form, start, start + z.size, 0.0)
+        n = _prepare(modulus, work, strength, width, rise, form, start, start + z.size, 0.0)
         if not measure(width[block], rise[block], n, modulus, work, energetic, scales, greatest, terms):
             return _NOT_REPRESENTABLE
         count_before = 0
@@ -116,7 +120,7 @@ def _loop(
             count = _within_reach(z, _lowest(h, begin, end, bottom, top, greatest[DEPTH]))
             if count > 0:
                 visits += count
-                settle(count, z, n, h, begin, end, bottom, top, scales, held, found, terms)
+                settle(count, z, n, h, reach, begin, end, bottom, top, scales, held, found, terms)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or top[begin] > bottom[begin]
                     error = bound(count, z, n, h, retracted, greatest, held, found, terms)
@@ -168,7 +172,7 @@ def add_asperities(
     height: Floats,
     columns: tuple[Floats, Floats, Floats],
     modulus: float,
-    work: float,
+    adhesion: Adhesion,
     separation: Floats,
     memory: Staircase,
     rows: set[int],
@@ -183,10 +187,12 @@ def add_asperities(
     wanted[list(rows)] = True
     total, carried = np.zeros((ROWS, separation.size)), np.zeros((ROWS, separation.size))
     reached = np.zeros_like(height)
-    visits = _compiled(law)(height, *columns, modulus, work, separation, *memory, wanted, total, carried, reached)
+    how = modulus, adhesion.work, adhesion.strength, adhesion.reach
+    way = separation, memory.first, memory.bottom - adhesion.reach, memory.top
+    visits = _compiled(law)(height, *columns, *how, *way, wanted, total, carried, reached)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {law.name} with modulus {modulus:g} Pa, "
-            f"work {work:g} J/m^2, separation down to {separation.min():g} m"
+            f"{adhesion}, separation down to {separation.min():g} m"
         )
     return total, reached, visits

@@ -57,6 +57,7 @@ def settle(
     z: Floats,
     forms: Floats,
     h: float,
+    reach: float,
     begin: int,
     end: int,
     bottom: Floats,
@@ -87,6 +88,7 @@ def settle_curved(
     z: Floats,
     forms: Floats,
     h: float,
+    reach: float,
     begin: int,
     end: int,
     bottom: Floats,
@@ -107,7 +109,7 @@ def settle_curved(
         x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
     if _branched:
         for i in range(count):
-            held[i] = _rung(x[i] if z[i] < h else max(x[i], 1.0), held[i], _own(forms, i))
+            held[i] = _rung(x[i], held[i], z[i] >= h - reach, _own(forms, i))
     elif _adhesive:
         hold(count, z, begin, end, bottom, top, depth, held)
     if _adhesive:

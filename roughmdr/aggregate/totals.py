@@ -18,6 +18,7 @@ ROWS = 8
 
 # Names that ``specialise`` fills with the kernels of a law, and the parts of ``settle``.
 _adhesive: bool
+_cohesive: bool
 _state: Callable[..., float]
 _energy: Callable[..., float]
 _own: Callable[..., Any]
@@ -67,7 +68,8 @@ def tally(
         accumulate(total[ENERGY], carried[ENERGY], step, add_up(terms, count))
     if wanted[COUNT]:
         for i in range(count):
-            terms[i] = 1.0 if not _adhesive or held[i] > 0.0 else 0.0
+            touching = not _cohesive or radius_at(i, found, forms) > 0.0
+            terms[i] = 1.0 if touching and (not _adhesive or held[i] > 0.0) else 0.0
         accumulate(total[COUNT], carried[COUNT], step, add_up(terms, count))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, TOP, TOP_X
+from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, ONSET, TOP, TOP_X
 
 # Names that ``specialise`` fills with the functions of ``balance``, ``root`` and ``start``.
 energy: Callable[..., float]
@@ -37,13 +37,13 @@ def state(x: float, row: Floats) -> float:
     return state_on(x, float(j), row)
 
 
-def rung(x: float, before: float, row: Floats) -> float:
+def rung(x: float, before: float, touched: bool, row: Floats) -> float:
     """The branch, 1, 2, ... or 0 for none, after a way in one direction to x from where the contact was on ``before``.
 
-    It begins at first touch, x = 1, and moves to the next stable root where its branch ends.
+    It begins where it is ``touched``, at ONSET, and moves to the next stable root where its branch ends.
     """
     j = int(before)
-    if j == 0 and x >= 1.0:
+    if j == 0 and touched:
         j = 1
     while 0 < j < int(row[COUNT]) and x > row[TOP_X + j - 1]:
         j += 1
@@ -56,9 +56,9 @@ def spent(before: float, after: float, row: Floats) -> float:
     """The energy lost in the jumps from one branch to another, over that of ``energy``; each where its branch ends."""
     j, last, lost = int(before), int(after), 0.0
     if j == 0 and last > 0:
-        first = rung(1.0, 0.0, row)
-        lost -= energy(state_on(1.0, first, row), row)
-        j = int(first)
+        first = rung(row[ONSET], 0.0, True, row)
+        lost -= energy(state_on(row[ONSET], first, row), row) if first > 0.0 else 0.0
+        j = max(int(first), 1)  # attraction can also begin without a jump
     while j < last:
         x, u = row[TOP_X + j - 1], energy(row[TOP + j - 1], row)
         j += 1

@@ -11,46 +11,79 @@ import numpy as np
 from roughmdr._extended import Pair
 from roughmdr._jit import compiled, specialise
 from roughmdr.arguments import Floats
-from roughmdr.elementary import octave
-from roughmdr.kernels import balance, branches, folds, root, start
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, TENSION, first_node
+from roughmdr.elementary import atan, octave
+from roughmdr.kernels import (
+    balance,
+    branches,
+    dugdale,
+    dugdale_folds,
+    dugdale_paraboloid,
+    edges,
+    folds,
+    root,
+    start,
+    zone,
+)
+from roughmdr.kernels.profiles import profile_of
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.shapes import Paraboloid, Shape
 from roughmdr.shapes.base import Curved
+from roughmdr.shapes.special import less_atan
 
 # Names that ``specialise`` fills.
 NODE: int
 _place: Callable[..., float]
+_ready: Callable[..., None]
 state: Callable[..., float]
 radius: Callable[..., float]
 find_branches: Callable[..., None]
 find_starts: Callable[..., None]
 
 
-def fill(modulus: float, work: float, width: float, rise: float, control: float, row: Floats) -> None:
+def fill(modulus: float, work: float, strength: float, width: float, rise: float, control: float, row: Floats) -> None:
     """The row of one asperity, whose numbers of the shape stand in it already."""
     row[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
     row[CONTROL] = control
+    row[STRENGTH], row[RANGE] = 2.0 * strength / modulus * width / rise, work / strength / rise
+    _ready(row)
     find_branches(row)
 
 
 def prepare(
-    modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
+    modulus: float,
+    work: float,
+    strength: float,
+    width: Floats,
+    rise: Floats,
+    form: Floats,
+    start: int,
+    stop: int,
+    control: float,
 ) -> Floats:
     """A row for each of the asperities from start to stop."""
-    rows = np.zeros((stop - start, 1 - NODE))
+    rows = np.zeros((stop - start, 2 - NODE))
     for i in range(stop - start):
         rows[i, 0] = form[start + i]
-        fill(modulus, work, width[start + i], rise[start + i], control, rows[i])
+        fill(modulus, work, strength, width[start + i], rise[start + i], control, rows[i])
     find_starts(rows)
     return rows
 
 
 def prepare_common(
-    modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
+    modulus: float,
+    work: float,
+    strength: float,
+    width: Floats,
+    rise: Floats,
+    form: Floats,
+    start: int,
+    stop: int,
+    control: float,
 ) -> Floats:
     """The one row of asperities that are all alike."""
     rows = np.zeros((1, form.shape[1] - NODE))
     rows[0, : form.shape[1]] = form[0]
-    fill(modulus, work, width[0], rise[0], control, rows[0])
+    fill(modulus, work, strength, width[0], rise[0], control, rows[0])
     find_starts(rows)
     return rows
 
@@ -103,48 +136,66 @@ _VECTOR_CODE = (
     root.nearer,
     root.arrived,
 )
+_VECTOR_CODE_OF_PARABOLOID = (dugdale_paraboloid.edges, dugdale_paraboloid.zone, dugdale.stretched, dugdale.answer)
+_ENDS = (fill, prepare, prepare_common, own, common, natural, natural_force)
+_UNDER_LOAD = (state_of_force, radius_of_force)
+_SEARCH = (*root.PARTS, *start.PARTS, *branches.PARTS)
+
+
+def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]:
+    """What the kernels are made of, each after what it is made of itself."""
+    if not cohesive:
+        return (*balance.PARTS, *folds.PARTS, *_SEARCH, *_ENDS, state_of_radius, *_UNDER_LOAD)
+    zone_and_edges = (*zone.PARTS, *edges.PARTS)
+    if shape is Paraboloid:
+        closed = dugdale_paraboloid
+        zone_and_edges = (*closed.PARTS, edges.find_junction, edges.reach, *closed.AFTER)
+    search = (*folds.LISTING, *dugdale_folds.PARTS, *_SEARCH)
+    return (balance.strain, *zone_and_edges, *dugdale.PARTS, *search, *_ENDS, *_UNDER_LOAD)
 
 
 @cache
-def build(shape: type[Curved]) -> dict[str, Any]:
-    """The kernels of a shape, by the names that ``Law`` has for them."""
-    profile, split = shape.profile, _SPLIT if shape.common else 0
+def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
+    """The kernels of a shape, by the names that ``Law`` has for them; ``cohesive`` where adhesion has a range."""
+    profile, shared = profile_of(shape), issubclass(shape, Curved) and shape.common
+    split = _SPLIT if shared else 0
     kernels: dict[str, Any] = {
         "_curve": compiled(profile.curve),
         "_push": compiled(profile.push),
         "_place": compiled(profile.place),
+        "_height": compiled(profile.height),
         "_dip_count": compiled(profile.dip_count),
         "_dip": compiled(profile.dip),
-        "_kink": compiled(profile.kink),
+        "_kink": compiled(dugdale.kink if cohesive else profile.kink),
+        "_edge_count": compiled(profile.edge_count),
+        "_edge": compiled(profile.edge),
+        "_ready": compiled(profile.ready),
         "_corner": profile.corner,
+        "_flat": profile.flat,
+        "_end": profile.end,
+        # Of the paraboloid s - 1 grows with the square of a, and there is but one fold.
+        "_BEGIN": 2.0**-4 if shape is Paraboloid else 2.0**-8,
+        "_STRIDE": 4.0 if shape is Paraboloid else math.sqrt(2.0),
         "octave": compiled(octave, small=True),
+        "atan": compiled(atan, small=True),
+        "less_atan": compiled(less_atan, small=True),
         "SPLIT": split,
         "NODE": first_node(split),
-        "passes": _PASSES_OF_SPLIT if shape.common else _PASSES,
+        "passes": _PASSES_OF_SPLIT if shared else _PASSES,
     }
     # What a table looks up is no vector code.
-    vector = {} if shape.common else {"_curve": profile.curve, "_push": profile.push}
+    vector = {} if shared else {"_curve": profile.curve, "_push": profile.push}
     small = {name: compiled(part, small=True) for name, part in vector.items()}
-    ends = (
-        prepare,
-        prepare_common,
-        own,
-        common,
-        natural,
-        natural_force,
-        state_of_radius,
-        state_of_force,
-        radius_of_force,
-    )
-    for part in (*balance.PARTS, *folds.PARTS, *root.PARTS, *start.PARTS, *branches.PARTS, fill, *ends):
+    forced = (*_VECTOR_CODE, *(_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else ()))
+    for part in _parts(shape, cohesive):
         known = compiled(profile.strain) if part is balance.strain and profile.strain is not None else None
         kernels[part.__name__] = known or specialise(
             cast(FunctionType, part),
-            shape.name,
-            {**kernels, **small} if part in _VECTOR_CODE else kernels,
+            f"dugdale_{shape.name}" if cohesive else shape.name,
+            {**kernels, **small} if part in forced else kernels,
             inline=part in (own, common),
-            small=part in _VECTOR_CODE,
+            small=part in forced,
         )
-    if shape.common:
+    if shared:
         kernels |= {"prepare": kernels["prepare_common"], "own": kernels["common"]}
     return kernels

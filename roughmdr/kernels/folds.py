@@ -9,7 +9,21 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, FOOT, FOOT_X, LAST, LAST_X, MOST, TENSION, TOP, TOP_X
+from roughmdr.kernels.row import (
+    CONTROL,
+    COUNT,
+    DEPTH,
+    FOLD,
+    FOOT,
+    FOOT_X,
+    LAST,
+    LAST_X,
+    MOST,
+    ONSET,
+    TENSION,
+    TOP,
+    TOP_X,
+)
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _curve: Callable[..., tuple[float, float, float, float]]
@@ -101,12 +115,16 @@ def _list_branches(tension: float, row: Floats) -> int:
 
 def find_branches(row: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
-    row[COUNT], row[FOLD], row[DEPTH] = 0.0, 0.0, 1.0
+    row[COUNT], row[FOLD], row[DEPTH], row[ONSET] = 0.0, 0.0, 1.0, 1.0
     if row[TENSION] == 0.0:
         row[FOOT], row[TOP], row[FOOT_X], row[TOP_X], row[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
         row[LAST], row[LAST_X] = 0.0, 0.0
         return
-    count = _list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row)
+    measure_branches(_list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row), row)
+
+
+def measure_branches(count: int, row: Floats) -> None:
+    """Fill in the depth and the distances of the ``count`` branches that are listed."""
     row[DEPTH] = -math.inf
     for j in range(count):
         depth = -load(row[FOOT + j], row)[0]
@@ -120,4 +138,5 @@ def find_branches(row: Floats) -> None:
     row[COUNT], row[LAST], row[LAST_X] = float(count), row[FOOT + count - 1], row[FOOT_X + count - 1]
 
 
-PARTS: tuple[Callable[..., Any], ...] = (_steepness, _excess, _crossing, _branch, _list_branches, find_branches)
+LISTING: tuple[Callable[..., Any], ...] = (_branch, measure_branches)
+PARTS: tuple[Callable[..., Any], ...] = (*LISTING, _steepness, _excess, _crossing, _list_branches, find_branches)

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from roughmdr.adhesion import Adhesion
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels import curved, elastic, flat, jkr_cone, jkr_paraboloid, jkr_power, scalar
-from roughmdr.shapes import SHAPES, Curved
+from roughmdr.kernels import curved, dugdale_flat, elastic, flat, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.shapes import SHAPES, Curved, FlatPunch, Shape
 
 Kernel = Callable[..., float]
 
@@ -27,8 +28,8 @@ class Law(NamedTuple):
     branched: bool
     """Whether there can be more than one stable branch."""
     prepare: Callable[..., Floats]
-    """(modulus, work, width, rise, form, start, stop, control) -> the forms of the asperities from start to stop, with
-    control 0 for fixed grips and 1 for dead load."""
+    """(modulus, work, strength, width, rise, form, start, stop, control) -> the forms of the asperities from start to
+    stop, with control 0 for fixed grips and 1 for dead load."""
     own: Callable[..., Any]
     """(forms, i) -> the form of one."""
     natural: Callable[..., tuple[tuple[float, float], float, float, float]]
@@ -69,33 +70,48 @@ class Law(NamedTuple):
     state_on: Kernel | None = None
     """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None
-    """(x, rung before, form) -> the branch after a way in one direction, 0 out of contact."""
+    """(x, rung before, whether attracted, form) -> the branch after a way in one direction, 0 out of contact."""
     spent: Kernel | None = None
     """(rung before, rung after, form) -> the energy lost between."""
+    cohesive_radius: Kernel | None = None
+    """(state, form) -> c over natural radius, where adhesion has a range."""
 
     @property
     def kernels(self) -> dict[str, object]:
         """Each under its name with an underscore before it, as loops ask ``specialise`` for them."""
-        return {f"_{name}": value for name, value in self._asdict().items()}
+        kernels: dict[str, object] = {f"_{name}": value for name, value in self._asdict().items()}
+        return {**kernels, "_cohesive": self.cohesive_radius is not None}
 
 
 def _scalar(name: str, module: ModuleType, adhesive: bool, suffix: str = "", **others: Callable[..., Any]) -> Law:
     """The law of a module's kernels, those that end in ``suffix`` before others, and of ``others``."""
-    kernels: dict[str, Any] = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed}
-    for kernel in Law._fields:
-        function = getattr(module, kernel + suffix, None) or getattr(module, kernel, None)
-        if function is not None:
-            kernels[kernel] = function
+    kernels = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed, **_of_module(module, suffix)}
     return Law(name, adhesive, curved=False, branched=False, **{**kernels, **others})
+
+
+def _of_module(module: ModuleType, suffix: str = "") -> dict[str, Any]:
+    """A module's kernels, by the names that ``Law`` has for them."""
+    found = {name: getattr(module, name + suffix, None) or getattr(module, name, None) for name in Law._fields}
+    return {name: kernel for name, kernel in found.items() if kernel is not None and not isinstance(kernel, ModuleType)}
 
 
 def _curved(shape: type[Curved], adhesive: bool) -> Law:
     """The law of a shape that is known by its profile."""
-    built = curved.build(shape)
+    built = curved.build(shape, cohesive=False)
     kernels = {name: built[name] for name in Law._fields if name in built}
     name = f"{'jkr' if adhesive else 'elastic'}_{shape.name}"
     branched = adhesive and shape.branched()
     return Law(name, adhesive, curved=True, branched=branched, **kernels)
+
+
+def _dugdale(shape: type[Shape]) -> Law:
+    """The law of a shape under adhesion of finite range."""
+    if shape is FlatPunch:
+        kernels = _of_module(dugdale_flat)
+    else:
+        built = curved.build(shape, cohesive=True)
+        kernels = {name: built[name] for name in Law._fields if name in built}
+    return Law(f"dugdale_{shape.name}", adhesive=True, curved=True, branched=True, **kernels)
 
 
 _ELASTIC = {
@@ -114,17 +130,19 @@ _JKR = {
 }
 
 
-def choose(shape: str, work: float, form: Floats) -> Law:
-    """The law of asperities of one shape under a work of adhesion [J/m2]; ``form`` as from ``Shape.stretch``.
+def choose(shape: str, adhesion: Adhesion, form: Floats) -> Law:
+    """The law of asperities of one shape; ``form`` as from ``Shape.stretch``.
 
     OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
     two springs' laws are parallel.
     """
     kind = SHAPES[shape]
-    if work > 0.0:
+    if adhesion.work > 0.0:
         lowest = kind.least_exponent(form)
         if not lowest > 0.5:
             raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
+    if adhesion.cohesive:
+        return _dugdale(kind)
     if issubclass(kind, Curved):
-        return _curved(kind, work > 0.0)
-    return (_JKR if work > 0.0 else _ELASTIC)[shape]
+        return _curved(kind, adhesion.work > 0.0)
+    return (_JKR if adhesion.work > 0.0 else _ELASTIC)[shape]

@@ -13,6 +13,7 @@ load: Callable[..., tuple[float, float]]
 stretched: Callable[..., tuple[float, float]]
 
 _NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
+_LOST = 1e-4  # of the depth: the difference of the values has lost four digits
 _GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
 _FINE = 1e-8  # the square of a last step is below rounding
 _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
@@ -26,8 +27,9 @@ def above(t: float, j: int, row: Floats) -> tuple[float, float]:
     step = t - foot
     if row[TENSION] == 0.0:
         return value, slope
-    if step > _NEAR * t or _kink(foot, t, row):
-        return value + row[DEPTH], slope
+    lifted = value + row[DEPTH]
+    if (step > _NEAR * t and lifted > _LOST * row[DEPTH]) or _kink(foot, t, row):
+        return lifted, slope
     middle = foot + 0.5 * step
     outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]
     return row[FOOT_X + j] * row[DEPTH] + step * (5.0 * outer + 8.0 * load(middle, row)[1]) / 18.0, slope

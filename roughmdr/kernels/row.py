@@ -14,8 +14,11 @@ DEPTH = -3  # how far below first touch the lowest foot lies, in the controlled 
 FOLD = -4  # t of the lowest foot
 COUNT = -5  # of stable branches; 0 where there are too many, or none that floats can hold
 LAST, LAST_X = -6, -7  # the foot of the last branch: its t, and its distance to the lowest foot over DEPTH
-FOOT, TOP = LAST_X - MOST, LAST_X - 2 * MOST  # t of the first
-FOOT_X, TOP_X = LAST_X - 3 * MOST, LAST_X - 4 * MOST  # the distances
+ONSET = -8  # the distance at which the contact, or attraction, begins
+STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range (``dugdale``)
+JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and what t - 1 is counted in
+FOOT, TOP = UNIT - MOST, UNIT - 2 * MOST  # t of the first
+FOOT_X, TOP_X = UNIT - 3 * MOST, UNIT - 4 * MOST  # the distances
 
 
 def first_node(split: int) -> int:

@@ -8,7 +8,15 @@ from roughmdr.arguments import Floats
 
 @njit
 def prepare(
-    modulus: float, work: float, width: Floats, rise: Floats, form: Floats, start: int, stop: int, control: float
+    modulus: float,
+    work: float,
+    strength: float,
+    width: Floats,
+    rise: Floats,
+    form: Floats,
+    start: int,
+    stop: int,
+    control: float,
 ) -> Floats:
     """The forms of the asperities from start to stop."""
     return form[start:stop]

@@ -76,7 +76,7 @@ def find_first_node(row: Floats) -> None:
         find_node(0, 1.0, row)
         return
     row[NODE] = foot
-    if load(foot, row)[1] > _CORNER * row[DEPTH] / foot:
+    if foot == 0.0 or load(foot, row)[1] > _CORNER * row[DEPTH] / foot:
         row[NODE + 1] = 0.0
     else:
         bent = load(foot + _BEND * foot, row)[1] / (_BEND * foot)

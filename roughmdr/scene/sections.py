@@ -15,6 +15,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from roughmdr.adhesion import Adhesion, Model
 from roughmdr.ensemble import Asperities, SurfaceAsperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.quantities import Quantity, Section, WholeNumber
@@ -24,6 +25,7 @@ from roughmdr.units import effective_modulus
 from roughmdr.variables import DEFAULT, LAW
 
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
+_ERROR = 0.01  # of the largest force, by which "auto" may be off unless the scene says otherwise
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, most=0.5))]
 
 
@@ -51,11 +53,36 @@ class Material(Section):
         return self
 
 
-class Adhesion(Section):
-    """[adhesion]: work is the work of adhesion, not the surface energy of one side."""
+class AdhesionSection(Section):
+    """[adhesion]: work is the work of adhesion, not the surface energy of one side.
 
-    model: Literal["jkr"]
+    The attraction's stress is ``strength``, or work over its ``range``; "auto" may be off by ``error``.
+    """
+
+    model: Model
     work: Annotated[float, BeforeValidator(Quantity("J/m^2", least=0.0))]
+    strength: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
+    range: Annotated[float, BeforeValidator(Quantity("m", above=0.0))] | None = None
+    error: Annotated[float, BeforeValidator(Quantity("1", above=0.0, most=1.0))] | None = None
+
+    @model_validator(mode="after")
+    def _goes_together(self) -> "AdhesionSection":
+        if self.strength is not None and self.range is not None:
+            raise RoughmdrError("takes strength or range, not both")
+        if self.model != "jkr" and self.strength is None and self.range is None:
+            raise RoughmdrError(f"model {self.model!r} needs strength, the stress of the attraction, or its range")
+        if self.error is not None and self.model != "auto":
+            raise RoughmdrError("takes error only with model 'auto'")
+        return self
+
+    @property
+    def law(self) -> Adhesion:
+        """What is asked for."""
+        strength = self.strength
+        if self.range is not None and self.work > 0.0:
+            strength = self.work / self.range
+        error = 0.0 if self.model != "auto" else (_ERROR if self.error is None else self.error)
+        return Adhesion(self.work, self.model, math.inf if strength is None else strength, error)
 
 
 def _known_variable(value: object) -> object:
@@ -101,7 +128,7 @@ class Scene(Section):
     seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
     material: Material
     counter: Body | None = None
-    adhesion: Adhesion | None = None
+    adhesion: AdhesionSection | None = None
     asperities: Asperities
     path: Path
     output: Output = Output()
@@ -175,6 +202,11 @@ class Scene(Section):
     def work(self) -> float:
         """Work of adhesion [J/m^2]; 0 without adhesion."""
         return 0.0 if self.adhesion is None else self.adhesion.work
+
+    @property
+    def law(self) -> Adhesion:
+        """The law of adhesion that is asked for."""
+        return Adhesion() if self.adhesion is None else self.adhesion.law
 
     @property
     def file(self) -> FilePath | None:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughmdr.arguments import Floats
 from roughmdr.elementary import sqrt
 from roughmdr.shapes.base import Curved, radii
-from roughmdr.shapes.profile import Form, Profile, swung
+from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 
 
 def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
@@ -41,6 +41,11 @@ def _swept(t: float, form: Form) -> float:
     q = c * (t - 1.0)
     square = 1.0 + q * q
     return (c * square * sqrt(square) + (1.0 - c) * q * q * q) / 3.0
+
+
+def _height(r: float, form: Form) -> tuple[float, float]:
+    c = form[0]
+    return (0.5 * c * r * r, c * r) if r <= 1.0 else (0.5 * c + 0.5 * (r - 1.0) * (r + 1.0), r)
 
 
 def _place(radius: float, width: float, form: Form) -> float:
@@ -88,7 +93,19 @@ class CappedParaboloid(Curved):
     not_below: ClassVar[tuple[tuple[str, str, str], ...]] = (
         ("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),
     )
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _one, _dip, _at_the_blend, corner=True)
+    profile: ClassVar[Profile] = Profile(
+        _curve,
+        _push,
+        _swept,
+        _place,
+        _height,
+        _one,
+        _dip,
+        _at_the_blend,
+        corner=True,
+        edge_count=one_edge,
+        edge=at_one,
+    )
 
     def f(self, r: ArrayLike) -> Floats:
         r, b = radii("r", r), self.blend_radius

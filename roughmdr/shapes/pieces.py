@@ -60,9 +60,17 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     dips = _dips(begins, knots, coefficients)
     parts = [piece for _, piece in done]
     far = _far(begins[-1], knots, coefficients)
-    form = np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, far])
+    spline = np.column_stack([knots, _heights(knots, coefficients), coefficients])
+    form = np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, far, [knots.size], spline.ravel()])
     _add_strains(form)
     return form
+
+
+def _heights(knots: Floats, coefficients: Floats) -> Floats:
+    """f at the knots."""
+    h = np.diff(knots)
+    c0, c1, c2 = coefficients[:-1].T
+    return np.concatenate([[0.0], np.cumsum(h * (c0 + h * (c1 / 2.0 + h * c2 / 3.0)))])
 
 
 def _add_strains(form: Floats) -> None:

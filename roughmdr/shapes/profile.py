@@ -6,6 +6,7 @@ needs more digits than a float has (a corner, the equator of a sphere) it is not
 numbers, beside width and rise, that tell profiles of one shape apart.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -27,6 +28,30 @@ def _smooth(low: float, high: float, form: Form) -> bool:
     return False
 
 
+def no_edges(form: Form) -> int:
+    """No edge."""
+    return 0
+
+
+def _no_edge(index: int, form: Form) -> tuple[float, float]:
+    """Never called."""
+    return 0.0, 0.0
+
+
+def one_edge(form: Form) -> int:
+    """One edge."""
+    return 1
+
+
+def at_one(index: int, form: Form) -> tuple[float, float]:
+    """At one width, from which on the profile is smooth in sqrt(x^2 - 1)."""
+    return 1.0, 1.0
+
+
+def _nothing(form: Any) -> None:
+    """Nothing more to find out."""
+
+
 class Profile(NamedTuple):
     """A profile in units of its width (radii) and its rise (depths), over the contact radius a; g and G as in H 17."""
 
@@ -38,6 +63,8 @@ class Profile(NamedTuple):
     """(t, form) -> G."""
     place: Callable[[float, float, Form], float]
     """(contact radius, width, form) -> t."""
+    height: Callable[..., tuple[Any, Any]]
+    """(r, form) -> f, df/dr."""
     dip_count: Callable[[Form], int] = no_dips
     """form -> how often sqrt(a) g'(a) falls on its way from 0 to infinity: each time two stable branches may part."""
     dip: Callable[[int, Form], tuple[float, float]] = _no_dip
@@ -50,6 +77,14 @@ class Profile(NamedTuple):
     """Whether g' jumps up to infinity where it begins to fall."""
     flat: bool = False
     """Whether the profile is flat to one width, so that g and t begin there."""
+    end: float = math.inf
+    """The radius where the profile ends."""
+    edge_count: Callable[[Form], int] = no_edges
+    """form -> at how many radii g is not smooth."""
+    edge: Callable[[int, Form], tuple[float, float]] = _no_edge
+    """(number, form) -> such a radius, and the one y for which g is smooth in sqrt(x^2 - y^2) from there on."""
+    ready: Callable[[Any], None] = _nothing
+    """Fills in what else the functions need to know, in the second place of a form that is one number."""
 
 
 def swung(radius: float, width: float) -> float:

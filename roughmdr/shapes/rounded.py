@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughmdr.arguments import Floats
 from roughmdr.elementary import atan, sqrt
 from roughmdr.shapes.base import Curved, radii
-from roughmdr.shapes.profile import Form, Profile, swung
+from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 from roughmdr.shapes.special import less_atan, less_atan_and_cube
 
 _CONE_DIP = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
@@ -36,6 +36,10 @@ def _cone_swept(a: float, form: Form) -> float:
         return a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
     return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - less_atan(q))
+
+
+def _cone_height(r: float, form: Form) -> tuple[float, float]:
+    return (0.5 * r * r, r) if r < 1.0 else (r - 0.5, 1.0)
 
 
 def _cone_place(radius: float, width: float, form: Form) -> float:
@@ -65,7 +69,16 @@ class RoundedCone(Curved):
     units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "blend_radius"),)
     profile: ClassVar[Profile] = Profile(
-        _cone_curve, _cone_push, _cone_swept, _cone_place, _one, _cone_dip, _at_the_blend
+        _cone_curve,
+        _cone_push,
+        _cone_swept,
+        _cone_place,
+        _cone_height,
+        _one,
+        _cone_dip,
+        _at_the_blend,
+        edge_count=one_edge,
+        edge=at_one,
     )
 
     def f(self, r: ArrayLike) -> Floats:
@@ -97,6 +110,10 @@ def _punch_swept(q: float, form: Form) -> float:
     return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
 
 
+def _punch_height(r: float, form: Form) -> tuple[float, float]:
+    return (0.5 * (r - 1.0) * (r - 1.0), r - 1.0) if r > 1.0 else (0.0, 0.0)
+
+
 def _punch_place(radius: float, width: float, form: Form) -> float:
     return swung(radius, width)
 
@@ -111,7 +128,16 @@ class RoundedPunch(Curved):
     name: ClassVar[str] = "rounded_punch"
     units: ClassVar[dict[str, str]] = {"flat_radius": "m", "edge_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("flat_radius", "edge_radius"),)
-    profile: ClassVar[Profile] = Profile(_punch_curve, _punch_push, _punch_swept, _punch_place, flat=True)
+    profile: ClassVar[Profile] = Profile(
+        _punch_curve,
+        _punch_push,
+        _punch_swept,
+        _punch_place,
+        _punch_height,
+        flat=True,
+        edge_count=one_edge,
+        edge=at_one,
+    )
 
     def f(self, r: ArrayLike) -> Floats:
         beyond = (radii("r", r) - self.flat_radius).clip(min=0.0)

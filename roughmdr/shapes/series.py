@@ -21,7 +21,7 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
     g, slope = 0.0, 0.0
     for i in range(int(form[0])):
-        n, term = form[1 + 2 * i], form[2 + 2 * i] * t ** form[1 + 2 * i]
+        n, term = form[1 + 3 * i], form[2 + 3 * i] * t ** form[1 + 3 * i]
         g += term
         slope += n * term
     return t, 1.0, g, slope / t
@@ -30,16 +30,16 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
 def _push(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
-        n = form[1 + 2 * i]
-        total += n / (n + 1.0) * form[2 + 2 * i] * t**n
+        n = form[1 + 3 * i]
+        total += n / (n + 1.0) * form[2 + 3 * i] * t**n
     return total * t
 
 
 def _swept(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
-        n = form[1 + 2 * i]
-        total += form[2 + 2 * i] * t**n / (n + 1.0)
+        n = form[1 + 3 * i]
+        total += form[2 + 3 * i] * t**n / (n + 1.0)
     return total * t
 
 
@@ -47,9 +47,18 @@ def _strain(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
         for j in range(int(form[0])):
-            n, m = form[1 + 2 * i], form[1 + 2 * j]
-            total += n * m / (m + 1.0) / (n + m + 1.0) * (form[2 + 2 * i] * t**n) * (form[2 + 2 * j] * t**m)
+            n, m = form[1 + 3 * i], form[1 + 3 * j]
+            total += n * m / (m + 1.0) / (n + m + 1.0) * (form[2 + 3 * i] * t**n) * (form[2 + 3 * j] * t**m)
     return 2.0 * total * t
+
+
+def _height(r: float, form: Form) -> tuple[float, float]:
+    f, slope = 0.0, 0.0
+    for i in range(int(form[0])):
+        n, term = form[1 + 3 * i], form[3 + 3 * i] * r ** form[1 + 3 * i]
+        f += term
+        slope += n * term
+    return f, slope / r if r > 0.0 else (math.inf if form[1] < 1.0 else (form[3] if form[1] == 1.0 else 0.0))
 
 
 def _place(radius: float, width: float, form: Form) -> float:
@@ -69,7 +78,7 @@ class PowerSeries(Common):
     units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
     along: ClassVar[str] = "term"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, strain=_strain)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, strain=_strain)
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:
@@ -130,7 +139,7 @@ class PowerSeries(Common):
             raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
         parts = [float(len(self.terms))]
         for exponent, log in zip(self.terms, logs, strict=True):
-            parts += [exponent, kappa(exponent) * math.exp(log - logs[0])]
+            parts += [exponent, kappa(exponent) * math.exp(log - logs[0]), math.exp(log - logs[0])]
         return math.exp(log_width), math.exp(logs[0]), np.array(parts)
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:

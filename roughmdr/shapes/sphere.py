@@ -34,6 +34,11 @@ def _swept(t: float, form: Form) -> float:
     return 0.5 * (a * a * t - beyond_tanh(t, a))
 
 
+def _height(r: float, form: Form) -> tuple[float, float]:
+    side = math.sqrt(max((1.0 - r) * (1.0 + r), 0.0))
+    return r * r / (1.0 + side), r / side if side > 0.0 else math.inf
+
+
 def _place(radius: float, width: float, form: Form) -> float:
     return 0.5 * math.log1p(2.0 * radius / (width - radius)) if radius < width else math.inf
 
@@ -47,7 +52,7 @@ class Sphere(Curved):
     name: ClassVar[str] = "sphere"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, end=1.0)
 
     def f(self, r: ArrayLike) -> Floats:
         r = radii("r", r, most=self.radius)

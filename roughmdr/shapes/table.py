@@ -2,7 +2,8 @@
 
 A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
 knot, scale, middle, strain at its begin and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end
-its steepness, a constant, the strain at the end and coefficients]. Over a piece these are polynomials in the place
+its steepness, a constant, the strain at the end and coefficients; then the number of knots and for each its r, f and
+the coefficients of f' over r - knot]. Over a piece these are polynomials in the place
 q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the kink of a root at every knot;
 beyond the end g - steepness a is one in 1/a^2.
 """
@@ -16,6 +17,8 @@ from roughmdr.shapes.profile import Form, Profile
 
 DEGREE = 13
 PIECE = 4 + 3 * (DEGREE + 1)
+FAR = 3 + DEGREE + 1
+KNOT = 5
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
@@ -78,6 +81,18 @@ def _swept(t: float, form: Form) -> float:
     return t * _curve(t, form)[2] - _push(t, form)
 
 
+def _height(r: float, form: Form) -> tuple[float, float]:
+    begins = 2 + 2 * int(form[0])
+    spline = begins + int(form[begins - 1]) * (1 + PIECE) + 1 + FAR
+    low, left = 0, int(form[spline])
+    while left > 1:
+        half = left // 2
+        low, left = (low + half if r >= form[spline + 1 + KNOT * (low + half)] else low), left - half
+    at = spline + 1 + KNOT * low
+    s, c0, c1, c2 = r - form[at], form[at + 2], form[at + 3], form[at + 4]
+    return form[at + 1] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)), c0 + s * (c1 + s * c2)
+
+
 def _place(radius: float, width: float, form: Form) -> float:
     return radius / width
 
@@ -97,6 +112,18 @@ def _kink(low: float, high: float, form: Form) -> bool:
         return False
     knot = form[first]
     return last < 0 or form[last] != knot or (knot > 0.0 and high - low > 0.1 * (low - knot))
+
+
+def _edge_count(form: Form) -> int:
+    """At the begin of each piece but the first, and at the end."""
+    return int(form[1 + 2 * int(form[0])])
+
+
+def _edge(index: int, form: Form) -> tuple[float, float]:
+    begins = 2 + 2 * int(form[0])
+    count = int(form[begins - 1])
+    begin = form[begins + index + 1]
+    return begin, form[begins + count + 1 + PIECE * min(index + 1, count - 1)]
 
 
 def strain_between(low: float, high: float, form: Form) -> float:
@@ -123,4 +150,16 @@ def _strain(t: float, form: Form) -> float:
     return total
 
 
-PROFILE = Profile(_curve, _push, _swept, _place, _dip_count, _dip, _kink, strain=_strain)
+PROFILE = Profile(
+    _curve,
+    _push,
+    _swept,
+    _place,
+    _height,
+    _dip_count,
+    _dip,
+    _kink,
+    strain=_strain,
+    edge_count=_edge_count,
+    edge=_edge,
+)

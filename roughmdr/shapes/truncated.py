@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughmdr.arguments import Floats
 from roughmdr.elementary import atan, sqrt
 from roughmdr.shapes.base import Curved, radii
-from roughmdr.shapes.profile import Form, Profile, swung
+from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 from roughmdr.shapes.special import less_atan
 
 # Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
@@ -39,6 +39,10 @@ def _cone_swept(q: float, form: Form) -> float:
     return 0.5 * (q * q * atan(q) - less_atan(q))
 
 
+def _cone_height(r: float, form: Form) -> tuple[float, float]:
+    return (r - 1.0, 1.0) if r > 1.0 else (0.0, 0.0)
+
+
 def _cone_dip(index: int, form: Form) -> tuple[float, float]:
     return 0.0, _CONE_DIP
 
@@ -54,7 +58,17 @@ class TruncatedCone(Curved):
     units: ClassVar[dict[str, str]] = {"slope": "1", "flat_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "flat_radius"),)
     profile: ClassVar[Profile] = Profile(
-        _cone_curve, _cone_push, _cone_swept, _place, _one, _cone_dip, corner=True, flat=True
+        _cone_curve,
+        _cone_push,
+        _cone_swept,
+        _place,
+        _cone_height,
+        _one,
+        _cone_dip,
+        corner=True,
+        flat=True,
+        edge_count=one_edge,
+        edge=at_one,
     )
 
     def f(self, r: ArrayLike) -> Floats:
@@ -85,6 +99,10 @@ def _paraboloid_swept(q: float, form: Form) -> float:
     return q * q * q / 3.0
 
 
+def _paraboloid_height(r: float, form: Form) -> tuple[float, float]:
+    return (0.5 * (r - 1.0) * (r + 1.0), r) if r > 1.0 else (0.0, 0.0)
+
+
 def _paraboloid_dip(index: int, form: Form) -> tuple[float, float]:
     return 0.0, _PARABOLOID_DIP
 
@@ -100,7 +118,17 @@ class TruncatedParaboloid(Curved):
     units: ClassVar[dict[str, str]] = {"radius": "m", "flat_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius", "flat_radius"),)
     profile: ClassVar[Profile] = Profile(
-        _paraboloid_curve, _paraboloid_push, _paraboloid_swept, _place, _one, _paraboloid_dip, corner=True, flat=True
+        _paraboloid_curve,
+        _paraboloid_push,
+        _paraboloid_swept,
+        _place,
+        _paraboloid_height,
+        _one,
+        _paraboloid_dip,
+        corner=True,
+        flat=True,
+        edge_count=one_edge,
+        edge=at_one,
     )
 
     def f(self, r: ArrayLike) -> Floats:

@@ -1,0 +1,71 @@
+"""How the surfaces attract each other: what is asked for, checked, and the number that tells which law is right."""
+
+import math
+from typing import Literal, NamedTuple
+
+from roughmdr.arguments import check_number
+from roughmdr.errors import RoughmdrError
+
+Model = Literal["jkr", "dugdale", "auto"]
+_MODELS = ("jkr", "dugdale", "auto")
+
+
+class Adhesion(NamedTuple):
+    """A law of adhesion."""
+
+    work: float = 0.0
+    """w [J/m2]; 0 for none."""
+    model: Model = "jkr"
+    strength: float = math.inf
+    """sigma0 [Pa], the stress of the attraction (Dugdale); inf where it is not known."""
+    error: float = 0.0
+    """By how much "auto" may be off, over the largest force."""
+
+    def __str__(self) -> str:
+        strength = f", strength {self.strength:g} Pa" if self.strength < math.inf else ""
+        return f"work {self.work:g} J/m^2{strength}"
+
+    @property
+    def cohesive(self) -> bool:
+        """Whether the attraction has a range."""
+        return self.work > 0.0 and self.model == "dugdale"
+
+    @property
+    def reach(self) -> float:
+        """From how far away the surfaces attract each other, w/sigma0 [m]; 0 where the law has no range."""
+        return self.work / self.strength if self.cohesive else 0.0
+
+    @property
+    def known(self) -> bool:
+        """Whether the Tabor number can be told."""
+        return self.work > 0.0 and self.strength < math.inf
+
+    @property
+    def candidates(self) -> tuple[Model, ...]:
+        """The laws that may be taken."""
+        return ("jkr", "dugdale") if self.model == "auto" else (self.model,)
+
+    def settled(self, jkr_error: float) -> "Adhesion":
+        """The law itself: of "auto" the cheapest that is right enough where JKR is off by ``jkr_error``."""
+        if self.model != "auto":
+            return self
+        return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")
+
+    @classmethod
+    def checked(cls, model: object, work: float, strength: float | None, error: float = 0.0) -> "Adhesion":
+        """What is asked for. RoughmdrError for an unknown model or a missing strength, OutOfRange for a number."""
+        work = check_number("work", work, "J/m^2", zero=True)
+        if model not in _MODELS or (model == "auto" and error == 0.0):
+            known = _MODELS if error > 0.0 else _MODELS[:2]
+            raise RoughmdrError(f"adhesion is {model!r}; it must be {' or '.join(map(repr, known))}")
+        if strength is not None:
+            strength = check_number("strength", strength, "Pa")
+        elif model != "jkr":
+            raise RoughmdrError(f"strength is missing: adhesion {model!r} needs the stress of the attraction [Pa]")
+        return cls(work, model, math.inf if strength is None else strength, error)  # type: ignore[arg-type]
+
+
+def tabor_number(radius: float, modulus: float, work: float, strength: float) -> float:
+    """The Tabor number [1] of a contact that lets go at this radius [m] in JKR: dl(radius) strength/(pi^(2/3) work)."""
+    stretch = math.sqrt(2.0 * math.pi) * math.sqrt(radius) * math.sqrt(1.0 / work) / math.sqrt(modulus)
+    return float(stretch * strength / math.pi ** (2.0 / 3.0))

@@ -1,0 +1,77 @@
+"""The least Tabor number of an ensemble, and how far JKR is off there."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from types import FunctionType
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from roughmdr._jit import specialise
+from roughmdr.adhesion import Adhesion, tabor_number
+from roughmdr.aggregate.block import BLOCK
+from roughmdr.arguments import Floats
+from roughmdr.kernels.laws import Law, choose
+from roughmdr.shapes import SHAPES, Curved
+
+# Names that ``specialise`` fills with the kernels of a law.
+_prepare: Callable[..., Floats]
+_natural: Callable[..., Any]
+_own: Callable[..., Any]
+_state: Callable[..., float]
+_radius: Callable[..., float]
+
+_SHIFT, _AT_A_CORNER = 3.0, 2.0
+"""How far the force of JKR is from Dugdale's, over the largest: at most 3 |delta_c|/std(height) over the Tabor number,
+since contacts are made sooner by w/sigma0, and at a corner of a flat 2 over the Tabor number more. Measured with
+paraboloids of normal heights, |delta_c|/std from 0.01 to 10, Tabor numbers from 1 to 100, the flat down to 2, 0 and -1
+std (``pipelines/adhesion_range.py``)."""
+
+
+class Range(NamedTuple):
+    """What tells whether the range of adhesion matters."""
+
+    tabor: float = math.inf
+    """The least Tabor number [1]; inf where the strength of the attraction is not known, or none is."""
+    jkr_error: float = 0.0
+    """About by how much the force of JKR is off, over the largest force."""
+
+
+def _extremes(width: Floats, rise: Floats, form: Floats, modulus: float, work: float) -> tuple[float, float]:
+    """The least radius [m] and the greatest depth [m] of contacts where they let go under fixed grips in JKR.
+
+    The radius is not above 0 where a contact is not representable.
+    """
+    least, deepest = math.inf, 0.0
+    for start in range(0, width.size, BLOCK):
+        stop = min(start + BLOCK, width.size)
+        forms = _prepare(modulus, work, math.inf, width, rise, form, start, stop, 0.0)
+        for i in range(stop - start):
+            n = _own(forms, i)
+            (depth, _), size, _, _ = _natural(modulus, work, width[start + i], rise[start + i], n)
+            least = min(least, size * _radius(_state(0.0, n), n) if depth > 0.0 else 0.0)
+            deepest = max(deepest, depth)
+    return least, deepest
+
+
+@cache
+def _compiled(law: Law) -> Callable[..., tuple[float, float]]:
+    return specialise(cast(FunctionType, _extremes), law.name, law.kernels)
+
+
+def range_of(
+    shape: str, height: Floats, columns: tuple[Floats, Floats, Floats], modulus: float, adhesion: Adhesion
+) -> Range:
+    """Whether the range of adhesion matters; its Tabor number is 0 where a contact is not representable in JKR."""
+    if not adhesion.known:
+        return Range()
+    law = choose(shape, Adhesion(adhesion.work), columns[2])
+    radius, depth = _compiled(law)(*columns, modulus, adhesion.work)
+    if not 0.0 < radius < math.inf:
+        return Range(0.0, math.inf)
+    tabor, spread = tabor_number(radius, modulus, adhesion.work, adhesion.strength), float(np.std(height))
+    kind = SHAPES[shape]
+    sharp = issubclass(kind, Curved) and kind.profile.flat and kind.profile.corner
+    shift = _SHIFT * depth / spread if spread > 0.0 else math.inf
+    return Range(tabor, (shift + (_AT_A_CORNER if sharp else 0.0)) / tabor)

@@ -1,0 +1,146 @@
+"""One asperity under adhesion of finite range: within the cohesive radius c > a the surfaces attract each other with
+the strength sigma0, until the gap is w/sigma0 (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for the sphere).
+
+With m = sqrt(c^2 - a^2), theta = atan(m/a) and the integrals of ``zone``, in units of the shape's width and rise and
+beta = 2 sigma0/E*, any profile has (from delta = g(a) - beta m and f(c) = 2/pi ∫_0^c g/sqrt(c^2 - x^2) dx)
+
+    gap(c) = 2/pi [J + beta (m theta - c + a)] = w/sigma0,
+    P/(2 E*) = a g - G - beta/2 (a m + c^2 theta),
+    d(delta) = (g' + beta a/m) da B/D,   c dc = theta (g' + beta a/m) da c^2/D,
+    B = K - beta (c - a),   D = B + beta theta c^2/m,
+
+so that a state is stable under fixed grips where B > 0.
+
+The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
+grows with s. Notation of ``row``.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH
+
+# Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``edges``.
+_push: Callable[..., float]
+_height: Callable[..., tuple[float, float]]
+zone: Callable[..., tuple[float, float, float]]
+edges: Callable[..., tuple[float, float, float, float, float, float, float]]
+strain: Callable[..., float]
+
+
+def stretched(s: float, row: Floats) -> tuple[float, float]:
+    """The indentation at s, and its slope over s."""
+    beta = row[STRENGTH]
+    if s <= 1.0:
+        c = s * row[JUNCTION]
+        f, slope = _height(c, row)
+        return f - 2.0 / math.pi * beta * c - row[RANGE], row[JUNCTION] * (slope - 2.0 / math.pi * beta)
+    _, a, m, theta, g, da, dg = edges(s, row)
+    _, k, _ = zone(a, g, m, theta, row)
+    c = math.sqrt(a * a + m * m)
+    pull = k - beta * m * m / (c + a)
+    return g - beta * m, (dg * m + beta * a * da) * pull / (pull * m + beta * (c * c) * theta)
+
+
+def load(s: float, row: Floats) -> tuple[float, float]:
+    """The controlled quantity, indentation or force, and its slope over s."""
+    if row[CONTROL] == 0.0:
+        return stretched(s, row)
+    beta = row[STRENGTH]
+    if s <= 1.0:
+        c = s * row[JUNCTION]
+        return -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * row[JUNCTION]
+    t, a, m, theta, g, da, dg = edges(s, row)
+    _, k, _ = zone(a, g, m, theta, row)
+    square = a * a + m * m
+    pull = k - beta * m * m / (math.sqrt(square) + a)
+    rise = (dg * m + beta * a * da) / (pull * m + beta * square * theta)
+    value = _push(t, row) - 0.5 * beta * (a * m + square * theta)
+    return value, rise * (a * pull - beta * theta * theta * square)
+
+
+def distance(s: float, row: Floats) -> float:
+    """The controlled quantity from the lowest foot on, over its depth."""
+    return (load(s, row)[0] + row[DEPTH]) / row[DEPTH]
+
+
+def answer(s: float, row: Floats) -> tuple[float, float, float]:
+    """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/(K - beta (c - a))."""
+    beta, theta, t, a, push = row[STRENGTH], 0.5 * math.pi, 0.0, 0.0, 0.0
+    m, g = s * row[JUNCTION], 0.0
+    if s == 0.0:
+        return 0.0, 0.0, 0.0
+    if s <= 1.0:
+        k = theta * m * _height(m, row)[1]
+    else:
+        t, a, m, theta, g, _, _ = edges(s, row)
+        push = _push(t, row)
+        _, k, _ = zone(a, g, m, theta, row)
+    square = a * a + m * m
+    held = beta * theta * theta * square / (k - beta * m * m / (math.sqrt(square) + a))
+    return a, push - 0.5 * beta * (a * m + square * theta), a - held
+
+
+def radius(s: float, row: Floats) -> float:
+    """a over width."""
+    return edges(s, row)[1] if s > 1.0 else 0.0
+
+
+def cohesive_radius(s: float, row: Floats) -> float:
+    """c over width."""
+    if s <= 1.0:
+        return s * row[JUNCTION]
+    _, a, m, _, _, _, _ = edges(s, row)
+    return math.sqrt(a * a + m * m)
+
+
+def force(s: float, row: Floats) -> float:
+    """P over 2 E* width rise."""
+    return answer(s, row)[1]
+
+
+def stiffness(s: float, row: Floats) -> float:
+    """k over 2 E* width, infinite at a smooth fold."""
+    return answer(s, row)[2]
+
+
+def energy(s: float, row: Floats) -> float:
+    """U, elastic and of both surfaces, over 2 E* width rise^2 DEPTH; 0 where the surfaces do not attract each other.
+
+    E* ∫ u1^2 dx - pi w c^2 + sigma0 ∫ gap dA, whose last integral is 4 ∫_a^c (g - delta + u1) sqrt(c^2 - x^2) dx.
+    """
+    beta, t, a, m, theta, g = row[STRENGTH], 0.0, 0.0, s * row[JUNCTION], 0.5 * math.pi, 0.0
+    if s == 0.0:
+        return 0.0
+    if s > 1.0:
+        t, a, m, theta, g, _, _ = edges(s, row)
+    stretch = beta * m if s > 1.0 else -stretched(s, row)[0]
+    square = a * a + m * m
+    c = math.sqrt(square)
+    bent, push = (strain(t, row), _push(t, row)) if s > 1.0 else (0.0, 0.0)
+    _, _, l = zone(a, g, m, theta, row)
+    short = m * m / (c + a)
+    elastic = bent - 2.0 * stretch * push + stretch * stretch * a
+    cohesive = 2.0 * l + stretch * (square * theta - a * m) - beta * short * short * (2.0 * c + a) / 3.0
+    surface = 0.5 * math.pi * row[RANGE] * square
+    return (elastic + beta * (cohesive - surface)) / (2.0 * row[DEPTH])
+
+
+def kink(low: float, high: float, row: Floats) -> bool:
+    """Whether the indentation may not be smooth from low to high."""
+    return True
+
+
+PARTS: tuple[Callable[..., Any], ...] = (
+    stretched,
+    load,
+    distance,
+    answer,
+    radius,
+    cohesive_radius,
+    force,
+    stiffness,
+    energy,
+)

@@ -1,0 +1,92 @@
+"""The stable branches under adhesion of finite range: where the controlled quantity grows along the equilibria.
+
+Looked for at places ever further out, halved to the last bit where the slope changes its sign. Notation of ``row``.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE
+
+# Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``edges`` and ``folds``.
+_flat: bool
+_BEGIN: float
+_STRIDE: float
+_edge_count: Callable[..., int]
+_edge: Callable[..., tuple[float, float]]
+_branch: Callable[..., int]
+load: Callable[..., tuple[float, float]]
+edges: Callable[..., tuple[float, float, float, float, float, float, float]]
+find_junction: Callable[..., bool]
+measure_branches: Callable[..., None]
+
+_FIRST = 2.0**-24  # of the way to contact
+_ON_FLAT = 1.0 / 16.0
+_SHARP = 0.1  # m/a of a contact that is as in JKR
+_LARGEST = 1e140  # its square is a float
+_CLOSE = 4e-16
+_PATIENCE = 200
+
+
+def following(s: float) -> float:
+    """The next place to look at."""
+    if s < 1.0:
+        return max(2.0 * s, _FIRST)
+    if _flat and s < 2.0:
+        return s + _ON_FLAT
+    begin = 2.0 if _flat else 1.0
+    return begin + max(_STRIDE * (s - begin), _BEGIN)
+
+
+def turn(low: float, high: float, row: Floats) -> float:
+    """Where the slope changes its sign between low and high, on the side where it is positive.
+
+    By secants (the Illinois method) and halves, since the slope may jump.
+    """
+    at_low, at_high = load(low, row)[1], load(high, row)[1]
+    rising = at_high > 0.0
+    for i in range(_PATIENCE):
+        if high - low <= _CLOSE * high:
+            break
+        middle = 0.5 * (low + high)
+        if i % 3 != 2 and abs(at_low) < math.inf and abs(at_high) < math.inf:
+            middle = low - at_low * (high - low) / (at_high - at_low)
+            middle = min(max(middle, low + _CLOSE * high), high - _CLOSE * high)
+        slope = load(middle, row)[1]
+        if (slope > 0.0) == rising:
+            high, at_high, at_low = middle, slope, 0.5 * at_low
+        else:
+            low, at_low, at_high = middle, slope, 0.5 * at_high
+    return high if rising else low
+
+
+def find_branches(row: Floats) -> None:
+    """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
+    row[COUNT], row[FOLD], row[DEPTH], row[ONSET] = 0.0, 0.0, 1.0, 0.0
+    if not find_junction(row):
+        return
+    edge_count = _edge_count(row)
+    beyond = 2.0 * _edge(edge_count - 1, row)[0] if edge_count > 0 else 0.0
+    count, s, foot = 0, 0.0, 0.0
+    stable = load(s, row)[1] > 0.0
+    while True:
+        before, was = s, stable
+        s = following(s)
+        stable = load(s, row)[1] > 0.0
+        if stable and not was:
+            foot = turn(before, s, row)
+        elif was and not stable:
+            count = _branch(count, foot, turn(before, s, row), row)
+        if s > 1.0:
+            _, a, m, _, _, _, _ = edges(s, row)
+            if stable and m < _SHARP * a and a > beyond:
+                break
+        if not s < _LARGEST or count >= MOST:
+            return
+    measure_branches(_branch(count, foot, math.inf, row), row)
+    row[ONSET] = 1.0 - row[RANGE] / row[DEPTH]
+
+
+PARTS: tuple[Callable[..., Any], ...] = (following, turn, find_branches)

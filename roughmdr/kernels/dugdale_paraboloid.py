@@ -1,0 +1,57 @@
+"""One paraboloid under adhesion of finite range, whose equilibria have a closed form. Notation of ``dugdale``.
+
+With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m and s = 1 + sigma^2 = c^2/m^2, the gap is
+
+    2/pi [S c^2 + beta B c],   S = (sigma + theta (1 - sigma^2))/s,   B = (theta - 1/(sqrt s + sigma))/sqrt s,
+
+so that c follows from a quadratic equation (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243).
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.kernels.row import COUNT, RANGE, STRENGTH
+from roughmdr.shapes.special import less_atan
+
+# The name that ``specialise`` fills with the function of ``edges``.
+reach: Callable[..., float]
+
+
+def edges(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+    """For s > 1: t = a, a, m, theta, g, and da/ds and dg/ds."""
+    beta, wanted = row[STRENGTH], math.pi * row[RANGE]
+    sigma, root = math.sqrt(s - 1.0), math.sqrt(s)
+    q = 1.0 / sigma
+    beyond = less_atan(q)
+    theta = q - beyond
+    spread = (theta + (s - 1.0) * beyond) / s
+    pull = beta * (theta - 1.0 / (root + sigma)) / root
+    turned = math.sqrt(pull * pull + 2.0 * spread * wanted)
+    c = wanted / (pull + turned)
+    m = c / root
+    a = sigma * m
+    growth = 0.5 * c / (s * root) * (theta * sigma / root * (4.0 * m + beta) / turned + q)
+    return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
+
+
+def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
+    """J, K and L of ``zone``."""
+    square = a * a + m * m
+    beyond = less_atan(m / a) if a > 0.0 else 0.0
+    l = 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
+    return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
+
+
+def state_of_radius(radius: float, width: float, row: Floats) -> float:
+    """s at a contact radius [m]."""
+    if row[COUNT] == 0.0:
+        return math.nan
+    a = radius / width
+    sigma = a / reach(a, 2.0 * a * a, 4.0 * a, row)
+    return 1.0 + sigma * sigma
+
+
+PARTS: tuple[Callable[..., Any], ...] = (zone,)
+AFTER: tuple[Callable[..., Any], ...] = (edges, state_of_radius)

@@ -1,0 +1,89 @@
+"""Where the contact and the cohesive zone of any profile end, along all equilibria. Notation of ``dugdale``."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from roughmdr.arguments import Floats
+from roughmdr.elementary import atan
+from roughmdr.kernels.row import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
+
+# Names that ``specialise`` fills with the functions of a profile and of ``zone``.
+_curve: Callable[..., tuple[float, float, float, float]]
+_height: Callable[..., tuple[float, float]]
+_place: Callable[..., float]
+_flat: bool
+_end: float
+zone: Callable[..., tuple[float, float, float]]
+
+_CLOSE = 1e-9  # its square is below rounding
+_PATIENCE = 100
+
+
+def find_junction(row: Floats) -> bool:
+    """Find c where contact begins: f(c) + (1 - 2/pi) beta c = w/sigma0. False where the body ends before."""
+    wanted, per_c = row[RANGE], (1.0 - 2.0 / math.pi) * row[STRENGTH]
+    low, high = 0.0, min(wanted / per_c, _end)
+    if not (high > 0.0 and _height(high, row)[0] + per_c * high >= wanted):
+        return False
+    c = high if high < _end else 0.5 * high
+    for _ in range(_PATIENCE):
+        f, slope = _height(c, row)
+        value = f + per_c * c
+        low, high = (c, high) if value < wanted else (low, c)
+        better = c * math.exp((math.log(wanted) - math.log(value)) * value / (c * (slope + per_c)))
+        if abs(better - c) <= _CLOSE * c:
+            c = better
+            break
+        c = better if low < better < high else 0.5 * (low + high)
+    row[JUNCTION] = c
+    t = row[TENSION] if _flat else _place(c, 1.0, row)
+    row[UNIT] = t
+    return 0.0 < c < math.inf and 0.0 < t < math.inf
+
+
+def reach(a: float, g: float, slope: float, row: Floats) -> float:
+    """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms."""
+    beta, wanted, c0 = row[STRENGTH], 0.5 * math.pi * row[RANGE], row[JUNCTION]
+    low, high = 0.0, math.sqrt((_end - a) * (_end + a)) if _end < math.inf else math.inf
+    lone = wanted / beta
+    most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
+    near = (6.0 * lone * beta * a * (a / slope)) ** (1.0 / 3.0) if slope > 0.0 else math.inf
+    m = min(most, max(c0, near))
+    if not m < high:
+        m = 0.5 * high
+    for _ in range(_PATIENCE):
+        c, theta = math.sqrt(a * a + m * m), atan(m / a)
+        j, k, _ = zone(a, g, m, theta, row)
+        short = m * m / (c + a)
+        value = j + beta * (m * theta - short)
+        low, high = (m, high) if value < wanted else (low, m)
+        slope = k / c + beta * (c * theta / m - short / c)
+        change = math.log(wanted / value) * value * c / (m * m * slope)
+        better = m * math.exp(min(max(change, -5.0), 5.0))
+        if abs(change) <= _CLOSE or not low < high:
+            return better
+        m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
+    return m
+
+
+def edges(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
+    if _flat and s < 2.0:
+        a = s - 1.0
+        m = reach(a, 0.0, 0.0, row)
+        return 0.0, a, m, atan(m / a), 0.0, 1.0, 0.0
+    t = (s - (2.0 if _flat else 1.0)) * row[UNIT]
+    a, da, g, dg = _curve(t, row)
+    m = reach(a, g, dg / da if da > 0.0 else math.inf, row)
+    return t, a, m, atan(m / a), g, da * row[UNIT], dg * row[UNIT]
+
+
+def state_of_radius(radius: float, width: float, row: Floats) -> float:
+    """s at a contact radius [m]."""
+    if row[COUNT] == 0.0:
+        return math.nan
+    return _place(radius, width, row) / row[UNIT] + (2.0 if _flat else 1.0)
+
+
+PARTS: tuple[Callable[..., Any], ...] = (find_junction, reach, edges, state_of_radius)

@@ -1,0 +1,74 @@
+"""The cohesive zone of any profile, a < x < c, by quadrature.
+
+Its integrals, in units of the shape's width and rise:
+
+    J = ∫ (g(x) - g(a))/sqrt(c^2 - x^2) dx,   K = ∫ x g'(x)/sqrt(c^2 - x^2) dx,
+    L = ∫ (g(x) - g(a)) sqrt(c^2 - x^2) dx.
+
+From each edge y of the profile on g is smooth in q = sqrt(x^2 - y^2) = sqrt(c^2 - y^2) cos(psi), and
+dx/sqrt(c^2 - x^2) is q/x dpsi.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from roughmdr.arguments import Floats
+
+# Names that ``specialise`` fills with the functions of a profile.
+_curve: Callable[..., tuple[float, float, float, float]]
+_place: Callable[..., float]
+_edge_count: Callable[..., int]
+_edge: Callable[..., tuple[float, float]]
+_flat: bool
+
+# Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
+_Z, _WEIGHT = np.polynomial.legendre.leggauss(32)
+_Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
+_NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
+_WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
+
+
+def panel(
+    low: float, high: float, base: float, g: float, c: float, m: float, row: Floats
+) -> tuple[float, float, float]:
+    """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2)."""
+    reach = math.sqrt((c - base) * (c + base))
+    begin = math.atan2(m, math.sqrt((low - base) * (low + base)))
+    end = math.atan2(math.sqrt((c - high) * (c + high)), math.sqrt((high - base) * (high + base)))
+    j, k, l = 0.0, 0.0, 0.0
+    for i in range(_NODES.size):
+        psi = end + (begin - end) * _NODES[i]
+        q, below = reach * math.cos(psi), reach * math.sin(psi)
+        x = math.sqrt(base * base + q * q)
+        _, da, value, dg = _curve(_place(x, 1.0, row), row)
+        term = _WEIGHTS[i] * (value - g) * q / x
+        j += term
+        k += _WEIGHTS[i] * q * dg / da
+        l += term * below * below
+    return (begin - end) * j, (begin - end) * k, (begin - end) * l
+
+
+def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
+    """J, K and L for the contact radius a, g = g(a) m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
+    c = math.sqrt(a * a + m * m)
+    j, k, l = 0.0, 0.0, 0.0
+    low, base, beside = a, 0.0, m
+    count = _edge_count(row)
+    for i in range(count + 1):
+        begin, after = _edge(i, row) if i < count else (math.inf, 0.0)
+        if begin > low:
+            high = min(begin, c)
+            if high > low and (base > 0.0 or not _flat):
+                parts = panel(low, high, base, g, c, beside, row)
+                j, k, l = j + parts[0], k + parts[1], l + parts[2]
+            if begin >= c:
+                break
+            low, beside = begin, math.sqrt((c - begin) * (c + begin))
+        base = after
+    return j, k, l
+
+
+PARTS: tuple[Callable[..., Any], ...] = (panel, zone)

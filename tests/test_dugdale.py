@@ -1,0 +1,247 @@
+"""Ensembles under adhesion of finite range, against a slow and plain walk along Maugis's equations."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import ensemble, scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.plan import make_plan
+from roughmdr.scene import read
+
+E, W = 4e6, 0.05
+VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
+
+
+def strength_of(tabor: float, radius: float = 5e-5, modulus: float = E, work: float = W) -> float:
+    return float(tabor * work / (radius * work**2 / modulus**2) ** (1.0 / 3.0))
+
+
+class Walk:
+    """One paraboloid, its equilibria as a long list: the cohesive radius c rises along it (Maugis 1992)."""
+
+    def __init__(self, radius: float, strength: float) -> None:
+        angle = np.concatenate([np.full(30_000, 0.5 * np.pi), np.geomspace(0.5 * np.pi, 3e-3, 170_000)])
+        theta, beta, gap = angle, 2.0 * strength / E, W / strength
+        sine, cosine = np.sin(theta), np.cos(theta)
+        spread = (theta * (sine**2 - cosine**2) + sine * cosine) / radius
+        pull = 2.0 * beta * (theta * sine - 1.0 + cosine)
+        c = (-pull + np.sqrt(pull**2 + 4.0 * spread * np.pi * gap)) / (2.0 * spread)
+        c[:30_000] = np.linspace(0.0, c[30_000], 30_000)
+        self.a, m = c * cosine, c * sine
+        self.a[:30_000] = 0.0
+        self.delta = self.a**2 / radius - beta * m
+        self.delta[:30_000] = c[:30_000] ** 2 / (2.0 * radius) - 2.0 / np.pi * beta * c[:30_000] - gap
+        self.force = 4.0 / 3.0 * E * self.a**3 / radius - 2.0 * strength * (self.a * m + c**2 * theta)
+        self.first, self.at = -gap, -1
+
+    def move(self, delta: float) -> float:
+        """The force after the indentation has moved to ``delta``, by way of every place in between."""
+        if self.at < 0:
+            if delta < self.first:
+                return 0.0
+            self.at = 0
+        while self.at < self.delta.size - 1 and self.delta[self.at] < delta:
+            self.at += 1
+        while self.at >= 0 and self.delta[self.at] > delta:
+            self.at -= 1
+        return float(self.force[self.at]) if self.at >= 0 else 0.0
+
+
+@pytest.mark.parametrize("tabor", [0.1, 0.6, 1.5, 20.0])
+def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
+    rng = np.random.default_rng(5)
+    strength, z, radius = strength_of(tabor), rng.normal(0.0, 3e-8, 12), rng.uniform(3e-5, 8e-5, 12)
+    reach = W / strength
+    path = np.concatenate([[z.max() + 2.0 * reach + 1e-7], rng.uniform(-5e-8, 8e-8 + reach, 25), [-4e-8, 1e-6 + reach]])
+    law = rm.load_separation(
+        ensemble(z, radius=radius), separation=path, modulus=E, work=W, adhesion="dugdale", strength=strength
+    )
+    expected = np.zeros(path.size)
+    for height, own in zip(z, radius, strict=True):
+        walk = Walk(own, strength)
+        expected += [walk.move(height - h) for h in path]
+    largest = np.abs(expected).max()
+    assert np.mean(np.abs(law.force - expected) < 3e-3 * largest) > 0.9  # the walk's places are no finer
+    assert float(law.force[0]) == float(law.force[-1]) == 0.0
+
+
+def test_attraction_begins_before_touch_and_ends_at_the_fold() -> None:
+    tip, strength = rm.Paraboloid(5e-5), strength_of(2.0)
+    law = {"modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
+    off, on = float(rm.pull_off(tip, **law).indentation), -W / strength
+    assert off < on
+    path = -np.array([on * 1.0001, on * 0.9999, 0.0, on, off * 0.9999, off * 1.0001])
+    forces = rm.load_separation(ensemble([0.0], radius=5e-5), separation=path, **law).force.to_numpy()
+    assert forces[0] == 0.0
+    assert (forces[1:5] < 0.0).all()
+    assert forces[5] == 0.0
+    alone = rm.indent(tip, indentation=-path[1:5], **law)
+    np.testing.assert_allclose(forces[1:5], alone.force, rtol=1e-12)
+
+
+def test_at_small_tabor_numbers_asperities_attract_without_touching() -> None:
+    strength = strength_of(0.1)
+    law = rm.load_separation(
+        ensemble([0.0, 0.0], radius=5e-5),
+        separation=[0.5 * W / strength],
+        modulus=E,
+        work=W,
+        adhesion="dugdale",
+        strength=strength,
+        variables=["force", "contact_count", "contact_area"],
+    )
+    assert float(law.force[0]) < 0.0
+    assert float(law.contact_count[0]) == float(law.contact_area[0]) == 0.0
+
+
+SHAPES = {
+    "paraboloid": (rm.Paraboloid(5e-5), (0.2, 0.9, 5.0)),
+    "flat_punch": (rm.FlatPunch(2e-6), (0.3, 5.0)),
+    "truncated_cone": (rm.TruncatedCone(0.1, 2e-6), (0.5, 5.0)),
+}
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> None:
+    shape, numbers = SHAPES[kind]
+    for tabor in numbers:
+        strength = tabor / rm.tabor(shape, modulus=E, work=W, strength=1.0)
+        law = {"modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
+        far, reach = -float(rm.pull_off(shape, **law).indentation), W / strength
+        out = np.linspace(-0.5 * far, reach, 6001)
+        before, after = reach * (1.0 + 1e-9), far * (1.0 + 1e-9)
+        back = np.linspace(-0.5 * far, far * (1.0 - 1e-9), 9001)
+        way = np.concatenate([[1.1 * far, before], out[::-1], back, [after]])
+        data = ensemble([0.0], shape=kind, **shape.parameters)
+        curve = rm.load_separation(data, separation=way, variables=VARIABLES, **law)
+        work = -float(np.trapezoid(curve.force, way))
+        spent = float(curve.dissipated_energy[-1])
+        scale = float(np.abs(curve.energy).max())
+        assert float(curve.energy[-1]) == float(curve.contact_count[-1]) == 0.0
+        assert (np.diff(curve.dissipated_energy) >= 0.0).all()
+        assert abs(work - spent) < 2e-3 * scale
+        moved = np.diff(curve.energy) + np.diff(curve.dissipated_energy)
+        done = -0.5 * (curve.force.to_numpy()[1:] + curve.force.to_numpy()[:-1]) * np.diff(way)
+        assert np.median(np.abs(moved - done)) < 1e-6 * scale
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    tabor=st.floats(0.01, 100.0),
+    length=st.floats(1e-9, 1e-1),
+    stiff=st.floats(1e3, 1e12),
+    heights=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=5),
+)
+def test_the_same_physics_in_other_units(tabor: float, length: float, stiff: float, heights: list[float]) -> None:
+    """Lengths times l and moduli times e, work of adhesion times l e: forces times e l^2."""
+    l, e = length / 5e-5, stiff / E
+    path = np.array([20.0, 3.0, 0.5, -1.0, 1.0, 4.0, 0.0, 30.0]) * 1e-8 / min(tabor, 1.0)
+    z = np.array(heights) * 1e-8
+    one, other = (
+        rm.load_separation(
+            ensemble(z * factor, radius=5e-5 * factor),
+            separation=path * factor,
+            modulus=E * hard,
+            work=W * factor * hard,
+            adhesion="dugdale",
+            strength=strength_of(tabor) * hard,
+            variables=["force", "contact_count"],
+        )
+        for factor, hard in ((1.0, 1.0), (l, e))
+    )
+    scale = np.pi * W * 5e-5 * len(heights)
+    np.testing.assert_allclose(other.force / (e * l * l), one.force, rtol=1e-9, atol=1e-10 * scale)
+
+
+def test_the_sum_does_not_depend_on_workers_and_keeps_its_bound() -> None:
+    adhesion = {"model": "dugdale", "work": "50 mJ/m^2", "range": "10 nm"}
+    one, two = (
+        rm.run(scene(adhesion=adhesion, batch={"realizations": 3}), workers=workers).drop_vars("run_time")
+        for workers in (1, 2)
+    )
+    xr.testing.assert_identical(one.drop_attrs(), two.drop_attrs())
+    assert float(one.numerical_error.max()) < 1e-11
+    assert (one.adhesion_law == 2).all()
+    assert float(one.tabor_number.min()) == pytest.approx(float(one.tabor_number.max()), rel=0.5)
+
+
+def test_the_cheapest_law_that_is_right_enough_is_taken() -> None:
+    """ "auto" is JKR's to the last bit, or Dugdale's; where it is JKR's it is as near to Dugdale as was asked for."""
+    taken = set()
+    for strength, error in (("1 GPa", 0.02), ("30 MPa", 0.02), ("30 MPa", 1e-4), ("1 MPa", 0.02)):
+        known = {"work": "50 mJ/m^2", "strength": strength}
+        batch = {"realizations": 2}
+        made = rm.run(scene(adhesion={"model": "auto", "error": error, **known}, batch=batch))
+        both = {model: rm.run(scene(adhesion={"model": model, **known}, batch=batch)) for model in ("jkr", "dugdale")}
+        for i in range(2):
+            model = made.adhesion_law.attrs["flag_meanings"].split()[int(made.adhesion_law[i])]
+            taken.add(model)
+            assert np.array_equal(made.force[i], both[model].force[i])
+            off = np.abs(made.force[i] - both["dugdale"].force[i]).max() / np.abs(both["dugdale"].force[i]).max()
+            assert float(off) <= error
+            assert float(made.tabor_number[i]) == float(both["jkr"].tabor_number[i])
+    assert taken == {"jkr", "dugdale"}
+
+
+def test_jkr_of_a_small_tabor_number_warns_with_the_number() -> None:
+    tip, strength = rm.Paraboloid(5e-5), strength_of(0.5)
+    number = rm.tabor(tip, modulus=E, work=W, strength=strength)
+    assert number == pytest.approx(0.5, rel=1e-12)
+    with pytest.warns(rm.LimitWarning, match=r"a Tabor number of 0\.5: "):
+        rm.indent(tip, modulus=E, work=W, strength=strength, indentation=0.0)
+    with pytest.warns(rm.LimitWarning, match=r"a Tabor number of 0\.5: "):
+        rm.load_separation(ensemble([0.0], radius=5e-5), separation=[0.0], modulus=E, work=W, strength=strength)
+    adhesion = {"model": "jkr", "work": W, "range": W / strength}
+    asked = scene(adhesion=adhesion, batch=None)
+    assert "a Tabor number of 0." in rm.run(asked).attrs["warnings"]
+    assert "Tabor" not in rm.run(scene(batch=None)).attrs.get("warnings", "")
+
+
+@pytest.mark.parametrize(
+    ("adhesion", "says"),
+    [
+        ({"model": "dugdale", "work": W}, "needs strength, the stress of the attraction, or its range"),
+        ({"model": "dugdale", "work": W, "strength": "1 MPa", "range": "1 nm"}, "takes strength or range, not both"),
+        ({"model": "jkr", "work": W, "error": 0.1}, "takes error only with model 'auto'"),
+        ({"model": "dugdale", "work": W, "strength": "1 nm"}, "adhesion.strength = '1 nm': 'nm' is a unit of m"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(adhesion: dict[str, object], says: str) -> None:
+    with pytest.raises(rm.SceneError, match=says):
+        read(scene(adhesion=adhesion))
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"adhesion": "dugdale"}, "strength is missing"),
+        ({"adhesion": "dugdale", "strength": 0.0}, "strength is 0 Pa; it must be a finite number above 0"),
+        ({"adhesion": "maugis", "strength": 1e6}, "adhesion is 'maugis'; it must be 'jkr' or 'dugdale'"),
+        ({"adhesion": "dugdale", "strength": 1e6, "contact_radius": 0.0}, "there can be attraction|attract each other"),
+    ],
+)
+def test_one_asperity_refuses(changes: dict[str, object], says: str) -> None:
+    control = {} if "contact_radius" in changes else {"indentation": 0.0}
+    with pytest.raises(rm.RoughmdrError, match=says):
+        rm.indent(rm.Paraboloid(1e-6), modulus=1e9, work=W, **control, **changes)
+
+
+def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
+    adhesion = {"model": "auto", "work": "50 mJ/m^2", "range": "1 nm"}
+    table = scene(adhesion=adhesion, sweep={"adhesion.range": ["0.1 nm", "1 um"]}, batch=None)
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
+    out = tmp_path / "out.nc"
+    done = CliRunner().invoke(main, ["run", str(tmp_path / "scene.toml"), "-o", str(out)])
+    assert done.exit_code == 0, done.output
+    assert "adhesion     jkr in 1, dugdale in 1 of 2; least Tabor number" in done.output
+    with xr.open_dataset(out) as result:
+        assert result.adhesion_law.to_numpy().ravel().tolist() == [1, 2]
+    assert any("range of the adhesion" in line for line in make_plan(read(table)).left_out)
