@@ -71,7 +71,9 @@ def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, 
     memory = staircase(path) if work else no_memory(path)
 
     def action() -> int:
-        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, Adhesion(work), path, memory, set(rows))
+        _, _, visits = loop.add_asperities(
+            law, ensemble.height, columns, MODULUS, Adhesion(work), path, memory, set(rows)
+        )
         return visits
 
     action()

@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.adhesion import Adhesion
 from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, ShapeError
-from roughmdr.kernels.elementwise import apply
+from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.exact import exact_depth
 from roughmdr.kernels.laws import Law, choose
 from roughmdr.shapes import Curved, FlatPunch, Shape
@@ -99,12 +99,13 @@ class Contact(NamedTuple):
         state = apply(law.state, np.where(touching, self.reduced(delta, self.depth), 1.0), self.form)
         one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
         off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, self.form), state)
+        radius, force, _ = self._answers(state)
         results = {
-            "force": self.force * apply(law.force, state, self.form),
-            "contact_radius": self.radius * apply(law.radius, state, self.form),
-            "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
+            "force": force,
+            "contact_radius": radius,
+            "stiffness": self._answers(off_the_fold)[2],
+            **self._cohesive(state),
         }
-        results |= self._cohesive(state)
         return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
 
     def at_force(self, force: Floats) -> Results:
@@ -118,10 +119,13 @@ class Contact(NamedTuple):
         touching = (force >= lowest) if law.adhesive else (force > 0.0)
         distance = np.where(touching, self.reduced(force, scale), 1.0)
         state = apply(law.state_of_force, distance, form)
+        radius, _, stiffness = self._answers(state)
+        if law.radius_of_force is not None:
+            radius = radius_there * apply(law.radius_of_force, distance, form)
         results = {
             "indentation": self._indentation(state),
-            "contact_radius": radius_there * apply(law.radius_of_force, distance, form),
-            "stiffness": self.stiffness * apply(law.stiffness, state, self.form),
+            "contact_radius": radius,
+            "stiffness": stiffness,
             **self._cohesive(state),
         }
         return {**{name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}, "force": force}
@@ -153,11 +157,20 @@ class Contact(NamedTuple):
             off_the_fold = np.where(state == 0.0, above, state)
         results = {
             "indentation": self._indentation(state),
-            "force": self.force * apply(law.force, state, self.form),
-            "stiffness": self.stiffness * apply(law.stiffness, off_the_fold, self.form),
+            "force": self._answers(state)[1],
+            "stiffness": self._answers(off_the_fold)[2],
             **self._cohesive(state),
         }
         return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+
+    def _answers(self, state: Floats) -> tuple[Floats, Floats, Floats]:
+        """Contact radius [m], force [N] and stiffness [N/m] of each state."""
+        law, form = self.law, self.form
+        if law.answer is None:
+            parts = [apply(kernel, state, form) for kernel in (law.radius, law.force, law.stiffness)]
+        else:
+            parts = list(apply_all(law.answer, state, form))
+        return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
     def _cohesive(self, state: Floats) -> Results:
         """The cohesive radius [m] of each state, where adhesion has a range."""

@@ -109,11 +109,8 @@ def _over_threads(plan: Plan, workers: int, advance: Advance) -> list[Shard]:
 def compute_shard(plan: Plan, runs: range) -> Shard:
     """The law of each of the given runs."""
     names, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
-    shard = Shard(
-        {name: np.empty((len(runs), steps)) for name in names},
-        *(np.empty(len(runs)) for _ in range(4)),
-        [],
-    )
+    run_time, error, tabor, law = np.empty((4, len(runs)))
+    shard = Shard({name: np.empty((len(runs), steps)) for name in names}, run_time, error, tabor, law, [])
     for row, number in enumerate(runs):
         (scene, route), realization = plan.run(number)
         started = time.perf_counter()

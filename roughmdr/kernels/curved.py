@@ -34,8 +34,6 @@ from roughmdr.shapes.special import less_atan
 NODE: int
 _place: Callable[..., float]
 _ready: Callable[..., None]
-state: Callable[..., float]
-radius: Callable[..., float]
 find_branches: Callable[..., None]
 find_starts: Callable[..., None]
 
@@ -114,16 +112,6 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     return _place(radius, width, row)
 
 
-def state_of_force(x: float, row: Floats) -> float:
-    """t at the distance x to the lowest foot of a row under dead load."""
-    return state(x, row)
-
-
-def radius_of_force(x: float, row: Floats) -> float:
-    """a over width at the distance x to the lowest foot of a row under dead load."""
-    return radius(state(x, row), row)
-
-
 _SPLIT = 5  # times an octave of the first guess is halved where all asperities share one row
 _PASSES, _PASSES_OF_SPLIT = 3, 1  # of Newton's method, after which nine in ten contacts have arrived
 _VECTOR_CODE = (
@@ -138,20 +126,19 @@ _VECTOR_CODE = (
 )
 _VECTOR_CODE_OF_PARABOLOID = (dugdale_paraboloid.edges, dugdale_paraboloid.zone, dugdale.stretched, dugdale.answer)
 _ENDS = (fill, prepare, prepare_common, own, common, natural, natural_force)
-_UNDER_LOAD = (state_of_force, radius_of_force)
 _SEARCH = (*root.PARTS, *start.PARTS, *branches.PARTS)
 
 
 def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]:
     """What the kernels are made of, each after what it is made of itself."""
     if not cohesive:
-        return (*balance.PARTS, *folds.PARTS, *_SEARCH, *_ENDS, state_of_radius, *_UNDER_LOAD)
+        return (*balance.PARTS, *folds.PARTS, *_SEARCH, *_ENDS, state_of_radius)
     zone_and_edges = (*zone.PARTS, *edges.PARTS)
     if shape is Paraboloid:
         closed = dugdale_paraboloid
         zone_and_edges = (*closed.PARTS, edges.find_junction, edges.reach, *closed.AFTER)
     search = (*folds.LISTING, *dugdale_folds.PARTS, *_SEARCH)
-    return (balance.strain, *zone_and_edges, *dugdale.PARTS, *search, *_ENDS, *_UNDER_LOAD)
+    return (balance.strain, *zone_and_edges, *dugdale.PARTS, *search, *_ENDS)
 
 
 @cache
@@ -196,6 +183,7 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
             inline=part in (own, common),
             small=part in forced,
         )
+    kernels["state_of_force"] = kernels["state"]
     if shared:
         kernels |= {"prepare": kernels["prepare_common"], "own": kernels["common"]}
     return kernels

@@ -112,12 +112,6 @@ def state_of_force(x: float, row: Floats) -> float:
 
 
 @njit
-def radius_of_force(x: float, row: Floats) -> float:
-    """a/b at the same."""
-    return _opening(state_of_force(x, row), row)[0]
-
-
-@njit
 def distance(s: float, row: Floats) -> float:
     """x(s)."""
     return s / row[DEPTH] + 1.0

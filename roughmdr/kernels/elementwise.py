@@ -10,7 +10,7 @@ import numpy as np
 from roughmdr._jit import specialise
 from roughmdr.arguments import Floats
 
-_kernel: Callable[..., float]  # the name that ``specialise`` fills
+_kernel: Callable[..., Any]  # the name that ``specialise`` fills
 
 
 def _loop(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
@@ -18,14 +18,26 @@ def _loop(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
         out[i] = _kernel(values[i], *arguments)
 
 
+def _loop_of_three(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
+    for i in range(values.size):
+        out[0, i], out[1, i], out[2, i] = _kernel(values[i], *arguments)
+
+
 @cache
-def _compiled(kernel: Callable[..., float]) -> Callable[..., Any]:
+def _compiled(loop: Callable[..., None], kernel: Callable[..., Any]) -> Callable[..., Any]:
     owner = kernel.__module__.rpartition(".")[2]
-    return specialise(cast(FunctionType, _loop), f"{owner}_{kernel.__qualname__}", {"_kernel": kernel})
+    return specialise(cast(FunctionType, loop), f"{owner}_{kernel.__qualname__}", {"_kernel": kernel})
 
 
 def apply(kernel: Callable[..., float], values: Floats, *arguments: object) -> Floats:
     """``kernel(value, *arguments)`` for each of a one-dimensional array of values."""
     out = np.empty_like(values)
-    _compiled(kernel)(values, arguments, out)
+    _compiled(_loop, kernel)(values, arguments, out)
+    return out
+
+
+def apply_all(kernel: Callable[..., tuple[float, float, float]], values: Floats, *arguments: object) -> Floats:
+    """The same for a kernel of three results, which come as the rows of an array."""
+    out = np.empty((3, values.size))
+    _compiled(_loop_of_three, kernel)(values, arguments, out)
     return out

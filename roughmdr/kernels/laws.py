@@ -41,8 +41,6 @@ class Law(NamedTuple):
     """(x, form) -> the state on the branch that a retraction follows."""
     state_of_force: Kernel
     """(distance to the onset under dead load, form under dead load) -> the state."""
-    radius_of_force: Kernel
-    """(the same, form under dead load) -> a over the radius of ``natural_force``."""
     state_of_radius: Kernel
     """(a, natural radius, form) -> the state."""
     distance: Kernel
@@ -55,6 +53,9 @@ class Law(NamedTuple):
     """(state, form) -> k over natural stiffness."""
     energy: Kernel
     """(state, form) -> elastic and surface energy over natural force times natural depth."""
+    radius_of_force: Kernel | None = None
+    """(distance to the onset under dead load, form under dead load) -> a over the radius of ``natural_force``, where
+    that has more digits than the radius of the state."""
     answer: Callable[..., tuple[float, float, float]] | None = None
     """(state, form) -> radius, force and stiffness, where they are found together."""
     mixed: Kernel | None = None
@@ -118,15 +119,13 @@ _ELASTIC = {
     "paraboloid": _scalar("elastic_paraboloid", elastic, False, "_paraboloid"),
     "cone": _scalar("elastic_cone", elastic, False, "_cone"),
     "power_law": _scalar("elastic_power_law", elastic, False, "_power"),
-    "flat_punch": _scalar("elastic_flat_punch", flat, False, state_of_force=flat.state, radius_of_force=flat.radius),
+    "flat_punch": _scalar("elastic_flat_punch", flat, False, state_of_force=flat.state),
 }
 _JKR = {
     "paraboloid": _scalar("jkr_paraboloid", jkr_paraboloid, True),
     "cone": _scalar("jkr_cone", jkr_cone, True),
     "power_law": _scalar("jkr_power_law", jkr_power, True),
-    "flat_punch": _scalar(
-        "jkr_flat_punch", flat, True, "_jkr", state_of_force=flat.state_jkr, radius_of_force=flat.radius
-    ),
+    "flat_punch": _scalar("jkr_flat_punch", flat, True, "_jkr", state_of_force=flat.state_jkr),
 }
 
 
