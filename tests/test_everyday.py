@@ -65,6 +65,13 @@ def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
         chosen.replace("# [counter]", "[counter]").replace('# modulus = "70', 'modulus = "70').replace("# poi", "poi")
     )
     assert rm.run(tomllib.loads(chosen)).force.shape == (16, 400)
+    auto = (
+        text.replace('model = "jkr"  ', 'model = "auto"').replace("# strength", "strength").replace("# error", "error")
+    )
+    assert (rm.run(tomllib.loads(auto)).tabor_number > 0.0).all()
+    assert rm.run(
+        tomllib.loads(auto.replace("strength", "# strength").replace("# range =", "range ="))
+    ).adhesion_law.any()
 
 
 # Not from getrusage: a child begins with the peak of the process that it was forked from.

@@ -33,6 +33,11 @@ BASES: dict[str, dict[str, Any]] = {
         "material": {"effective_modulus": "4 MPa"},
         "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
     },
+    "adhesion by its strength": {
+        **SCENE,
+        "adhesion": {**SCENE["adhesion"], "model": "auto", "strength": 1e7, "error": 0.1},
+    },
+    "adhesion by its range": {**SCENE, "adhesion": {**SCENE["adhesion"], "model": "dugdale", "range": "1 nm"}},
     "power laws": {
         **SCENE,
         "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "width": "10 um", "rise": "1 um"},

@@ -1,0 +1,194 @@
+"""Make the reference tables of adhesion of finite range (Dugdale): 25 right digits or more, from the profile's slope.
+
+    python data_gen/dugdale_references.py -o tests/data
+
+``maugis.json`` holds Maugis's sphere, f = r^2/(2 R), in his units (K = 4 E*/3 = 1, pi w = 1, R = 1), by his equations
+(J. Colloid Interface Sci. 150 (1992) 243) and by the integrals, which agree. ``dugdale_SHAPE.json`` holds the other
+shapes. A row is a state of equilibrium; "answers" names the controls under which a slow retraction comes by it, each
+with the state's distance to the fold of its branch, over that of the pull-off to 0.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+from dugdale_cases import CASES, Case, few
+from mpmath import mp
+from precise_asperity import bracket, root
+from precise_cohesion import State
+from precise_curve import CONTROLS, WORKING, Curve, Place
+from precise_profiles import ENERGY_WORKING, Number, profile_of
+from precise_punch import Punch
+from precise_springs import sums
+
+MAUGIS_WRITTEN = 30
+WRITTEN = 25
+LAMBDAS = (1e-3, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.93, 0.95, 1.0, 1.2, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1e3)
+RADII = (0.01, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0)
+LIFTED = (0.4, 0.75, 0.95)
+"""Cohesive radii with a = 0, over that at which a begins to grow."""
+ENERGIES = {"tabulated": 1}
+"""How many states of a case have their energy stated; else 2."""
+TINY, SLOPPY, STEP = mp.mpf(10) ** -28, mp.mpf(10) ** -20, mp.mpf(10) ** -14
+
+
+def digits(number: Number, count: int) -> str:
+    """``number`` to so many digits."""
+    return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))
+
+
+def agree(one: Number, other: Number, relative: Number) -> None:
+    """ArithmeticError unless two numbers are the same to almost all digits."""
+    if abs(one - other) > relative * max(abs(one), abs(other)):
+        raise ArithmeticError(f"{mp.nstr(one, 35)} is not {mp.nstr(other, 35)}")
+
+
+def maugis_equations(lam: Number, A: Number) -> tuple[Number, Number, Number]:
+    """c/a, delta and N of Maugis's sphere by his own equations (1992, eq. 6.16 to 6.18 in his units)."""
+
+    def left(y: Number) -> Number:
+        s = mp.exp(y)  # sqrt(m^2 - 1)
+        angle, m = mp.atan(s), mp.sqrt(1 + s * s)
+        near = lam * A * A / 2 * (s + (s * s - 1) * angle)
+        return mp.log(near + 4 * lam * lam * A / 3 * (s * angle - s * s / (m + 1)))
+
+    s = mp.exp(root(left, *bracket(left)))
+    angle, m = mp.atan(s), mp.sqrt(1 + s * s)
+    return m, A * A - 4 * lam * A * s / 3, A**3 - lam * A * A * (s + m * m * angle)
+
+
+def written(state: State, answers: dict[str, Number], count: int) -> dict[str, Any]:
+    """A state as a row of a table."""
+    names = {"cohesive_radius": state.c, "indentation": state.delta, "force": state.force, "stiffness": state.stiffness}
+    exact = mp.mpf(float(state.a)) == state.a
+    row: dict[str, Any] = {"contact_radius": float(state.a) if exact else digits(state.a, count)}
+    row |= {name: digits(number, count) for name, number in names.items()}
+    return {**row, "answers": {control: float(mp.nstr(X, 3)) for control, X in answers.items()}}
+
+
+def ends(curve: Curve | Punch, count: int) -> dict[str, dict[str, str]]:
+    """The two pull-offs."""
+    found = {}
+    for control in CONTROLS:
+        off = curve.pull_off(control)
+        names = {"contact_radius": off.a, "cohesive_radius": off.c, "indentation": off.delta, "force": off.force}
+        found[control] = {name: digits(number, count) for name, number in names.items()}
+    return found
+
+
+def maugis(lam: float) -> dict[str, Any]:
+    """The entry of one of Maugis's lambda."""
+    with mp.workdps(WORKING):
+        profile = profile_of("paraboloid", {"radius": 1.0})
+        curve = Curve(profile, mp.mpf(3) / 4, 1 / mp.pi, mp.mpf(lam) / 2, 1.0, 100.0)
+        rows = []
+        for A in RADII:
+            state = curve.state(Place(A, False))
+            m, delta, N = maugis_equations(mp.mpf(lam), mp.mpf(A))
+            agree(state.c, m * A, TINY)
+            agree(state.delta, delta, TINY)
+            agree(state.force, N, TINY)
+            (_, up, N_up), (_, down, N_down) = (maugis_equations(mp.mpf(lam), A + A * h) for h in (STEP, -STEP))
+            agree(state.stiffness, (N_up - N_down) / (up - down), SLOPPY)
+            rows.append(written(state, curve.answers(state), MAUGIS_WRITTEN))
+        for part in LIFTED:
+            state = curve.state(Place(float(mp.nstr(part * curve.touch, 6)), True))
+            rows.append(written(state, curve.answers(state), MAUGIS_WRITTEN))
+        return {
+            "lambda": lam,
+            "pull_off": ends(curve, MAUGIS_WRITTEN),
+            "rows": rows,
+        }
+
+
+def table(case: Case, strength: float) -> dict[str, Any]:
+    """The entry of one asperity."""
+    with mp.workdps(WORKING):
+        entry: dict[str, Any] = {"parameters": case.parameters}
+        if case.slopes is not None:
+            entry["slopes"] = case.slopes
+        entry |= {"modulus": case.modulus, "work": case.work, "strength": strength}
+        if case.shape == "flat_punch":
+            punch = Punch(case.parameters["radius"], case.modulus, case.work, strength)
+            return entry | {"pull_off": ends(punch, WRITTEN), "rows": punch_rows(punch)}
+        size = case.size()
+        curve = Curve(case.profile, case.modulus, case.work, strength, size, size * case.reach)
+        rows, stated = [], 0
+        for a in radii(case, size):
+            state = curve.state(Place(a, False))
+            answers = curve.answers(state)
+            if a < case.profile.flat and not answers:
+                continue
+            rows.append(written(state, answers, WRITTEN))
+            if "displacement" in answers and a > 0.5 * size and stated < ENERGIES.get(case.shape, 2):
+                stated += 1
+                rows[-1]["energy"] = digits(energy(curve, state), WRITTEN)
+        for part in LIFTED:
+            state = curve.state(Place(few(float(part * curve.touch)), True))
+            if answers := curve.answers(state):
+                rows.append(written(state, answers, WRITTEN))
+        return {**entry, "pull_off": ends(curve, WRITTEN), "rows": rows}
+
+
+def radii(case: Case, size: float) -> list[float]:
+    """Contact radii [m] from well below the sizes of interest to well above."""
+    found = {few(size * part) for part in (0.02, 0.3, 0.7, 0.95, 1.3, 3.0, case.most)}
+    kinks = [float(b) for b in case.profile.kinks]
+    found |= {few(b * part) for b in {min(kinks, default=0.0), max(kinks, default=0.0)} for part in (0.5, 1.01, 1.5)}
+    return sorted(found - {0.0})
+
+
+def energy(curve: Curve, state: State) -> Number:
+    """U [J], once the state is what the definitions say."""
+    with mp.workdps(ENERGY_WORKING):
+        found = sums(curve.exact, state)
+    agree(found.force, state.force, SLOPPY)
+    agree(found.gap, curve.exact.range, SLOPPY)
+    return found.energy
+
+
+def punch_rows(punch: Punch) -> list[dict[str, Any]]:
+    """The states of a flat punch, from next to its end to pressed in."""
+    rows = []
+    off = {control: punch.pull_off(control) for control in CONTROLS}
+    for part in (-0.99, -0.9, -0.5, -0.1, 0.3, 5.0):
+        found = punch.state(mp.mpf(few(float(abs(off["displacement"].delta) * part))))
+        held = CONTROLS if found.a > 0 else CONTROLS[:1]
+        answers = {control: 1 - found.under(control) / off[control].under(control) for control in held}
+        rows.append({**written(found, answers, WRITTEN), "energy": digits(punch.energy(found), WRITTEN)})
+    return rows
+
+
+def text(shape: str, entries: list[dict[str, Any]]) -> str:
+    """The JSON of one shape, a row a line."""
+    blocks = []
+    for entry in entries:
+        head = json.dumps({name: value for name, value in entry.items() if name != "rows"})[:-1]
+        rows = ",\n".join(json.dumps(each) for each in entry["rows"])
+        blocks.append(f'{head}, "rows": [\n{rows}\n]}}')
+    return f'{{"shape": {json.dumps(shape)}, "cases": [\n' + ",\n".join(blocks) + "\n]}\n"
+
+
+@click.command(help=(__doc__ or "").split("\n")[0])
+@click.option(
+    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("tests/data"), show_default=True
+)
+@click.option("--shape", "shapes", multiple=True, help='Only these, or "maugis"; default all.')
+def main(output: Path, shapes: tuple[str, ...]) -> None:
+    """Write one table a shape."""
+    output.mkdir(parents=True, exist_ok=True)
+    for shape in dict.fromkeys(shapes or ["maugis", *(case.shape for case in CASES)]):
+        if shape == "maugis":
+            path, entries = output / "maugis.json", [maugis(lam) for lam in LAMBDAS]
+        else:
+            cases = [case for case in CASES if case.shape == shape]
+            path = output / f"dugdale_{shape}.json"
+            entries = [table(case, strength) for case in cases for strength in case.strengths()]
+        path.write_text(text(shape, entries), encoding="utf-8")
+        rows = sum(len(entry["rows"]) for entry in entries)
+        click.echo(f"{path}: {len(entries)} cases, {rows} rows, {path.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+"""The equilibrium curve of one asperity with adhesion of finite range: its turns, and what its states answer to."""
+
+import itertools
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from mpmath import mp
+from precise_asperity import bracket, root
+from precise_cohesion import Cohesion, State
+from precise_profiles import Floats, Number, Profile
+
+WORKING = 55
+DIGITS = 45
+"""Of the integrals; the folds are right to a few less."""
+CONTROLS = ("displacement", "force")
+NEAREST = 1e-9
+"""A state that is closer to its fold is not asked for: a double does not tell it from the fold."""
+
+
+class Turn(NamedTuple):
+    """Where the control of a state begins to grow along the curve (or to fall)."""
+
+    rising: bool
+    state: State
+
+
+class Place(NamedTuple):
+    """A place on the curve: at a contact radius [m], or lifted (a = 0) with a cohesive radius [m]."""
+
+    radius: Any
+    lifted: bool
+    corner: Any = None
+    """The cohesive radius [m] where it is at a corner of the profile, which is then seen from ``inside`` or not."""
+    inside: bool = False
+
+
+def each_of(states: State) -> list[State]:
+    """An array of states, one by one."""
+    return [State(*numbers) for numbers in zip(*states, strict=True)]
+
+
+class Curve:
+    """The curve from c = 0 outwards; contacts of interest have radii like ``size`` [m], and all folds are below
+    ``reach`` [m].
+    """
+
+    def __init__(
+        self, profile: Profile, modulus: Number, work: Number, strength: Number, size: float, reach: float
+    ) -> None:
+        self.reach = reach
+        self.exact = Cohesion(profile, modulus, work, strength, DIGITS)
+        self.rough = Cohesion(profile, modulus, work, strength, 0)
+        self.size = mp.mpf(size)
+        self.corners = [b for b, _ in profile.corners]
+
+    def _radius(self, y: Number) -> Number:
+        end = self.exact.end
+        return self.size * mp.exp(y) if end is None else end / (1 + mp.exp(-y))
+
+    @cached_property
+    def touch(self) -> Number:
+        """The cohesive radius [m] below which a = 0."""
+        exact = self.exact
+
+        def above(y: Number) -> Number:
+            c = self._radius(y)
+            return mp.log((exact.height(c) + exact.beta * c * (1 - 2 / mp.pi)) / exact.range)
+
+        return self._radius(root(above, *bracket(above)))
+
+    def state(self, place: Place) -> State:
+        """All that is known of a place."""
+        radius = np.array([mp.mpf(place.radius)])
+        if place.lifted:
+            return each_of(self.exact.lifted(radius, place.inside))[0]
+        if place.corner is not None:
+            m = np.array([mp.sqrt((place.corner - place.radius) * (place.corner + place.radius))])
+            return each_of(self.exact.at(radius, m, np.array([place.corner]), place.inside))[0]
+        m = self.exact.spread(radius, np.array([mp.mpf(float(self.roughly(radius.astype(np.float64))[0]))]))
+        return each_of(self.exact.at(radius, m))[0]
+
+    def roughly(self, a: Floats) -> Floats:
+        """m [m] at contact radii ``a`` > 0 [m], in double precision."""
+        touch = float(self.touch)
+        return self.rough.spread(a, np.sqrt(touch * (touch + a)))
+
+    @cached_property
+    def places(self) -> list[tuple[Place, State]]:
+        """Many places along the curve, in order and in double precision; corners exactly, on both of their sides."""
+        touch, size = float(self.touch), float(self.size)
+        c = np.geomspace(1e-9, 1.0, 300) * touch
+        a = np.geomspace(1e-9 * min(size, touch), self.reach, 1500)
+        lifted, pressed = self.rough.lifted(c), self.rough.at(a, self.roughly(a))
+        found = [(Place(mp.mpf(radius), True), each) for radius, each in zip(c, each_of(lifted), strict=True)]
+        found += [(Place(mp.mpf(radius), False), each) for radius, each in zip(a, each_of(pressed), strict=True)]
+        for b in self.corners:
+            for inside in (True, False):
+                lifted = b < self.touch
+                place = Place(b if lifted else self._under(b), lifted, b, inside)
+                found.append((place, self.state(place)))
+        return sorted(found, key=lambda pair: (not pair[0].lifted, pair[0].radius))
+
+    def _under(self, c: Number) -> Number:
+        """The contact radius [m] at a cohesive radius of ``c``, which is beyond ``touch``."""
+
+        def above(y: Number) -> Number:
+            a = np.array([c / (1 + mp.exp(-y))])
+            return 1 - self.exact.excess(a, np.array([mp.sqrt((c - a[0]) * (c + a[0]))]))[0][0]
+
+        y = root(above, *bracket(above))
+        return c / (1 + mp.exp(-y))
+
+    @cached_property
+    def turns(self) -> dict[str, list[Turn]]:
+        """All turns of each control, outwards."""
+        return {control: list(self._turns(control)) for control in CONTROLS}
+
+    def _turns(self, control: str) -> Iterator[Turn]:
+        if self.places[0][1].grows(control) > 0:
+            zero = mp.mpf(0)
+            yield Turn(True, State(zero, zero, -self.exact.range, zero, zero, zero, zero))
+        for (place, state), (after, state_after) in itertools.pairwise(self.places):
+            rising = bool(state_after.grows(control) > 0)
+            if rising != (state.grows(control) > 0):
+                at = after if place.radius == after.radius else self._between(place, after, control, rising)
+                yield Turn(rising, self.state(at))
+        if self.places[-1][1].grows(control) <= 0:
+            raise ArithmeticError("the outermost branch lies beyond the search")
+
+    def _between(self, place: Place, after: Place, control: str, rising: bool) -> Place:
+        lifted, sign = after.lifted, 1 if rising else -1
+        start = place.radius if place.lifted == lifted else after.radius * mp.mpf("1e-20")
+
+        def level(y: Number) -> Number:
+            return sign * self.state(Place(mp.exp(y), lifted)).grows(control)
+
+        return Place(mp.exp(root(level, mp.log(start), mp.log(after.radius))), lifted)
+
+    def minima(self, control: str) -> list[State]:
+        """Where a control, "displacement" or "force", begins to grow, outwards."""
+        return [turn.state for turn in self.turns[control] if turn.rising]
+
+    def pull_off(self, control: str) -> State:
+        """Where a slow retraction ends."""
+        return min(self.minima(control), key=lambda state: state.under(control))
+
+    def answers(self, state: State) -> dict[str, Number]:
+        """The controls under which a slow retraction comes by ``state``: it is stable and all that is farther out lies
+        higher. With each, the distance to the branch's fold over that of the pull-off to 0.
+        """
+        found = {}
+        for control in CONTROLS:
+            value, minima = state.under(control), self.minima(control)
+            inner = [each.under(control) for each in minima if each.c <= state.c]
+            outer = [each.under(control) for each in minima if each.c > state.c]
+            if state.grows(control) > 0 and all(value < each for each in outer):
+                distance = (value - inner[-1]) / abs(self.pull_off(control).under(control))
+                if distance > NEAREST:
+                    found[control] = distance
+        return found

@@ -1,0 +1,163 @@
+"""Adhesion of finite range against tables made with 25 digits and more (``data_gen/dugdale_references.py``).
+
+With X the distance to the fold of a state's branch: 1e-12 of the natural scales, + 1e-15/sqrt(X) where the state is
+sought, and 1e-11 + 1e-14/X for the stiffness. A contact radius is part of the cohesive radius and is measured by it;
+where it is sought, so is its share 2 E* a of the stiffness.
+"""
+
+import json
+import math
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+import xarray as xr
+from test_references import mp, shape_of
+
+import roughmdr as rm
+from roughmdr.shapes import SHAPES, Shape
+
+DATA = Path(__file__).parent.parent / "data"
+Row = dict[str, Any]
+Control = Literal["displacement", "force"]
+CONTROLS: dict[Control, str] = {"displacement": "indentation", "force": "force"}
+
+
+class Case(NamedTuple):
+    """One asperity, its states, and the units that its table counts lengths [m] and moduli [Pa] by."""
+
+    name: str
+    shape: Shape
+    modulus: float
+    work: float
+    strength: float
+    pull_off: dict[str, Row]
+    rows: list[Row]
+    length: float = 1.0
+    pressure: float = 1.0
+
+    @property
+    def law(self) -> dict[str, Any]:
+        return {"modulus": self.modulus, "work": self.work, "strength": self.strength, "adhesion": "dugdale"}
+
+    def unit(self, quantity: str) -> float:
+        powers = {"contact_radius": (1, 0), "cohesive_radius": (1, 0), "indentation": (1, 0)}
+        length, pressure = {**powers, "force": (2, 1), "stiffness": (1, 1)}[quantity]
+        return self.length**length * self.pressure**pressure
+
+    def exact(self, row: Row, quantity: str) -> Any:
+        return mp.mpf(row[quantity]) * mp.mpf(self.unit(quantity))
+
+    def scale(self, quantity: str) -> float:
+        """Of the pull-off: depth under fixed grips, force under dead load."""
+        control = {"indentation": "displacement", "force": "force"}[quantity]
+        return abs(float(self.exact(self.pull_off[control], quantity)))
+
+
+def maugis() -> list[Case]:
+    """Maugis's units stretched by powers of two, which keeps every number what it is."""
+    found = []
+    length, pressure = 2.0**-23, 2.0**31
+    for case in json.loads((DATA / "maugis.json").read_text())["cases"]:
+        shape, work = rm.Paraboloid(radius=length), 1.0 / math.pi * length * pressure
+        strength = case["lambda"] / 2.0 * pressure
+        name = f"maugis-{case['lambda']:g}"
+        found.append(
+            Case(name, shape, 0.75 * pressure, work, strength, case["pull_off"], case["rows"], length, pressure)
+        )
+    return found
+
+
+def shapes() -> list[Case]:
+    found = []
+    for shape in SHAPES:
+        for number, case in enumerate(json.loads((DATA / f"dugdale_{shape}.json").read_text())["cases"]):
+            law = (case["modulus"], case["work"], case["strength"])
+            found.append(Case(f"{shape}-{number}", shape_of(shape, case), *law, case["pull_off"], case["rows"]))
+    return found
+
+
+CASES = [pytest.param(case, id=case.name) for case in [*maugis(), *shapes()]]
+
+
+def bounds(case: Case, row: Row, X: float, sought: bool) -> dict[str, float]:
+    """How far each answer may be off, with the distance ``X`` to the fold; the state is given, or ``sought``."""
+    forward = 1e-12 + (1e-15 / math.sqrt(X) if sought else 0.0)
+    exact = {name: abs(float(case.exact(row, name))) for name in ("contact_radius", "cohesive_radius", "stiffness")}
+    radius = forward * exact["cohesive_radius"]
+    rigid = 2.0 * case.modulus  # stiffness per contact radius
+    stiffness = (1e-11 + 1e-14 / X) * max(exact["stiffness"], rigid * exact["contact_radius"])
+    return {
+        "contact_radius": radius,
+        "cohesive_radius": radius,
+        "stiffness": stiffness + (rigid * radius if sought else 0.0),
+        **{name: forward * max(abs(float(case.exact(row, name))), case.scale(name)) for name in CONTROLS.values()},
+    }
+
+
+def compare(case: Case, row: Row, got: xr.Dataset, allowed: dict[str, float]) -> None:
+    for quantity, bound in allowed.items():
+        error = abs(float(mp.mpf(float(got[quantity])) - case.exact(row, quantity)))
+        assert error <= bound, (quantity, float(got[quantity]), error, bound, row)
+    assert float(got.contact_area) == pytest.approx(math.pi * float(got.contact_radius) ** 2, rel=1e-15)
+
+
+def flat_of(shape: Shape) -> float:
+    """The radius [m] of the part that is flat."""
+    if isinstance(shape, rm.Tabulated):
+        return float(max(r for r in shape.columns["r"] if shape.f(r) == 0.0))
+    return float(getattr(shape, "flat_radius", 0.0))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_at_a_contact_radius(case: Case) -> None:
+    if isinstance(case.shape, rm.FlatPunch):
+        return
+    flat = flat_of(case.shape)
+    rows = [row for row in case.rows if float(row["contact_radius"]) > flat]
+    radii = [float(case.exact(row, "contact_radius")) for row in rows]
+    got = rm.indent(case.shape, **case.law, contact_radius=radii)
+    for i, row in enumerate(rows):
+        X = row["answers"].get("displacement", 1.0)
+        compare(case, row, got.isel(contact_radius=i), bounds(case, row, X, sought=False))
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("control", CONTROLS)
+def test_on_a_slow_retraction(case: Case, control: Control) -> None:
+    rows = [row for row in case.rows if control in row["answers"]]
+    quantity = CONTROLS[control]
+    values = np.array([float(case.exact(row, quantity)) for row in rows])
+    got = rm.indent(case.shape, **case.law, **{quantity: values})
+    for i, row in enumerate(rows):
+        X = row["answers"][control]
+        compare(case, row, got.isel({quantity: i}), bounds(case, row, X, sought=True))
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("control", CONTROLS)
+def test_pull_off(case: Case, control: Control) -> None:
+    off = rm.pull_off(case.shape, **case.law, control=control)
+    row, own = case.pull_off[control], CONTROLS[control]
+    assert abs(float(off[own]) / case.exact(row, own) - 1) <= 1e-12
+    for radius in ("contact_radius", "cohesive_radius"):
+        error = abs(float(off[radius]) - case.exact(row, radius))
+        assert error <= 1e-7 * case.exact(row, "cohesive_radius"), radius
+    (other,) = set(CONTROLS.values()) - {own}
+    assert abs(float(off[other]) - case.exact(row, other)) <= 1e-7 * case.scale(other)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("control", CONTROLS)
+def test_pull_off_is_where_the_contact_ends(case: Case, control: Control) -> None:
+    own = CONTROLS[control]
+    depth = abs(float(case.exact(case.pull_off[control], own)))
+    if control == "displacement":
+        beyond = rm.indent(case.shape, **case.law, indentation=-depth * (1.0 + 1e-9))
+        assert float(beyond.force) == float(beyond.contact_radius) == float(beyond.cohesive_radius) == 0.0
+    else:
+        with pytest.raises(rm.OutOfRange):
+            rm.indent(case.shape, **case.law, force=-depth * (1.0 + 1e-9))
+    inside = rm.indent(case.shape, **case.law, **{own: -depth * (1.0 - 1e-9)})
+    assert float(inside.cohesive_radius) > 0.0
