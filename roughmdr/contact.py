@@ -11,6 +11,7 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.exact import exact_depth
 from roughmdr.kernels.laws import Law, choose
+from roughmdr.kernels.row import COUNT
 from roughmdr.shapes import Curved, FlatPunch, Shape
 
 Results = dict[str, Floats]
@@ -41,6 +42,11 @@ class Contact(NamedTuple):
         law = choose(shape.name, adhesion, np.array([form]))
         with np.errstate(all="ignore"):  # what overflows is refused below
             form = _prepared(law, shape, modulus, adhesion, _FIXED_GRIPS)
+            if isinstance(shape, Curved) and shape.profile.end * width < adhesion.reach and form[COUNT] == 0.0:
+                raise OutOfRange(
+                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, reaches beyond the end of "
+                    f"{shape}; it must be larger"
+                )
             scales = law.natural(modulus, adhesion.work, width, rise, form)
             contact = cls(law, shape, modulus, adhesion, form, *scales)
         contact._check(

@@ -19,7 +19,7 @@ from roughmdr.variables import COORDINATES, LAW
 
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
 # batch into tasks that are long beside dask's own 0.4 ms.
-_DRAW, _VISIT = 2e-7, 5e-9
+_DRAW, _VISIT, _VISIT_COHESIVE = 2e-7, 5e-9, 3e-7
 _TASK_SECONDS = 0.1  # a batch that takes less is one task: to load dask takes as long
 _TASKS_AT_LEAST = 8  # so that two or three workers finish together
 
@@ -133,7 +133,8 @@ def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
 
 
 def _seconds(cell: Cell) -> float:
-    return cell.scene.asperities.count * (_DRAW + _VISIT * cell.route.separation.size)
+    visit = _VISIT_COHESIVE if "dugdale" in cell.scene.law.candidates else _VISIT
+    return cell.scene.asperities.count * (_DRAW + visit * cell.route.separation.size)
 
 
 def prepare_all(plan: Plan) -> None:

@@ -115,7 +115,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"material": {"modulus": "3 MPa"}}, "needs effective_modulus, or modulus and poisson"),
         ({"material": {"effective_modulus": 1, "poisson": 0.3}}, "takes effective_modulus alone"),
         ({"material": {"effective_modulus": 1}, "counter": {"modulus": 1, "poisson": 0}}, "counter: does not go"),
-        ({"adhesion": {"model": "dugdale", "work": 1}}, "adhesion.model = 'dugdale': not available; it can be jkr"),
+        ({"adhesion": {"model": "maugis", "work": 1}}, "adhesion.model = 'maugis': not available; it can be jkr, dug"),
         ({"adhesion": {"model": "jkr", "work": -1}}, "adhesion.work = -1: must be at least 0"),
         ({"adhesion": {"model": "jkr"}}, "adhesion.work: is missing"),
         ({"path": {"separation": 3}}, "path.separation = 3: must be a table with start, stop and steps, or a list"),

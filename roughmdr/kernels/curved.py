@@ -157,12 +157,13 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
         "_edge_count": compiled(profile.edge_count),
         "_edge": compiled(profile.edge),
         "_ready": compiled(profile.ready),
+        "_beyond": None if profile.beyond is None else compiled(profile.beyond),
         "_corner": profile.corner,
         "_flat": profile.flat,
         "_end": profile.end,
-        # Of the paraboloid s - 1 grows with the square of a, and there is but one fold.
-        "_BEGIN": 2.0**-4 if shape is Paraboloid else 2.0**-8,
-        "_STRIDE": 4.0 if shape is Paraboloid else math.sqrt(2.0),
+        # Of the paraboloid there is but one fold.
+        "_BEGIN": 2.0**-8,
+        "_STRIDE": 2.0 if shape is Paraboloid else math.sqrt(2.0),
         "octave": compiled(octave, small=True),
         "atan": compiled(atan, small=True),
         "less_atan": compiled(less_atan, small=True),

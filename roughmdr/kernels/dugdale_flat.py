@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr._jit import compiled, njit
 from roughmdr.arguments import Floats
 from roughmdr.kernels import curved
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, ONSET, RANGE, STRENGTH, UNIT
+from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
 
 natural, natural_force = compiled(curved.natural), compiled(curved.natural_force)
 own = njit(curved.own, inline=True)
@@ -21,14 +21,14 @@ passes = 1
 
 @njit
 def _angle(wanted: float, of_force: bool) -> float:
-    """The angle, sin = m/b, 0 to pi/2, where angle + sin cos, or else angle sin - 1 + cos, is ``wanted``."""
+    """The angle from 0 to pi/2 where angle - sin cos, or else angle sin - 1 + cos, is ``wanted``."""
     low, high = 0.0, 0.5 * math.pi
     while True:
         middle = 0.5 * (low + high)
         if not low < middle < high:
             return middle
         sine, cosine = math.sin(middle), math.cos(middle)
-        value = middle + sine * cosine if of_force else middle * sine - sine * sine / (1.0 + cosine)
+        value = middle - sine * cosine if of_force else middle * sine - sine * sine / (1.0 + cosine)
         low, high = (middle, high) if value < wanted else (low, middle)
 
 
@@ -64,7 +64,9 @@ def prepare(
             angle = _angle(0.5 * math.pi * reach / beta, False)
             depth = beta * math.sin(angle)
         row[ONSET] = 1.0 - reach / depth
-        row[DEPTH] = depth if control == 0.0 else 0.5 * beta * (angle + math.sin(angle) * math.cos(angle))
+        pulled = angle + math.sin(angle) * math.cos(angle)
+        row[DEPTH] = depth if control == 0.0 else 0.5 * beta * pulled
+        row[FOLD] = 0.5 * math.pi - pulled if angle < 0.5 * math.pi else 0.0
     return rows
 
 
@@ -107,8 +109,10 @@ def state_of_radius(radius: float, size: float, row: Floats) -> float:
 @njit
 def state_of_force(x: float, row: Floats) -> float:
     """delta/b at the distance x to the pull-off force, over it, of a row under dead load."""
-    push = (x - 1.0) * row[DEPTH]
-    return push if push >= 0.0 else -row[STRENGTH] * math.sin(_angle(-2.0 * push / row[STRENGTH], True))
+    if x >= 1.0:
+        return (x - 1.0) * row[DEPTH]
+    rest = row[FOLD] + x * 2.0 * row[DEPTH] / row[STRENGTH]  # pi/2 - (angle + sin cos), angle = asin(m/b)
+    return -row[STRENGTH] * math.cos(_angle(rest, True))
 
 
 @njit

@@ -1,8 +1,8 @@
 """One paraboloid under adhesion of finite range, whose equilibria have a closed form. Notation of ``dugdale``.
 
-With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m and s = 1 + sigma^2 = c^2/m^2, the gap is
+With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m, s = 1 + sigma and e = 1 + sigma^2 = c^2/m^2, the gap is
 
-    2/pi [S c^2 + beta B c],   S = (sigma + theta (1 - sigma^2))/s,   B = (theta - 1/(sqrt s + sigma))/sqrt s,
+    2/pi [S c^2 + beta B c],   S = (sigma + theta (1 - sigma^2))/e,   B = (theta - 1/(sqrt e + sigma))/sqrt e,
 
 so that c follows from a quadratic equation (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243).
 """
@@ -22,17 +22,18 @@ reach: Callable[..., float]
 def edges(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t = a, a, m, theta, g, and da/ds and dg/ds."""
     beta, wanted = row[STRENGTH], math.pi * row[RANGE]
-    sigma, root = math.sqrt(s - 1.0), math.sqrt(s)
-    q = 1.0 / sigma
+    sigma = s - 1.0
+    e = 1.0 + sigma * sigma
+    root, q = math.sqrt(e), 1.0 / sigma
     beyond = less_atan(q)
     theta = q - beyond
-    spread = (theta + (s - 1.0) * beyond) / s
+    spread = (theta + sigma * sigma * beyond) / e
     pull = beta * (theta - 1.0 / (root + sigma)) / root
     turned = math.sqrt(pull * pull + 2.0 * spread * wanted)
     c = wanted / (pull + turned)
     m = c / root
     a = sigma * m
-    growth = 0.5 * c / (s * root) * (theta * sigma / root * (4.0 * m + beta) / turned + q)
+    growth = m / e * (theta * sigma * sigma / root * (4.0 * m + beta) / turned + 1.0)
     return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
 
 
@@ -49,8 +50,7 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     if row[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    sigma = a / reach(a, 2.0 * a * a, 4.0 * a, row)
-    return 1.0 + sigma * sigma
+    return 1.0 + a / reach(a, 2.0 * a * a, 4.0 * a, row)
 
 
 PARTS: tuple[Callable[..., Any], ...] = (zone,)

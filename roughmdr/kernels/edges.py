@@ -17,6 +17,7 @@ _end: float
 zone: Callable[..., tuple[float, float, float]]
 
 _CLOSE = 1e-9  # its square is below rounding
+_ROUNDING = 1e-15
 _PATIENCE = 100
 
 
@@ -24,7 +25,7 @@ def find_junction(row: Floats) -> bool:
     """Find c where contact begins: f(c) + (1 - 2/pi) beta c = w/sigma0. False where the body ends before."""
     wanted, per_c = row[RANGE], (1.0 - 2.0 / math.pi) * row[STRENGTH]
     low, high = 0.0, min(wanted / per_c, _end)
-    if not (high > 0.0 and _height(high, row)[0] + per_c * high >= wanted):
+    if not (high > 0.0 and _height(high, row)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
         return False
     c = high if high < _end else 0.5 * high
     for _ in range(_PATIENCE):

@@ -13,7 +13,7 @@ load: Callable[..., tuple[float, float]]
 stretched: Callable[..., tuple[float, float]]
 
 _NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
-_LOST = 1e-4  # of the depth: the difference of the values has lost four digits
+_LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, four digits are lost
 _GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
 _FINE = 1e-8  # the square of a last step is below rounding
 _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
@@ -28,7 +28,8 @@ def above(t: float, j: int, row: Floats) -> tuple[float, float]:
     if row[TENSION] == 0.0:
         return value, slope
     lifted = value + row[DEPTH]
-    if (step > _NEAR * t and lifted > _LOST * row[DEPTH]) or _kink(foot, t, row):
+    far = step > _NEAR * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
+    if far or _kink(foot, t, row):
         return lifted, slope
     middle = foot + 0.5 * step
     outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]

@@ -22,13 +22,23 @@ _curve: Callable[..., tuple[float, float, float, float]]
 _place: Callable[..., float]
 _edge_count: Callable[..., int]
 _edge: Callable[..., tuple[float, float]]
+_beyond: Callable[..., float] | None
 _flat: bool
 
 # Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
-_Z, _WEIGHT = np.polynomial.legendre.leggauss(32)
+_Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
 _Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
+_FAR = 8.0  # from the lower end of a panel to the higher
+_NARROW = 1e-4  # of c: from a lesser a on that is left to the nodes
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
+
+
+def onward(q: float, base: float, row: Floats) -> float:
+    """t where q = sqrt(x^2 - base^2)."""
+    if _beyond is not None and base > 0.0:
+        return _beyond(q, row)
+    return _place(math.sqrt(base * base + q * q), 1.0, row)
 
 
 def panel(
@@ -43,7 +53,7 @@ def panel(
         psi = end + (begin - end) * _NODES[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
-        _, da, value, dg = _curve(_place(x, 1.0, row), row)
+        _, da, value, dg = _curve(onward(q, base, row), row)
         term = _WEIGHTS[i] * (value - g) * q / x
         j += term
         k += _WEIGHTS[i] * q * dg / da
@@ -61,6 +71,11 @@ def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float
         begin, after = _edge(i, row) if i < count else (math.inf, 0.0)
         if begin > low:
             high = min(begin, c)
+            while base > 0.0 and _FAR * low < high:  # at q << x as smooth as at q = x
+                parts = panel(low, _FAR * low, base, g, c, beside, row)
+                j, k, l = j + parts[0], k + parts[1], l + parts[2]
+                low = _FAR * low
+                beside = math.sqrt((c - low) * (c + low))
             if high > low and (base > 0.0 or not _flat):
                 parts = panel(low, high, base, g, c, beside, row)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
@@ -71,4 +86,4 @@ def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float
     return j, k, l
 
 
-PARTS: tuple[Callable[..., Any], ...] = (panel, zone)
+PARTS: tuple[Callable[..., Any], ...] = (onward, panel, zone)

@@ -54,6 +54,10 @@ def _place(radius: float, width: float, form: Form) -> float:
     return 1.0 + swung(radius, width) / form[0]
 
 
+def _beyond(q: float, form: Form) -> float:
+    return 1.0 + q / form[0]
+
+
 def _one(form: Form) -> int:
     return 1
 
@@ -105,6 +109,7 @@ class CappedParaboloid(Curved):
         corner=True,
         edge_count=one_edge,
         edge=at_one,
+        beyond=_beyond,
     )
 
     def f(self, r: ArrayLike) -> Floats:

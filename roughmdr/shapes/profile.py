@@ -83,6 +83,8 @@ class Profile(NamedTuple):
     """form -> at how many radii g is not smooth."""
     edge: Callable[[int, Form], tuple[float, float]] = _no_edge
     """(number, form) -> such a radius, and the one y for which g is smooth in sqrt(x^2 - y^2) from there on."""
+    beyond: Callable[[float, Form], float] | None = None
+    """(q, form) -> t where q = sqrt(x^2 - y^2) beyond the edge y, where that has more digits than x itself."""
     ready: Callable[[Any], None] = _nothing
     """Fills in what else the functions need to know, in the second place of a form that is one number."""
 

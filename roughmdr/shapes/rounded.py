@@ -110,6 +110,10 @@ def _punch_swept(q: float, form: Form) -> float:
     return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
 
 
+def _punch_beyond(q: float, form: Form) -> float:
+    return q
+
+
 def _punch_height(r: float, form: Form) -> tuple[float, float]:
     return (0.5 * (r - 1.0) * (r - 1.0), r - 1.0) if r > 1.0 else (0.0, 0.0)
 
@@ -137,6 +141,7 @@ class RoundedPunch(Curved):
         flat=True,
         edge_count=one_edge,
         edge=at_one,
+        beyond=_punch_beyond,
     )
 
     def f(self, r: ArrayLike) -> Floats:

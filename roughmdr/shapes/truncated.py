@@ -25,6 +25,10 @@ def _place(radius: float, width: float, form: Form) -> float:
     return swung(radius, width)
 
 
+def _beyond(q: float, form: Form) -> float:
+    return q
+
+
 def _cone_curve(q: float, form: Form) -> tuple[float, float, float, float]:
     """g = a acos(1/a) = a atan q, a = sqrt(1 + q^2)."""
     a, angle = sqrt(1.0 + q * q), atan(q)
@@ -69,6 +73,7 @@ class TruncatedCone(Curved):
         flat=True,
         edge_count=one_edge,
         edge=at_one,
+        beyond=_beyond,
     )
 
     def f(self, r: ArrayLike) -> Floats:
@@ -129,6 +134,7 @@ class TruncatedParaboloid(Curved):
         flat=True,
         edge_count=one_edge,
         edge=at_one,
+        beyond=_beyond,
     )
 
     def f(self, r: ArrayLike) -> Floats:

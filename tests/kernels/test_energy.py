@@ -8,6 +8,7 @@ from test_accuracy import SHAPES, draw
 from twins import Real, Twin, mp
 
 import roughmdr as rm
+from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
 from roughmdr.kernels.elementwise import apply
 
@@ -35,7 +36,7 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
     while compared < 60:
         case = draw(rng, kind, adhesive)
         try:
-            contact = Contact.of(case.shape, case.modulus, case.work)
+            contact = Contact.of(case.shape, case.modulus, Adhesion(case.work))
         except rm.OutOfRange:
             continue
         distance = 10.0 ** rng.uniform(-12.0, 3.0)
@@ -53,7 +54,7 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
 
 @pytest.mark.parametrize("unit", [1e-9, 1e-6, 1.0])
 def test_the_jumps_of_a_paraboloid(unit: float) -> None:
-    contact = Contact.of(rm.Paraboloid(R * unit), E, W)
+    contact = Contact.of(rm.Paraboloid(R * unit), E, Adhesion(W))
     a0 = (2.0 * math.pi * W * (R * unit) ** 2 / E) ** (1.0 / 3.0)
     on, off = (energy(contact, apply(contact.law.state, np.array([X]), 2.0)[0]) for X in (1.0, 0.0))
     assert on == pytest.approx(-0.6 * math.pi * W * a0**2, rel=1e-14)
@@ -66,7 +67,7 @@ def test_the_jumps_of_a_paraboloid(unit: float) -> None:
 @pytest.mark.parametrize("shape", [rm.Paraboloid(R), rm.Cone(0.1), rm.PowerLaw(3.3, width=1e-5, rise=1e-6)])
 def test_it_grows_by_the_work_of_the_force(shape: rm.Paraboloid, work: float) -> None:
     """U(2) - U(1) = ∫ P d(delta), by Gauss-Legendre over the force that indent gives."""
-    contact = Contact.of(shape, E, work)
+    contact = Contact.of(shape, E, Adhesion(work))
     ends = np.array([0.3, 2.0]) * contact.depth[0]
     x, weights = np.polynomial.legendre.leggauss(40)
     delta = ends[0] + (ends[1] - ends[0]) * (x + 1.0) / 2.0

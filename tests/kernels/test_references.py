@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import roughmdr as rm
+from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import SHAPES
@@ -102,7 +103,7 @@ def test_pull_off(name: str, case: dict[str, Any]) -> None:
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_the_energy_of_the_springs(name: str, case: dict[str, Any]) -> None:
     """To 1e-10 of its parts, elastic and surface, of which each is about pi w a^2 or larger."""
-    contact = Contact.of(shape_of(name, case), case["modulus"], case["work"])
+    contact = Contact.of(shape_of(name, case), case["modulus"], Adhesion(case["work"]))
     for row in case["rows"]:
         if row["control"] != "indentation" or "energy" not in row:
             continue
