@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import adhesion_range as study
 import numpy as np
 import pytest
 import tomli_w
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from scenes import ensemble, scene
 
 import roughmdr as rm
+from roughmdr.aggregate.tabor import SHIFT
 from roughmdr.cli import main
 from roughmdr.plan import make_plan
 from roughmdr.scene import read
@@ -245,3 +247,15 @@ def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
     with xr.open_dataset(out) as result:
         assert result.adhesion_law.to_numpy().ravel().tolist() == [1, 2]
     assert any("range of the adhesion" in line for line in make_plan(read(table)).left_out)
+
+
+def test_the_study_goes_from_dmt_to_jkr(tmp_path: Path) -> None:
+    result = study.adhesion_range(count=300, points=3)
+    force = -result.pull_off_force / (np.pi * study.WORK * study.RADIUS)
+    assert result.tabor.to_numpy() == pytest.approx([1e-3, 1.0, 1e3])
+    assert force.sel(control="force").to_numpy()[[0, 2]] == pytest.approx([2.0, 1.5], rel=1e-3)
+    assert float(force.sel(control="displacement")[2]) == pytest.approx(5.0 / 6.0, rel=1e-6)
+    pressed = result.jkr_error.sel(stop=-1.0, roughness=[0.1, 0.3, 1.0, 3.0])
+    assert (pressed <= SHIFT / pressed.roughness / pressed.rough_tabor).all()
+    study.draw(result).savefig(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").stat().st_size > 20_000

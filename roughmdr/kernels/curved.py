@@ -18,8 +18,8 @@ from roughmdr.kernels import (
     dugdale,
     dugdale_folds,
     dugdale_paraboloid,
-    edges,
     folds,
+    margins,
     root,
     start,
     zone,
@@ -124,7 +124,7 @@ _VECTOR_CODE = (
     root.nearer,
     root.arrived,
 )
-_VECTOR_CODE_OF_PARABOLOID = (dugdale_paraboloid.edges, dugdale_paraboloid.zone, dugdale.stretched, dugdale.answer)
+_VECTOR_CODE_OF_PARABOLOID = (dugdale_paraboloid.margins, dugdale_paraboloid.zone, dugdale.stretched, dugdale.answer)
 _ENDS = (fill, prepare, prepare_common, own, common, natural, natural_force)
 _SEARCH = (*root.PARTS, *start.PARTS, *branches.PARTS)
 
@@ -133,12 +133,12 @@ def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]
     """What the kernels are made of, each after what it is made of itself."""
     if not cohesive:
         return (*balance.PARTS, *folds.PARTS, *_SEARCH, *_ENDS, state_of_radius)
-    zone_and_edges = (*zone.PARTS, *edges.PARTS)
+    zone_and_margins = (*zone.PARTS, *margins.PARTS)
     if shape is Paraboloid:
         closed = dugdale_paraboloid
-        zone_and_edges = (*closed.PARTS, edges.find_junction, edges.reach, *closed.AFTER)
+        zone_and_margins = (*closed.PARTS, margins.find_junction, margins.reach, *closed.AFTER)
     search = (*folds.LISTING, *dugdale_folds.PARTS, *_SEARCH)
-    return (balance.strain, *zone_and_edges, *dugdale.PARTS, *search, *_ENDS)
+    return (balance.strain, *zone_and_margins, *dugdale.PARTS, *search, *_ENDS)
 
 
 @cache

@@ -22,11 +22,11 @@ from typing import Any
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH
 
-# Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``edges``.
+# Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``margins``.
 _push: Callable[..., float]
 _height: Callable[..., tuple[float, float]]
 zone: Callable[..., tuple[float, float, float]]
-edges: Callable[..., tuple[float, float, float, float, float, float, float]]
+margins: Callable[..., tuple[float, float, float, float, float, float, float]]
 strain: Callable[..., float]
 
 
@@ -37,7 +37,7 @@ def stretched(s: float, row: Floats) -> tuple[float, float]:
         c = s * row[JUNCTION]
         f, slope = _height(c, row)
         return f - 2.0 / math.pi * beta * c - row[RANGE], row[JUNCTION] * (slope - 2.0 / math.pi * beta)
-    _, a, m, theta, g, da, dg = edges(s, row)
+    _, a, m, theta, g, da, dg = margins(s, row)
     _, k, _ = zone(a, g, m, theta, row)
     c = math.sqrt(a * a + m * m)
     pull = k - beta * m * m / (c + a)
@@ -52,7 +52,7 @@ def load(s: float, row: Floats) -> tuple[float, float]:
     if s <= 1.0:
         c = s * row[JUNCTION]
         return -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * row[JUNCTION]
-    t, a, m, theta, g, da, dg = edges(s, row)
+    t, a, m, theta, g, da, dg = margins(s, row)
     _, k, _ = zone(a, g, m, theta, row)
     square = a * a + m * m
     pull = k - beta * m * m / (math.sqrt(square) + a)
@@ -75,7 +75,7 @@ def answer(s: float, row: Floats) -> tuple[float, float, float]:
     if s <= 1.0:
         k = theta * m * _height(m, row)[1]
     else:
-        t, a, m, theta, g, _, _ = edges(s, row)
+        t, a, m, theta, g, _, _ = margins(s, row)
         push = _push(t, row)
         _, k, _ = zone(a, g, m, theta, row)
     square = a * a + m * m
@@ -85,14 +85,14 @@ def answer(s: float, row: Floats) -> tuple[float, float, float]:
 
 def radius(s: float, row: Floats) -> float:
     """a over width."""
-    return edges(s, row)[1] if s > 1.0 else 0.0
+    return margins(s, row)[1] if s > 1.0 else 0.0
 
 
 def cohesive_radius(s: float, row: Floats) -> float:
     """c over width."""
     if s <= 1.0:
         return s * row[JUNCTION]
-    _, a, m, _, _, _, _ = edges(s, row)
+    _, a, m, _, _, _, _ = margins(s, row)
     return math.sqrt(a * a + m * m)
 
 
@@ -115,7 +115,7 @@ def energy(s: float, row: Floats) -> float:
     if s == 0.0:
         return 0.0
     if s > 1.0:
-        t, a, m, theta, g, _, _ = edges(s, row)
+        t, a, m, theta, g, _, _ = margins(s, row)
     stretch = beta * m if s > 1.0 else -stretched(s, row)[0]
     square = a * a + m * m
     c = math.sqrt(square)

@@ -10,7 +10,7 @@ from typing import Any
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE
 
-# Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``edges`` and ``folds``.
+# Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``margins`` and ``folds``.
 _flat: bool
 _BEGIN: float
 _STRIDE: float
@@ -18,7 +18,7 @@ _edge_count: Callable[..., int]
 _edge: Callable[..., tuple[float, float]]
 _branch: Callable[..., int]
 load: Callable[..., tuple[float, float]]
-edges: Callable[..., tuple[float, float, float, float, float, float, float]]
+margins: Callable[..., tuple[float, float, float, float, float, float, float]]
 find_junction: Callable[..., bool]
 measure_branches: Callable[..., None]
 
@@ -80,7 +80,7 @@ def find_branches(row: Floats) -> None:
         elif was and not stable:
             count = _branch(count, foot, turn(before, s, row), row)
         if s > 1.0:
-            _, a, m, _, _, _, _ = edges(s, row)
+            _, a, m, _, _, _, _ = margins(s, row)
             if stable and m < _SHARP * a and a > beyond:
                 break
         if not s < _LARGEST or count >= MOST:

@@ -15,11 +15,11 @@ from roughmdr.arguments import Floats
 from roughmdr.kernels.row import COUNT, RANGE, STRENGTH
 from roughmdr.shapes.special import less_atan
 
-# The name that ``specialise`` fills with the function of ``edges``.
+# The name that ``specialise`` fills with the function of ``margins``.
 reach: Callable[..., float]
 
 
-def edges(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t = a, a, m, theta, g, and da/ds and dg/ds."""
     beta, wanted = row[STRENGTH], math.pi * row[RANGE]
     sigma = s - 1.0
@@ -54,4 +54,4 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
 
 
 PARTS: tuple[Callable[..., Any], ...] = (zone,)
-AFTER: tuple[Callable[..., Any], ...] = (edges, state_of_radius)
+AFTER: tuple[Callable[..., Any], ...] = (margins, state_of_radius)

@@ -127,3 +127,16 @@ def test_weak_adhesion_tends_to_no_adhesion(shape: rm.PowerLaw) -> None:
         order[name] = np.polyfit(np.log(works), np.log(gaps), 1)[0]
     assert order["contact_radius"] == pytest.approx(0.5, abs=0.01)
     assert order["force"] == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("slope", [0.02, 0.05, 0.3])
+@pytest.mark.parametrize("unit", [1e-9, 1e-7, 1e-2])
+def test_a_truncated_cone_lets_go_at_its_corner_as_a_flat_punch_does(slope: float, unit: float) -> None:
+    modulus, work = 1e9, 0.05 * unit / 1e-7 * (slope / 0.05) ** 2
+    off, punch = (
+        rm.pull_off(shape, modulus=modulus, work=work) for shape in (rm.TruncatedCone(slope, unit), rm.FlatPunch(unit))
+    )
+    assert float(off.contact_radius) == unit
+    assert float(off.force) == pytest.approx(float(punch.force), rel=1e-14)
+    last = rm.indent(rm.TruncatedCone(slope, unit), modulus=modulus, work=work, indentation=float(off.indentation))
+    assert float(last.stiffness) == pytest.approx(2.0 * modulus * unit, rel=1e-12)

@@ -68,7 +68,7 @@ def reach(a: float, g: float, slope: float, row: Floats) -> float:
     return m
 
 
-def edges(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
     if _flat and s < 2.0:
         a = s - 1.0
@@ -87,4 +87,4 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     return _place(radius, width, row) / row[UNIT] + (2.0 if _flat else 1.0)
 
 
-PARTS: tuple[Callable[..., Any], ...] = (find_junction, reach, edges, state_of_radius)
+PARTS: tuple[Callable[..., Any], ...] = (find_junction, reach, margins, state_of_radius)
