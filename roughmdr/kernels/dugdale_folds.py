@@ -8,10 +8,12 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE
+from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
 
 # Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``margins`` and ``folds``.
+_curve: Callable[..., tuple[float, float, float, float]]
 _flat: bool
+_end: float
 _BEGIN: float
 _STRIDE: float
 _edge_count: Callable[..., int]
@@ -28,6 +30,7 @@ _SHARP = 0.1  # m/a of a contact that is as in JKR
 _LARGEST = 1e140  # its square is a float
 _CLOSE = 4e-16
 _PATIENCE = 200
+_LAST = 1.0 - 1e-9  # of the end of the profile: beyond, a float does not tell c from a
 
 
 def following(s: float) -> float:
@@ -74,6 +77,10 @@ def find_branches(row: Floats) -> None:
     while True:
         before, was = s, stable
         s = following(s)
+        if s > 1.0 and _end < math.inf and _curve((s - 1.0) * row[UNIT], row)[0] > _LAST * _end:
+            if stable:
+                break
+            return
         stable = load(s, row)[1] > 0.0
         if stable and not was:
             foot = turn(before, s, row)

@@ -18,6 +18,7 @@ zone: Callable[..., tuple[float, float, float]]
 
 _CLOSE = 1e-9  # its square is below rounding
 _ROUNDING = 1e-15
+_NEAREST = 1e-8  # to the end of the profile; its square is a rounding of it
 _PATIENCE = 100
 
 
@@ -46,7 +47,7 @@ def find_junction(row: Floats) -> bool:
 def reach(a: float, g: float, slope: float, row: Floats) -> float:
     """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms."""
     beta, wanted, c0 = row[STRENGTH], 0.5 * math.pi * row[RANGE], row[JUNCTION]
-    low, high = 0.0, math.sqrt((_end - a) * (_end + a)) if _end < math.inf else math.inf
+    low, high = 0.0, max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
     lone = wanted / beta
     most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
     near = (6.0 * lone * beta * a * (a / slope)) ** (1.0 / 3.0) if slope > 0.0 else math.inf
@@ -58,6 +59,10 @@ def reach(a: float, g: float, slope: float, row: Floats) -> float:
         j, k, _ = zone(a, g, m, theta, row)
         short = m * m / (c + a)
         value = j + beta * (m * theta - short)
+        if not 0.0 < value < math.inf:  # so near to the end of the profile that floats do not tell c from a
+            low, high = (m, high) if value <= 0.0 else (low, m)
+            m = 0.5 * (low + high)
+            continue
         low, high = (m, high) if value < wanted else (low, m)
         slope = k / c + beta * (c * theta / m - short / c)
         change = math.log(wanted / value) * value * c / (m * m * slope)

@@ -4,6 +4,7 @@ import itertools
 import math
 from typing import Any, Literal
 
+import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +14,9 @@ from scipy.integrate import quad
 import roughmdr as rm
 from roughmdr.shapes import Shape
 
+pytestmark = pytest.mark.skipif(
+    numba.config.DISABLE_JIT, reason="the references are read with and without the compiler; this would take minutes"
+)
 E, W, R = 2e9, 0.07, 3e-6
 SPHERE = rm.Paraboloid(radius=R)
 CONE = rm.Cone(slope=0.2)

@@ -10,6 +10,7 @@ import math
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -78,7 +79,13 @@ def shapes() -> list[Case]:
     return found
 
 
-CASES = [pytest.param(case, id=case.name) for case in [*maugis(), *shapes()]]
+SLOW = ("tabulated", "power_series", "sphere")
+"""Shapes that take minutes when they are not compiled."""
+CASES = [
+    pytest.param(case, id=case.name)
+    for case in [*maugis(), *shapes()]
+    if not (numba.config.DISABLE_JIT and case.name.startswith(SLOW))
+]
 
 
 ROUNDINGS = 16 * np.finfo(float).eps
