@@ -8,7 +8,6 @@ shapes. A row is a state of equilibrium; "answers" names the controls under whic
 with the state's distance to the fold of its branch, over that of the pull-off to 0.
 """
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from precise_curve import CONTROLS, WORKING, Curve, Place
 from precise_profiles import ENERGY_WORKING, Number, profile_of
 from precise_punch import Punch
 from precise_springs import sums
+from references import text
 
 MAUGIS_WRITTEN = 30
 WRITTEN = 25
@@ -158,16 +158,6 @@ def punch_rows(punch: Punch) -> list[dict[str, Any]]:
         answers = {control: 1 - found.under(control) / off[control].under(control) for control in held}
         rows.append({**written(found, answers, WRITTEN), "energy": digits(punch.energy(found), WRITTEN)})
     return rows
-
-
-def text(shape: str, entries: list[dict[str, Any]]) -> str:
-    """The JSON of one shape, a row a line."""
-    blocks = []
-    for entry in entries:
-        head = json.dumps({name: value for name, value in entry.items() if name != "rows"})[:-1]
-        rows = ",\n".join(json.dumps(each) for each in entry["rows"])
-        blocks.append(f'{head}, "rows": [\n{rows}\n]}}')
-    return f'{{"shape": {json.dumps(shape)}, "cases": [\n' + ",\n".join(blocks) + "\n]}\n"
 
 
 @click.command(help=(__doc__ or "").split("\n")[0])

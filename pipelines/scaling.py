@@ -30,6 +30,7 @@ from roughmdr.scene import read
 from roughmdr.store import replacing, write
 
 MODULUS, WORK = 4e6, 0.05
+TABOR = (0.1, 1.0, 10.0, 100.0)
 ROWS = frozenset({totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR})
 STATE = frozenset({totals.FORCE, totals.RADIUS, totals.STIFFNESS})
 SHAPES: dict[str, dict[str, Any]] = {
@@ -64,29 +65,54 @@ def ensemble_of(count: int) -> Ensemble:
     return Ensemble.from_dataset(rm.generate({**SECTION, "count": count}, seed=1))
 
 
-def by_the_sum(ensemble: Ensemble, path: np.ndarray, work: float, repeats: int, rows: frozenset[int] = ROWS) -> Cost:
+def by_the_sum(
+    ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = ROWS
+) -> Cost:
     """What the package's sum costs, all included."""
     columns = ensemble.columns()
-    law = choose(ensemble.shape, Adhesion(work), columns[2])
-    memory = staircase(path) if work else no_memory(path)
+    law = choose(ensemble.shape, adhesion, columns[2])
+    memory = staircase(path) if adhesion.work else no_memory(path)
 
     def action() -> int:
-        _, _, visits = loop.add_asperities(
-            law, ensemble.height, columns, MODULUS, Adhesion(work), path, memory, set(rows)
-        )
+        _, _, visits = loop.add_asperities(law, ensemble.height, columns, MODULUS, adhesion, path, memory, set(rows))
         return visits
 
     action()
     return cost_of(action, repeats)
 
 
-def by_shape(count: int, repeats: int) -> xr.Dataset:
-    """What delta -> (P, a, k) costs with JKR, in and out, and what is found out about each asperity before.
+def told_apart(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> tuple[float, float, Cost]:
+    """Seconds of delta -> (P, a, k), seconds of what is found out about each asperity before, and all on 200 steps.
 
-    The two are told apart by paths of few steps and of many.
+    In and out; the first two are told apart by paths of few steps and of many.
     """
+    short, long = (
+        by_the_sum(ensemble, np.concatenate([way_in, way_in[::-1]]), adhesion, repeats, STATE)
+        for way_in in (np.linspace(4e-6, -0.5e-6, steps) for steps in (200, 2000))
+    )
+    each = (long.seconds - short.seconds) / (long.visits - short.visits)
+    return each, (short.seconds - each * short.visits) / ensemble.height.size, short
+
+
+def by_range(count: int, repeats: int) -> xr.Dataset:
+    """What paraboloids cost under adhesion of finite range, by their Tabor number."""
+    ensemble = ensemble_of(count)
+    one = rm.tabor(rm.Paraboloid(radius=50e-6), modulus=MODULUS, work=WORK, strength=1.0)
+    told = [told_apart(ensemble, Adhesion(WORK, "dugdale", tabor / one), repeats) for tabor in TABOR]
+    return xr.Dataset(
+        {
+            "dugdale_state_time": ("tabor", [1e9 * each for each, _, _ in told], ns("time per asperity and step")),
+            "dugdale_asperity_time": ("tabor", [1e9 * before for _, before, _ in told], ns("time per asperity, once")),
+            "dugdale_time": ("tabor", [path.seconds for _, _, path in told], {"units": "s", "long_name": "all of it"}),
+        },
+        coords={"tabor": ("tabor", list(TABOR), {"long_name": "Tabor number"})},
+        attrs={"dugdale_asperities": count},
+    )
+
+
+def by_shape(count: int, repeats: int) -> xr.Dataset:
+    """What delta -> (P, a, k) costs with JKR, in and out, and what is found out about each asperity before."""
     kept = {name: value for name, value in SECTION.items() if name != "radius"}
-    few, many = (np.linspace(4e-6, -0.5e-6, steps) for steps in (200, 2000))
     rows = []
     for shape, parameters in SHAPES.items():
         section = {**kept, "count": count, "shape": shape, **parameters}
@@ -94,11 +120,7 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
         started = time.perf_counter()
         ensemble.columns()  # for a table: its pieces
         profile = time.perf_counter() - started
-        short, long = (
-            by_the_sum(ensemble, np.concatenate([way_in, way_in[::-1]]), WORK, repeats, STATE) for way_in in (few, many)
-        )
-        each = (long.seconds - short.seconds) / (long.visits - short.visits)
-        before = (short.seconds - each * short.visits) / count
+        each, before, short = told_apart(ensemble, Adhesion(WORK), repeats)
         rows.append((each * 1e9, before * 1e9, short.each, profile, by_brentq_on(ensemble, MODULUS, WORK).each))
     each_ns, before_ns, path_ns, profile_s, brentq_ns = np.array(rows).T
     return xr.Dataset(
@@ -182,7 +204,7 @@ def study(quick: bool) -> xr.Dataset:
     cost = np.array(
         [
             [
-                by_the_sum(ensemble, both, work, repeats).each,
+                by_the_sum(ensemble, both, Adhesion(work), repeats).each,
                 by_numpy(small, way_in, MODULUS, work).each,
                 by_brentq(small, way_in, MODULUS, work).each,
             ]
@@ -192,7 +214,7 @@ def study(quick: bool) -> xr.Dataset:
     workers = over_workers(count // 10, 16, repeats)
     seconds, size = million(count)
     return (
-        by_shape(count // 50, repeats)
+        xr.merge([by_shape(count // 50, repeats), by_range(count // 10, repeats)], combine_attrs="no_conflicts")
         .assign(
             {
                 "cost": (("contact", "method"), cost, ns("time per visited asperity and step")),
@@ -252,6 +274,9 @@ def main(output: Path, quick: bool) -> None:
     click.echo(result["cost"].to_pandas().round(2).to_string())
     names = ["state_time", "asperity_time", "path_time", "state_time_brentq", "profile_time"]
     click.echo(result[names].to_dataframe()[names].round(3).to_string())
+    names = ["dugdale_state_time", "dugdale_asperity_time", "dugdale_time"]
+    click.echo(f"{result.attrs['dugdale_asperities']} paraboloids under adhesion of finite range, 200 steps in and out")
+    click.echo(result[names].to_dataframe()[names].round(2).to_string())
     one, two = result["batch_time"].to_numpy()
     click.echo(f"a batch: {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times")
     size = float(result["large_memory"]) / 2**20

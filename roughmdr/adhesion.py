@@ -1,13 +1,12 @@
 """How the surfaces attract each other: what is asked for, checked, and the number that tells which law is right."""
 
 import math
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from roughmdr.arguments import check_number
 from roughmdr.errors import RoughmdrError
 
-Model = Literal["jkr", "dugdale", "auto"]
-_MODELS = ("jkr", "dugdale", "auto")
+Model = Literal["jkr", "dugdale"]
 
 
 class Adhesion(NamedTuple):
@@ -15,7 +14,7 @@ class Adhesion(NamedTuple):
 
     work: float = 0.0
     """w [J/m2]; 0 for none."""
-    model: Model = "jkr"
+    model: Literal["jkr", "dugdale", "auto"] = "jkr"
     strength: float = math.inf
     """sigma0 [Pa], the stress of the attraction (Dugdale); inf where it is not known."""
     error: float = 0.0
@@ -52,20 +51,24 @@ class Adhesion(NamedTuple):
         return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")
 
     @classmethod
-    def checked(cls, model: object, work: float, strength: float | None, error: float = 0.0) -> "Adhesion":
-        """What is asked for. RoughmdrError for an unknown model or a missing strength, OutOfRange for a number."""
+    def checked(cls, model: Model, work: float, strength: float | None) -> "Adhesion":
+        """What is asked for; w [J/m2], sigma0 [Pa] or None where it is not known.
+
+        RoughmdrError for an unknown model or a missing strength, OutOfRange for a number.
+        """
         work = check_number("work", work, "J/m^2", zero=True)
-        if model not in _MODELS or (model == "auto" and error == 0.0):
-            known = _MODELS if error > 0.0 else _MODELS[:2]
-            raise RoughmdrError(f"adhesion is {model!r}; it must be {' or '.join(map(repr, known))}")
-        if strength is not None:
-            strength = check_number("strength", strength, "Pa")
-        elif model != "jkr":
-            raise RoughmdrError(f"strength is missing: adhesion {model!r} needs the stress of the attraction [Pa]")
-        return cls(work, model, math.inf if strength is None else strength, error)  # type: ignore[arg-type]
+        if model not in get_args(Model):
+            raise RoughmdrError(f"adhesion is {model!r}; it must be 'jkr' or 'dugdale'")
+        if strength is None and model == "dugdale":
+            raise RoughmdrError("strength is missing: adhesion 'dugdale' needs the stress of the attraction [Pa]")
+        return cls(work, model, math.inf if strength is None else check_number("strength", strength, "Pa"))
+
+
+def stretch_at(radius: float, modulus: float, work: float) -> float:
+    """dl [m]: how far the edge of a contact of this radius [m] is stretched in JKR, sqrt(2 pi a w/E*) (H 44)."""
+    return math.sqrt(2.0 * math.pi * radius) * math.sqrt(work) / math.sqrt(modulus)
 
 
 def tabor_number(radius: float, modulus: float, work: float, strength: float) -> float:
     """The Tabor number [1] of a contact that lets go at this radius [m] in JKR: dl(radius) strength/(pi^(2/3) work)."""
-    stretch = math.sqrt(2.0 * math.pi) * math.sqrt(radius) * math.sqrt(1.0 / work) / math.sqrt(modulus)
-    return float(stretch * strength / math.pi ** (2.0 / 3.0))
+    return float(stretch_at(radius, modulus, work) / work * strength / math.pi ** (2.0 / 3.0))

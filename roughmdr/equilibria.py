@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.adhesion import Adhesion
+from roughmdr.adhesion import Adhesion, stretch_at
 from roughmdr.arguments import Floats, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
@@ -89,7 +89,7 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
     edge = contact.radius if isinstance(shape, FlatPunch) or (isinstance(shape, Curved) and shape.profile.flat) else 0.0
 
     def stretch(a: float) -> float:
-        return math.sqrt(2.0 * math.pi * a) * math.sqrt(contact.adhesion.work / modulus)
+        return stretch_at(a, modulus, contact.adhesion.work)
 
     def excess(log_a: float, most: float) -> float:
         a = min(math.exp(log_a), most)

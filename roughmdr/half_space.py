@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr import limits
-from roughmdr.adhesion import Adhesion
+from roughmdr.adhesion import Adhesion, stretch_at
 from roughmdr.arguments import Floats, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
@@ -80,7 +80,7 @@ class HalfSpace(NamedTuple):
             stretch = delta
         else:
             profile_of(type(shape)).ready(row)
-            stretch = -math.sqrt(2.0 * math.pi * adhesion.work) / math.sqrt(contact.modulus) * math.sqrt(a)
+            stretch = -stretch_at(a, contact.modulus, adhesion.work)
         state = float(t[0]) if isinstance(shape, Curved) else a / width
         return cls(shape, contact.modulus, delta, a, stretch, state, width, rise, row)
 

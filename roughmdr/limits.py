@@ -15,7 +15,7 @@ Johnson, Contact Mechanics, 1985, section 4.1). At a/R = 0.3 a sphere and its pa
 """
 
 TABOR = 3.0
-"""The Tabor number below which there is a warning."""
+"""The Tabor number below which there is a warning: there the pull-off force of a paraboloid is 1 % from that of JKR."""
 
 
 class Extremes(NamedTuple):

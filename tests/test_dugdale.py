@@ -1,5 +1,6 @@
 """Ensembles under adhesion of finite range, against a slow and plain walk along Maugis's equations."""
 
+import json
 from pathlib import Path
 
 import adhesion_range as study
@@ -10,6 +11,7 @@ import xarray as xr
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mpmath import mp
 from scenes import ensemble, scene
 
 import roughmdr as rm
@@ -18,6 +20,7 @@ from roughmdr.cli import main
 from roughmdr.plan import make_plan
 from roughmdr.scene import read
 
+DATA = Path(__file__).parent / "data"
 E, W = 4e6, 0.05
 VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
 
@@ -173,6 +176,26 @@ def test_the_sum_does_not_depend_on_workers_and_keeps_its_bound() -> None:
     assert float(one.numerical_error.max()) < 1e-11
     assert (one.adhesion_law == 2).all()
     assert float(one.tabor_number.min()) == pytest.approx(float(one.tabor_number.max()), rel=0.5)
+
+
+@pytest.mark.parametrize("name", ["paraboloid", "truncated_cone", "flat_punch"])
+def test_the_bound_on_the_error_holds(name: str) -> None:
+    """Against forces of 25 digits along a retraction, the asperity many times over at heights of its own."""
+    for case in json.loads((DATA / f"dugdale_{name}.json").read_text())["cases"]:
+        rows = [row for row in case["rows"] if "displacement" in row["answers"]]
+        rows.sort(key=lambda row: -mp.mpf(row["indentation"]))
+        law = {key: case[key] for key in ("modulus", "work", "strength")}
+        for height in (0.0, 3e-7, -7e-5):
+            data = ensemble(np.full(300, height), shape=name, **case["parameters"])
+            path = [height - float(row["indentation"]) for row in rows]
+            got = rm.load_separation(data, separation=path, adhesion="dugdale", **law)
+            largest = float(np.abs(got.force).max())
+            for i, row in enumerate(rows):
+                # The force at the separation as it was rounded; the slope of the branch is right for so small a way.
+                moved = mp.mpf(height) - mp.mpf(path[i]) - mp.mpf(row["indentation"])
+                exact = 300 * (mp.mpf(row["force"]) + mp.mpf(row["stiffness"]) * moved)
+                assert abs(mp.mpf(float(got.force[i])) - exact) <= float(got.numerical_error) * largest, (name, row)
+            assert float(got.numerical_error) < 1e-6
 
 
 def test_the_cheapest_law_that_is_right_enough_is_taken() -> None:

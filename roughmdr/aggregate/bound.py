@@ -10,10 +10,12 @@ from roughmdr.aggregate.settle import FORCE, STATE, STIFFNESS
 from roughmdr.arguments import Floats
 
 _UNIT = 2.0**-53  # the largest relative error of one rounding
-_KERNEL_ERROR = 1e-13  # of the force of a contact over its natural scale, as the kernels are tested
+# Of the force of a contact over its natural scale, as the kernels are tested; the second where adhesion has a range.
+_KERNEL_ERROR, _KERNEL_ERROR_COHESIVE = 1e-13, 1e-12
 
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
+_cohesive: bool
 _curved: bool
 _state: Callable[..., float]
 _force: Callable[..., float]
@@ -26,7 +28,8 @@ def worst(count: int, z: Floats, h: float, slope: float, push: float, greatest: 
     """The error [N] of ``count`` contacts whose reduced stiffness and force are at most ``slope`` and ``push``."""
     deepest = greatest[DEPTH] if _adhesive else 0.0
     rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
-    each = slope * greatest[RIGIDITY] * rounding + _KERNEL_ERROR * push * greatest[LOAD]
+    own = _KERNEL_ERROR_COHESIVE if _cohesive else _KERNEL_ERROR
+    each = slope * greatest[RIGIDITY] * rounding + own * push * greatest[LOAD]
     return float(count * each)
 
 

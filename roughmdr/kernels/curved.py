@@ -124,7 +124,13 @@ _VECTOR_CODE = (
     root.nearer,
     root.arrived,
 )
-_VECTOR_CODE_OF_PARABOLOID = (dugdale_paraboloid.margins, dugdale_paraboloid.zone, dugdale.stretched, dugdale.answer)
+_VECTOR_CODE_OF_PARABOLOID = (
+    dugdale_paraboloid.margins,
+    dugdale_paraboloid.zone,
+    dugdale.along,
+    dugdale.stretched,
+    dugdale.answer,
+)
 _ENDS = (fill, prepare, prepare_common, own, common, natural, natural_force)
 _SEARCH = (*root.PARTS, *start.PARTS, *branches.PARTS)
 
@@ -136,7 +142,7 @@ def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]
     zone_and_margins = (*zone.PARTS, *margins.PARTS)
     if shape is Paraboloid:
         closed = dugdale_paraboloid
-        zone_and_margins = (*closed.PARTS, margins.find_junction, margins.reach, *closed.AFTER)
+        zone_and_margins = (*closed.PARTS, margins.find_junction, margins.extent, *closed.AFTER)
     search = (*folds.LISTING, *dugdale_folds.PARTS, *_SEARCH)
     return (balance.strain, *zone_and_margins, *dugdale.PARTS, *search, *_ENDS)
 
@@ -161,8 +167,6 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
         "_corner": profile.corner,
         "_flat": profile.flat,
         "_end": profile.end,
-        # Of the paraboloid there is but one fold.
-        "_BEGIN": 2.0**-8,
         "_STRIDE": 2.0 if shape is Paraboloid else math.sqrt(2.0),
         "octave": compiled(octave, small=True),
         "atan": compiled(atan, small=True),

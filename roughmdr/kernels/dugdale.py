@@ -9,7 +9,7 @@ beta = 2 sigma0/E*, any profile has (from delta = g(a) - beta m and f(c) = 2/pi 
     d(delta) = (g' + beta a/m) da B/D,   c dc = theta (g' + beta a/m) da c^2/D,
     B = K - beta (c - a),   D = B + beta theta c^2/m,
 
-so that a state is stable under fixed grips where B > 0.
+so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta theta^2 c^2/B.
 
 The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
 grows with s. Notation of ``row``.
@@ -30,35 +30,35 @@ margins: Callable[..., tuple[float, float, float, float, float, float, float]]
 strain: Callable[..., float]
 
 
-def stretched(s: float, row: Floats) -> tuple[float, float]:
-    """The indentation at s, and its slope over s."""
+def along(s: float, row: Floats) -> tuple[float, float, float, float, float]:
+    """a over width, delta over rise and its slope over s, P over 2 E* width rise and its slope over s."""
     beta = row[STRENGTH]
     if s <= 1.0:
-        c = s * row[JUNCTION]
+        size = row[JUNCTION]
+        c = s * size
         f, slope = _height(c, row)
-        return f - 2.0 / math.pi * beta * c - row[RANGE], row[JUNCTION] * (slope - 2.0 / math.pi * beta)
-    _, a, m, theta, g, da, dg = margins(s, row)
+        delta = f - 2.0 / math.pi * beta * c - row[RANGE]
+        rise = size * (slope - 2.0 / math.pi * beta)
+        return 0.0, delta, rise, -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * size
+    t, a, m, theta, g, da, dg = margins(s, row)
     _, k, _ = zone(a, g, m, theta, row)
-    c = math.sqrt(a * a + m * m)
-    pull = k - beta * m * m / (c + a)
-    return g - beta * m, (dg * m + beta * a * da) * pull / (pull * m + beta * (c * c) * theta)
+    square = a * a + m * m
+    firm = k - beta * m * m / (math.sqrt(square) + a)  # B
+    rise = (dg * m + beta * a * da) / (firm * m + beta * square * theta)
+    push = _push(t, row) - 0.5 * beta * (a * m + square * theta)
+    return a, g - beta * m, rise * firm, push, rise * (a * firm - beta * theta * theta * square)
+
+
+def stretched(s: float, row: Floats) -> tuple[float, float]:
+    """The indentation at s, and its slope over s."""
+    _, delta, rise, _, _ = along(s, row)
+    return delta, rise
 
 
 def load(s: float, row: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over s."""
-    if row[CONTROL] == 0.0:
-        return stretched(s, row)
-    beta = row[STRENGTH]
-    if s <= 1.0:
-        c = s * row[JUNCTION]
-        return -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * row[JUNCTION]
-    t, a, m, theta, g, da, dg = margins(s, row)
-    _, k, _ = zone(a, g, m, theta, row)
-    square = a * a + m * m
-    pull = k - beta * m * m / (math.sqrt(square) + a)
-    rise = (dg * m + beta * a * da) / (pull * m + beta * square * theta)
-    value = _push(t, row) - 0.5 * beta * (a * m + square * theta)
-    return value, rise * (a * pull - beta * theta * theta * square)
+    _, delta, rise, push, growth = along(s, row)
+    return (delta, rise) if row[CONTROL] == 0.0 else (push, growth)
 
 
 def distance(s: float, row: Floats) -> float:
@@ -67,20 +67,9 @@ def distance(s: float, row: Floats) -> float:
 
 
 def answer(s: float, row: Floats) -> tuple[float, float, float]:
-    """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/(K - beta (c - a))."""
-    beta, theta, t, a, push = row[STRENGTH], 0.5 * math.pi, 0.0, 0.0, 0.0
-    m, g = s * row[JUNCTION], 0.0
-    if s == 0.0:
-        return 0.0, 0.0, 0.0
-    if s <= 1.0:
-        k = theta * m * _height(m, row)[1]
-    else:
-        t, a, m, theta, g, _, _ = margins(s, row)
-        push = _push(t, row)
-        _, k, _ = zone(a, g, m, theta, row)
-    square = a * a + m * m
-    held = beta * theta * theta * square / (k - beta * m * m / (math.sqrt(square) + a))
-    return a, push - 0.5 * beta * (a * m + square * theta), a - held
+    """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/B."""
+    a, _, rise, push, growth = along(s, row)
+    return a, push, growth / rise
 
 
 def radius(s: float, row: Floats) -> float:
@@ -134,6 +123,7 @@ def kink(low: float, high: float, row: Floats) -> bool:
 
 
 PARTS: tuple[Callable[..., Any], ...] = (
+    along,
     stretched,
     load,
     distance,

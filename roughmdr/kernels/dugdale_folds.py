@@ -1,6 +1,6 @@
 """The stable branches under adhesion of finite range: where the controlled quantity grows along the equilibria.
 
-Looked for at places ever further out, halved to the last bit where the slope changes its sign. Notation of ``row``.
+Looked for at places ever further out, and between two of them where the slope changes its sign. Notation of ``row``.
 """
 
 import math
@@ -14,7 +14,6 @@ from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
 _curve: Callable[..., tuple[float, float, float, float]]
 _flat: bool
 _end: float
-_BEGIN: float
 _STRIDE: float
 _edge_count: Callable[..., int]
 _edge: Callable[..., tuple[float, float]]
@@ -25,6 +24,7 @@ find_junction: Callable[..., bool]
 measure_branches: Callable[..., None]
 
 _FIRST = 2.0**-24  # of the way to contact
+_BEGIN = 2.0**-8  # of the unit beyond it
 _ON_FLAT = 1.0 / 16.0
 _SHARP = 0.1  # m/a of a contact that is as in JKR
 _LARGEST = 1e140  # its square is a float

@@ -16,7 +16,7 @@ from roughmdr.kernels.row import COUNT, RANGE, STRENGTH
 from roughmdr.shapes.special import less_atan
 
 # The name that ``specialise`` fills with the function of ``margins``.
-reach: Callable[..., float]
+extent: Callable[..., float]
 
 
 def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
@@ -50,7 +50,7 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     if row[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / reach(a, 2.0 * a * a, 4.0 * a, row)
+    return 1.0 + a / extent(a, 2.0 * a * a, 4.0 * a, row)
 
 
 PARTS: tuple[Callable[..., Any], ...] = (zone,)

@@ -44,7 +44,7 @@ def find_junction(row: Floats) -> bool:
     return 0.0 < c < math.inf and 0.0 < t < math.inf
 
 
-def reach(a: float, g: float, slope: float, row: Floats) -> float:
+def extent(a: float, g: float, slope: float, row: Floats) -> float:
     """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms."""
     beta, wanted, c0 = row[STRENGTH], 0.5 * math.pi * row[RANGE], row[JUNCTION]
     low, high = 0.0, max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
@@ -77,11 +77,11 @@ def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, f
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
     if _flat and s < 2.0:
         a = s - 1.0
-        m = reach(a, 0.0, 0.0, row)
+        m = extent(a, 0.0, 0.0, row)
         return 0.0, a, m, atan(m / a), 0.0, 1.0, 0.0
     t = (s - (2.0 if _flat else 1.0)) * row[UNIT]
     a, da, g, dg = _curve(t, row)
-    m = reach(a, g, dg / da if da > 0.0 else math.inf, row)
+    m = extent(a, g, dg / da if da > 0.0 else math.inf, row)
     return t, a, m, atan(m / a), g, da * row[UNIT], dg * row[UNIT]
 
 
@@ -92,4 +92,4 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     return _place(radius, width, row) / row[UNIT] + (2.0 if _flat else 1.0)
 
 
-PARTS: tuple[Callable[..., Any], ...] = (find_junction, reach, margins, state_of_radius)
+PARTS: tuple[Callable[..., Any], ...] = (find_junction, extent, margins, state_of_radius)

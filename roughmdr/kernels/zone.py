@@ -30,7 +30,6 @@ _Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
 _Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
 _FAR = 8.0  # from the lower end of a panel to the higher
-_NARROW = 1e-4  # of c: from a lesser a on that is left to the nodes
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 
 
@@ -62,7 +61,7 @@ def panel(
 
 
 def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
-    """J, K and L for the contact radius a, g = g(a) m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
+    """J, K and L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
     c = math.sqrt(a * a + m * m)
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m

@@ -15,7 +15,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from roughmdr.adhesion import Adhesion, Model
+from roughmdr.adhesion import Adhesion
 from roughmdr.ensemble import Asperities, SurfaceAsperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.quantities import Quantity, Section, WholeNumber
@@ -59,7 +59,7 @@ class AdhesionSection(Section):
     The attraction's stress is ``strength``, or work over its ``range``; "auto" may be off by ``error``.
     """
 
-    model: Model
+    model: Literal["jkr", "dugdale", "auto"]
     work: Annotated[float, BeforeValidator(Quantity("J/m^2", least=0.0))]
     strength: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
     range: Annotated[float, BeforeValidator(Quantity("m", above=0.0))] | None = None

@@ -207,3 +207,10 @@ def test_the_equations_hold(asperity: tuple[Shape, float, float], tabor: float, 
     assert abs(gap - work / strength) <= 1e-9 * max(work / strength, float(shape.f(c)), abs(delta))
     scale = max(a * height, c * spread, abs(force))
     assert abs(float(contact.force) / (2.0 * modulus) - force) <= 1e-9 * scale
+
+
+def test_an_attraction_that_reaches_around_a_sphere_is_refused() -> None:
+    with pytest.raises(
+        rm.OutOfRange, match=r"strength is 1000 Pa: its range, 7e-05 m, reaches beyond the end of Sphere"
+    ):
+        rm.pull_off(rm.Sphere(radius=R), modulus=E, work=W, adhesion="dugdale", strength=1e3)
