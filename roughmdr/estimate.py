@@ -100,7 +100,7 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
-    part = scene.asperities.count / section.count
+    part = scene.asperities.expected_count / section.expected_count
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 
 

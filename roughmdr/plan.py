@@ -134,7 +134,7 @@ def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
 
 def _seconds(cell: Cell) -> float:
     visit = _VISIT_COHESIVE if "dugdale" in cell.scene.law.candidates else _VISIT
-    return cell.scene.asperities.count * (_DRAW + visit * cell.route.separation.size)
+    return cell.scene.asperities.expected_count * (_DRAW + visit * cell.route.separation.size)
 
 
 def prepare_all(plan: Plan) -> None:

@@ -6,7 +6,7 @@ import scipy.stats
 from scenes import ASPERITIES
 
 import roughmdr as rm
-from roughmdr.ensemble.distributions import SMALLEST_UNIFORM, uniforms
+from roughmdr.ensemble.draws import SMALLEST_UNIFORM, uniforms
 from roughmdr.ensemble.families import find_family
 
 

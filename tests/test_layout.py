@@ -19,6 +19,7 @@ LINES = (
         "variables",
         "labelled",
         "units",
+        "spectrum",
         "wording",
         "quantities",
         "faults",

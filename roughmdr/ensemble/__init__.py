@@ -7,6 +7,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.random import AnyRandomAsperities, RandomAsperities
+from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.surface import SurfaceAsperities
 from roughmdr.errors import SceneError
 from roughmdr.faults import find_faults
@@ -16,19 +17,17 @@ if TYPE_CHECKING:
 
 Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities, Field(discriminator="source")]
 
-__all__ = ["Asperities", "Ensemble", "RandomAsperities", "SurfaceAsperities", "generate"]
+__all__ = ["Asperities", "Ensemble", "RandomAsperities", "Source", "SurfaceAsperities", "generate"]
 
 
-def generate(
-    asperities: dict[str, Any] | RandomAsperities | SurfaceAsperities, *, seed: int, realization: int = 0
-) -> "xr.Dataset":
+def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
     """The ensemble that a run with this seed presses on, as a Dataset over ``asperity``, highest summit first.
 
     asperities is the section of a scene or a dictionary with its keys, quantities as numbers in SI or as strings with
     a unit. The result holds ``height`` [m] and each shape parameter under its argument's name; attrs ``shape``,
     ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
     """
-    section = asperities if isinstance(asperities, RandomAsperities | SurfaceAsperities) else _validated(asperities)
+    section = asperities if isinstance(asperities, Source) else _validated(asperities)
     return section.ensemble(_whole("seed", seed), _whole("realization", realization)).labelled().to_xarray()
 
 
@@ -38,9 +37,9 @@ def _whole(name: str, value: object) -> int:
     return operator.index(value)
 
 
-def _validated(table: dict[str, Any]) -> RandomAsperities | SurfaceAsperities:
+def _validated(table: dict[str, Any]) -> Source:
     try:
-        return TypeAdapter[RandomAsperities | SurfaceAsperities](Asperities).validate_python(table)
+        return TypeAdapter[Source](Asperities).validate_python(table)
     except ValidationError as error:
         if not isinstance(table, dict):
             raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None

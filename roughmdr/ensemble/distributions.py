@@ -6,10 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from roughmdr.arguments import Floats
+from roughmdr.ensemble.draws import SMALLEST_UNIFORM
 from roughmdr.ensemble.families import Family, find_family
-
-_BITS = 52
-SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
 
 
 @dataclass(frozen=True)
@@ -61,13 +59,3 @@ class Distribution:
     def greatest(self) -> float:
         """The greatest value that can be drawn."""
         return float(self.quantile(np.array([1.0 - SMALLEST_UNIFORM]))[0])
-
-
-def uniforms(seed: int, realization: int, quantity_index: int, count: int) -> Floats:
-    """``count`` numbers in (0, 1), never 0 or 1, from the stream of one quantity of one realization.
-
-    The raw bits of Philox are the same in every version of numpy; a longer draw begins with the shorter one.
-    """
-    stream = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(realization, quantity_index)))
-    leading: Floats = (stream.random_raw(count) >> np.uint64(64 - _BITS)).astype(np.float64)
-    return (leading + 0.5) * 2.0**-_BITS

@@ -2,52 +2,34 @@
 
 import math
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
-from roughmdr.ensemble.distributions import Distribution, uniforms
+from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
+from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.patch import PatchSource
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, Length, Quantity, Section, WholeNumber
+from roughmdr.quantities import EntryError, WholeNumber
 from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
 from roughmdr.units import DIMENSIONLESS, quantity
 
-# Which stream of random numbers a quantity has. Never renumber: results of old seeds hang on it.
-_HEIGHT_STREAM = 0
-_FIRST_PARAMETER_STREAM = 2  # 1 is kept for positions
 
-
-class RandomAsperities(Section):
+class RandomAsperities(PatchSource):
     """[asperities] with source = "random": ``count`` asperities on a square of side ``patch``."""
-
-    drawn: ClassVar[bool] = True
-    """Whether realisations differ."""
 
     source: Literal["random"]
     shape: str
     count: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))]
-    patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
-    placement: Literal["random", "hard_core", "hexagonal"] = "random"
-    min_distance: Length | None = None
     height: Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]
-
-    @field_validator("min_distance")
-    @classmethod
-    def _only_with_hard_core(cls, value: float | None, info: ValidationInfo) -> float | None:
-        if value is not None and info.data.get("placement", "hard_core") != "hard_core":
-            raise RoughmdrError('goes with placement = "hard_core" only')
-        return value
 
     @model_validator(mode="after")
     def _parameters_describe_the_shape(self) -> "RandomAsperities":
         if self.fixed is None:
             SHAPES[self.shape].spelling(set(self.distributions))
-        if self.placement == "hard_core" and self.min_distance is None:
-            raise RoughmdrError('placement = "hard_core" needs min_distance')
         return self
 
     @model_validator(mode="after")
@@ -88,22 +70,24 @@ class RandomAsperities(Section):
         return self.model_copy(update={"count": min(count, self.count)})
 
     @property
-    def inputs(self) -> tuple[Path, ...]:
-        """The files that the asperities are read from."""
-        return ()
+    def expected_count(self) -> float:
+        """How many asperities there are."""
+        return float(self.count)
 
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]."""
         return self.height.std
 
-    def ensemble(self, seed: int, realization: int) -> Ensemble:
+    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of one realization."""
-        height = self.height.quantile(uniforms(seed, realization, _HEIGHT_STREAM, self.count))
         order = list(SHAPES[self.shape].units)
+        streams = {name: PARAMETER + order.index(name) for name in self.distributions}
+        varied = tuple(streams[name] for name, entry in self.distributions.items() if entry.constant is None)
+        draws = spread(seed, realization, (HEIGHT, *varied)) if stratified else independent(seed, realization)
+        height = self.height.quantile(draws(HEIGHT, self.count))
         parameters = {
-            name: entry.quantile(uniforms(seed, realization, _FIRST_PARAMETER_STREAM + order.index(name), self.count))
-            for name, entry in self.distributions.items()
+            name: entry.quantile(draws(streams[name], self.count)) for name, entry in self.distributions.items()
         }
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
         return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs, fixed=self.fixed)

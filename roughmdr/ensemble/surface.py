@@ -10,8 +10,8 @@ from pydantic import field_validator
 
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.quantities import Section
 from roughmdr.units import unit_factor
 
 if TYPE_CHECKING:
@@ -21,11 +21,10 @@ _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a q
 _UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular grid
 
 
-class SurfaceAsperities(Section):
+class SurfaceAsperities(Source):
     """[asperities] with source = "surface": ``file`` is a netCDF map, height(x, y)."""
 
     drawn: ClassVar[bool] = False
-    """Whether realisations differ."""
 
     source: Literal["surface"]
     file: str
@@ -53,13 +52,9 @@ class SurfaceAsperities(Section):
         return value
 
     @property
-    def count(self) -> int:
+    def expected_count(self) -> float:
         """How many summits there are."""
-        return self.summits.height.size
-
-    def sampled(self, count: int) -> "SurfaceAsperities":
-        """The same: a map has the summits that it has."""
-        return self
+        return float(self.summits.height.size)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -71,7 +66,7 @@ class SurfaceAsperities(Section):
         """Standard deviation of the summit heights [m]."""
         return float(np.std(self.summits.height))
 
-    def ensemble(self, seed: int, realization: int) -> Ensemble:
+    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of the map: always the same ones."""
         return replace(self.summits, attrs={**self.summits.attrs, "seed": seed})
 

@@ -1,0 +1,30 @@
+"""Asperities on a square patch: how large it is, and where they stand."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
+
+from roughmdr.ensemble.source import Source
+from roughmdr.errors import RoughmdrError
+from roughmdr.quantities import Length, Quantity
+
+
+class PatchSource(Source):
+    """A source whose asperities lie on a square of side ``patch``."""
+
+    patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
+    placement: Literal["random", "hard_core", "hexagonal"] = "random"
+    min_distance: Length | None = None
+
+    @field_validator("min_distance")
+    @classmethod
+    def _only_with_hard_core(cls, value: float | None, info: ValidationInfo) -> float | None:
+        if value is not None and info.data.get("placement", "hard_core") != "hard_core":
+            raise RoughmdrError('goes with placement = "hard_core" only')
+        return value
+
+    @model_validator(mode="after")
+    def _hard_core_has_a_distance(self) -> "PatchSource":
+        if self.placement == "hard_core" and self.min_distance is None:
+            raise RoughmdrError('placement = "hard_core" needs min_distance')
+        return self

@@ -1,0 +1,55 @@
+"""What every source of asperities has in common: what a scene, a plan and a run ask of it."""
+
+import math
+from pathlib import Path
+from typing import ClassVar
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.quantities import Section
+from roughmdr.shapes import Common
+
+
+class Source(Section):
+    """[asperities]; each source declares its keys and answers what stands here."""
+
+    drawn: ClassVar[bool] = True
+    """Whether realisations differ."""
+
+    source: str
+    shape: str
+
+    @property
+    def fixed(self) -> Common | None:
+        """The one profile of all asperities, where the shape's parameters are no plain numbers."""
+        return None
+
+    @property
+    def least_exponent(self) -> float:
+        """The least exponent among the tips."""
+        return math.inf
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the asperities are read from."""
+        return ()
+
+    @property
+    def expected_count(self) -> float:
+        """How many asperities there are, on average."""
+        raise NotImplementedError
+
+    def sampled(self, count: int) -> "Source":
+        """The same with about ``count`` asperities at most, where that can be."""
+        return self
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the heights [m]."""
+        raise NotImplementedError
+
+    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
+        """The asperities of one realization.
+
+        ``stratified`` draws them evenly spread over their distribution, ``placed`` gives them positions.
+        """
+        raise NotImplementedError

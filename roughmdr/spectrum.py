@@ -1,0 +1,107 @@
+"""Isotropic Gaussian roughness: the moments of its spectrum, and the self-affine spectrum.
+
+The spectrum C(q) [m4] over the wave vector is such that <h^2> = ∫ C d^2q = 2 pi ∫ q C dq.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats, check_number
+from roughmdr.errors import OutOfRange, RoughmdrError
+
+RING = 1.5
+"""Nayak's parameter alpha of waves of one length, all directions: there is none below."""
+
+
+class Moments(NamedTuple):
+    """Moments of the spectrum of a profile (M. S. Longuet-Higgins, Phil. Trans. R. Soc. A 249 (1957) 321)."""
+
+    m0: float
+    """<h^2> [m2]."""
+    m2: float
+    """<(dh/dx)^2> [1]; the r.m.s. slope of the surface is sqrt(2 m2)."""
+    m4: float
+    """<(d2h/dx2)^2> [1/m2]."""
+
+    @classmethod
+    def checked(cls, m0: float, m2: float, m4: float) -> "Moments":
+        """The moments; OutOfRange unless all are above 0 and m0 m4/m2^2 above 3/2."""
+        given = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "1/m2"))
+        if not RING < given.alpha < math.inf:
+            raise OutOfRange(
+                f"alpha = m0 m4/m2^2 is {given.alpha:g}; it must be above 3/2, as it is for every isotropic surface"
+            )
+        return given
+
+    @property
+    def alpha(self) -> float:
+        """How broad the spectrum is, m0 m4/m2^2 (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
+        return (self.m0 / self.m2) * (self.m4 / self.m2)
+
+
+class SelfAffine(NamedTuple):
+    """C(q) = level (q/q0)^(-2 - 2 hurst) from q0 = 2 pi/long_wave to q1 = 2 pi/short_wave, 0 elsewhere."""
+
+    hurst: float
+    long_wave: float
+    short_wave: float
+    level: float
+    """C(q0) [m4]."""
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        hurst: float,
+        long_wave: float,
+        short_wave: float,
+        rms_height: float | None = None,
+        rms_slope: float | None = None,
+    ) -> "SelfAffine":
+        """The spectrum with either this r.m.s. height [m] or this r.m.s. slope sqrt(<|grad h|^2>) [1].
+
+        hurst from 0 to 1, wavelengths [m]. OutOfRange where a number is not so, RoughmdrError unless one of the two
+        is given.
+        """
+        hurst = check_number("hurst", hurst, "1", zero=True)
+        if hurst > 1.0:
+            raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
+        long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
+        if not short_wave < long_wave:
+            raise OutOfRange(f"short_wave is {short_wave:g} m; it must be below long_wave, {long_wave:g} m")
+        one = cls(hurst, long_wave, short_wave, 1.0)
+        if rms_height is not None and rms_slope is None:
+            return one._replace(level=(check_number("rms_height", rms_height, "m") / one.rms_height) ** 2)
+        if rms_slope is not None and rms_height is None:
+            return one._replace(level=(check_number("rms_slope", rms_slope, "1") / one.rms_slope) ** 2)
+        raise RoughmdrError("a self-affine spectrum takes either rms_height or rms_slope")
+
+    def __call__(self, q: ArrayLike) -> Floats:
+        """C(q) [m4] at wave numbers q [1/m] of at least 0."""
+        x = np.asarray(q, dtype=np.float64) * self.long_wave / (2.0 * np.pi)
+        inside = (x >= 1.0) & (x <= self.long_wave / self.short_wave)
+        return np.where(inside, self.level * np.where(inside, x, 1.0) ** (-2.0 - 2.0 * self.hurst), 0.0)
+
+    def _power(self, k: int) -> float:
+        """∫ q^k C dq."""
+        q0, octaves = 2.0 * math.pi / self.long_wave, math.log(self.long_wave / self.short_wave)
+        p = (k - 1.0 - 2.0 * self.hurst) * octaves
+        return self.level * q0 ** (k + 1) * octaves * (math.expm1(p) / p if p else 1.0)
+
+    @property
+    def moments(self) -> Moments:
+        """2 pi ∫ q C, pi ∫ q^3 C and (3 pi/4) ∫ q^5 C dq."""
+        return Moments(2.0 * math.pi * self._power(1), math.pi * self._power(3), 0.75 * math.pi * self._power(5))
+
+    @property
+    def rms_height(self) -> float:
+        """sqrt(<h^2>) [m]."""
+        return math.sqrt(self.moments.m0)
+
+    @property
+    def rms_slope(self) -> float:
+        """sqrt(<|grad h|^2>) [1]."""
+        return math.sqrt(2.0 * self.moments.m2)
