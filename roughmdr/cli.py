@@ -180,6 +180,7 @@ def new(scene: Path) -> None:
 @_changes
 def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ...]) -> None:
     """Write the asperities that a run of SCENE presses on."""
+    from roughmdr.ensemble import make
     from roughmdr.scene import read
     from roughmdr.store import check_writable, provenance, write
 
@@ -188,9 +189,9 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
         if axis.key.startswith("asperities."):
             raise SceneError(f"sweep: changes {axis.key} from cell to cell; say which with --set {axis.key}=VALUE")
     if realization > 0 and not asked.asperities.drawn:
-        raise SceneError(f"--realization {realization}: a measured surface has only one, 0")
+        raise SceneError(f"--realization {realization}: there is only one, 0; nothing here is drawn")
     check_writable(output, asked.inputs)
-    made = asked.asperities.ensemble(asked.seed, realization).labelled()
+    made = make(asked.asperities, asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
     click.echo(f"asperities   {made.sizes['asperity']} of shape {made.attrs['shape']}")
     click.echo(f"ensemble     {click.format_filename(output)}")

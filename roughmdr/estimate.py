@@ -106,7 +106,7 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
 
 def _start_up(cell: Cell) -> float:
     """Seconds of a run that is as little as a run of the cell's kind can be: all of it is to start."""
-    shape = SHAPES[cell.scene.asperities.shape]
+    shape = SHAPES[cell.scene.asperities.shape_name]
     asperities = {"source": "random", "shape": shape.name, "count": 1, "patch": 1.0, "height": 0.0}
     smallest = {
         "material": {"effective_modulus": 1.0},

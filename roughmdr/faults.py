@@ -68,7 +68,8 @@ def _fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
             allowed = [name.strip("'") for name in context["expected"].replace(" or ", ", ").split(", ")]
             return Fault(".".join(keys), value, f"not available{suggestion(str(fault['input']), allowed)}")
         case "value_error" if isinstance(error := context["error"], EntryError):
-            return Fault(".".join([*keys, error.key]), shown(error.value), str(error))
+            given = "" if error.value is None else shown(error.value)
+            return Fault(".".join([*keys, error.key]), given, str(error))
         case "value_error":
             return Fault(".".join(keys), value, str(context["error"]))
         case "model_type" | "dict_type" | "model_attributes_type":

@@ -142,7 +142,7 @@ def prepare_all(plan: Plan) -> None:
     needed = {}
     for cell in plan.cells:
         law = cell.scene.law
-        needed[cell.scene.asperities.shape, law.work > 0.0, law.candidates, law.known] = law
+        needed[cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known] = law
     for (shape, *_), law in needed.items():
         prepare(shape, law)
 

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.random import AnyRandomAsperities, RandomAsperities
+from roughmdr.ensemble.file import FileAsperities
+from roughmdr.ensemble.random import RandomAsperities
+from roughmdr.ensemble.random_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.surface import SurfaceAsperities
 from roughmdr.errors import SceneError
@@ -15,9 +17,9 @@ from roughmdr.faults import find_faults
 if TYPE_CHECKING:
     import xarray as xr
 
-Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities, Field(discriminator="source")]
+Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities | FileAsperities, Field(discriminator="source")]
 
-__all__ = ["Asperities", "Ensemble", "RandomAsperities", "Source", "SurfaceAsperities", "generate"]
+__all__ = ["Asperities", "Ensemble", "RandomAsperities", "Source", "SurfaceAsperities", "generate", "make"]
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
@@ -28,7 +30,12 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
     ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
     """
     section = asperities if isinstance(asperities, Source) else _validated(asperities)
-    return section.ensemble(_whole("seed", seed), _whole("realization", realization)).labelled().to_xarray()
+    return make(section, _whole("seed", seed), _whole("realization", realization)).labelled().to_xarray()
+
+
+def make(section: Source, seed: int, realization: int) -> Ensemble:
+    """The ensemble of a section for a user to keep: with positions where it says how to place them."""
+    return section.ensemble(seed, realization, placed="placement" in section.model_fields_set)
 
 
 def _whole(name: str, value: object) -> int:

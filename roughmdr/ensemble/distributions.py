@@ -2,12 +2,16 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import SMALLEST_UNIFORM
 from roughmdr.ensemble.families import Family, find_family
+
+# Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
+_SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 
 
 @dataclass(frozen=True)
@@ -20,11 +24,20 @@ class Distribution:
     """The family's own shape parameters."""
     loc: float
     scale: float
+    min: float = -math.inf
+    """Where it is cut off below."""
+    max: float = math.inf
+    """Where it is cut off above."""
 
     @property
     def constant(self) -> float | None:
         """The value, where every draw has the same."""
         return None if self.family else self.loc
+
+    @property
+    def cut(self) -> bool:
+        """Whether it is cut off at either end."""
+        return math.isfinite(self.min) or math.isfinite(self.max)
 
     @property
     def _standard(self) -> Family:
@@ -33,22 +46,94 @@ class Distribution:
             raise AssertionError("checked when the distribution was read")
         return family
 
+    def _fractions(self, values: Floats) -> tuple[Floats, Floats]:
+        """The fractions of the uncut distribution below and above values."""
+        reduced = (values - self.loc) / self.scale
+        with np.errstate(all="ignore"):
+            return self._standard.below(reduced, *self.own), self._standard.above(reduced, *self.own)
+
+    @cached_property
+    def _tails(self) -> tuple[float, float, float]:
+        """The fractions of the uncut distribution below ``min`` and above ``max``, and what is left between them."""
+        if not self.cut:
+            return 0.0, 0.0, 1.0
+        below, above = self._fractions(np.array([self.min, self.max]))
+        left = above[0] - above[1] if below[0] > 0.5 else below[1] - below[0]
+        return float(below[0]), float(above[1]), float(left)
+
+    @property
+    def share(self) -> float:
+        """The part of the uncut distribution that lies between ``min`` and ``max``."""
+        return self._tails[2]
+
+    def _between(self, lower: Floats, upper: Floats) -> Floats:
+        """The values below which the fractions ``lower`` and above which ``upper`` = 1 - lower lie.
+
+        From the nearer tail of the uncut distribution: its inverse near 1 may round to infinity.
+        """
+        below, above, left = self._tails
+        lower, upper = below + left * lower, above + left * upper
+        values = np.empty_like(lower)
+        far = upper < lower
+        with np.errstate(all="ignore"):  # what overflows is refused when the distribution is read
+            values[~far] = self._standard.lower(lower[~far], *self.own)
+            values[far] = self._standard.upper(upper[far], *self.own)
+            values = values * self.scale + self.loc
+        return np.clip(values, self.min, self.max) if self.cut else values
+
     def quantile(self, uniform: Floats) -> Floats:
         """The values below which the given fractions lie."""
+        return self._between(uniform, 1.0 - uniform) if self.family else np.full_like(uniform, self.loc)
+
+    def of_scores(self, scores: Floats) -> Floats:
+        """The values that lie as high in the distribution as ``scores`` do in the standard normal one."""
+        from scipy.special import ndtr
+
+        return self._between(ndtr(scores), ndtr(-scores)) if self.family else np.full_like(scores, self.loc)
+
+    def scores(self, values: Floats) -> Floats:
+        """The standard normal scores of values; the inverse of ``of_scores``."""
+        from scipy.special import ndtri
+
+        below, above = self._fractions(values)
+        (below_min, below_max), (above_min, above_max) = self._fractions(np.array([self.min, self.max]))
+        low = below < above  # differences of the nearer tail keep their digits
+        lower = np.where(low, below - below_min, above_min - above) / self.share
+        upper = np.where(low, below_max - below, above - above_max) / self.share
+        scores = np.where(lower < upper, ndtri(lower.clip(0.0, 1.0)), -ndtri(upper.clip(0.0, 1.0)))
+        return np.asarray(scores)
+
+    def density(self, values: Floats) -> Floats:
+        """The density at values, over the unit of the quantity; 0 where there is none, inf where it has a pole."""
+        with np.errstate(all="ignore"):
+            density = self._standard.density((values - self.loc) / self.scale, *self.own) / (self.scale * self.share)
+        return np.where((values >= self.min) & (values <= self.max), density, 0.0)
+
+    @cached_property
+    def _moments(self) -> tuple[float, float]:
+        """Mean and standard deviation where it is cut."""
+        from scipy.special import ndtr
+
+        values = self._between(ndtr(_SCORES), ndtr(-_SCORES))
+        weights = np.exp(-0.5 * _SCORES**2) * (_SCORE_STEP / math.sqrt(2.0 * math.pi))
+        middle = float(values[_SCORES.size // 2])
+        with np.errstate(all="ignore"):  # a cut at one end may leave no moments
+            mean = middle + float(weights @ (values - middle))
+            return mean, math.sqrt(float(weights @ (values - mean) ** 2))
+
+    @property
+    def mean(self) -> float:
+        """Mean; inf or NaN where the distribution has none."""
         if not self.family:
-            return np.full_like(uniform, self.loc)
-        # From the nearer tail: 1 - u is exact, and the inverse near 1 may round to infinity.
-        values = np.empty_like(uniform)
-        upper = uniform > 0.5
-        with np.errstate(all="ignore"):  # what overflows is refused when the distribution is read
-            values[~upper] = self._standard.lower(uniform[~upper], *self.own)
-            values[upper] = self._standard.upper(1.0 - uniform[upper], *self.own)
-            return values * self.scale + self.loc
+            return self.loc
+        return self._moments[0] if self.cut else self.loc + self.scale * self._standard.moments(*self.own)[0]
 
     @property
     def std(self) -> float:
         """Standard deviation; inf or NaN where the distribution has none."""
-        return self.scale * math.sqrt(self._standard.moments(*self.own)[1]) if self.family else 0.0
+        if not self.family:
+            return 0.0
+        return self._moments[1] if self.cut else self.scale * math.sqrt(self._standard.moments(*self.own)[1])
 
     @property
     def least(self) -> float:

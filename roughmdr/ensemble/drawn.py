@@ -17,6 +17,8 @@ _FRIENDLY = {
     "weibull": "weibull_min",
 }
 _LOCATION = ("loc", "scale", "mean", "std")
+_ENDS = ("min", "max")
+_LEAST_SHARE = 1e-200  # of a distribution that is cut off: less has no digits left
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,7 @@ class Drawn:
     """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
 
     The parameters are scipy's own (shape parameters, loc, scale) or mean and std; ``mean`` is their default mean.
+    ``min`` and ``max`` cut the distribution that the others describe off.
     Raises RoughmdrError, with the names that would do, where it cannot be read.
     """
 
@@ -48,12 +51,13 @@ class Drawn:
         """The names of the parameters that an entry can have."""
         given = value.get("distribution") if isinstance(value, dict) else None
         family = find_family(_FRIENDLY.get(given, given)) if isinstance(given, str) else None
-        return list(_LOCATION) if family is None else _parameters(family)
+        return [*_LOCATION, *_ENDS] if family is None else _parameters(family)
 
     def parameter(self, name: str) -> Quantity:
         """What reads one parameter of the table."""
         return Quantity(
-            self.dimension if name in _LOCATION else DIMENSIONLESS, above=0.0 if name in ("std", "scale") else None
+            self.dimension if name in (*_LOCATION, *_ENDS) else DIMENSIONLESS,
+            above=0.0 if name in ("std", "scale") else None,
         )
 
     def _number(self, name: str, value: object) -> float:
@@ -84,8 +88,10 @@ class Drawn:
             if key not in allowed:
                 raise EntryError(key, entry, f"{given} has no such parameter; it takes {', '.join(allowed)}")
         numbers = {key: self._number(key, entry) for key, entry in table.items()}
+        least, most = numbers.pop("min", -math.inf), numbers.pop("max", math.inf)
         try:
-            distribution = Distribution(name, *_located(family, given, numbers, self.mean))
+            distribution = Distribution(name, *_located(family, given, numbers, self.mean), least, most)
+            _check_cut(distribution, given)
             ends = distribution.least, distribution.greatest
         except (ArithmeticError, RuntimeError) as error:
             raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
@@ -95,7 +101,18 @@ class Drawn:
 
 
 def _parameters(family: Family) -> list[str]:
-    return [*family.shapes, *_LOCATION]
+    return [*family.shapes, *_LOCATION, *_ENDS]
+
+
+def _check_cut(distribution: Distribution, given: str) -> None:
+    if not distribution.cut:
+        return
+    if not distribution.min < distribution.max:
+        raise EntryError("max", distribution.max, f"must be above min, {distribution.min:g}")
+    if not distribution.share >= _LEAST_SHARE:
+        raise RoughmdrError(
+            f"{given} has next to nothing between min, {distribution.min:g}, and max, {distribution.max:g}"
+        )
 
 
 def _located(

@@ -96,7 +96,11 @@ class Ensemble:
             parameters, fixed = _parameters(dataset, kind)
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
-        return cls.sorted(shape, height, parameters, _nominal_area(dataset.attrs), positions, fixed=fixed)
+        area = _nominal_area(dataset.attrs)
+        sides: dict[str, float | int | str] = {
+            name: float(dataset.attrs[name]) for name in ("patch", "patch_x", "patch_y") if name in dataset.attrs
+        }
+        return cls.sorted(shape, height, parameters, area, positions, sides, fixed)
 
 
 def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], Common | None]:

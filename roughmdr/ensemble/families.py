@@ -25,12 +25,38 @@ class Family(NamedTuple):
     """(u, *own) -> the values below which the fractions u lie."""
     upper: Callable[..., Floats]
     """(u, *own) -> the values above which the fractions u lie."""
+    below: Callable[..., Floats]
+    """(x, *own) -> the fractions below the values x."""
+    above: Callable[..., Floats]
+    """(x, *own) -> the fractions above the values x."""
+    density: Callable[..., Floats]
+    """(x, *own) -> the density at x."""
 
 
 def _normal(uniform: Floats) -> Floats:
     from scipy.special import ndtri
 
     return np.asarray(ndtri(uniform))
+
+
+def _below_normal(x: Floats) -> Floats:
+    from scipy.special import ndtr
+
+    return np.asarray(ndtr(x))
+
+
+def _normal_density(x: Floats) -> Floats:
+    return np.asarray(np.exp(-0.5 * x**2) / np.sqrt(2.0 * np.pi))
+
+
+def _log(x: Floats) -> Floats:
+    """The logarithm, -inf where there is none."""
+    return np.log(np.maximum(x, 0.0))
+
+
+def _log_normal_density(x: Floats, s: float) -> Floats:
+    inside = np.where(x > 0.0, x, 1.0)
+    return np.where(x > 0.0, _normal_density(np.log(inside) / s) / (s * inside), 0.0)
 
 
 def _log_normal_moments(s: float) -> tuple[float, float]:
@@ -40,15 +66,36 @@ def _log_normal_moments(s: float) -> tuple[float, float]:
 
 
 _LEAN = {
-    "norm": Family((), lambda: True, lambda: (0.0, 1.0), _normal, lambda u: -_normal(u)),
+    "norm": Family(
+        (),
+        lambda: True,
+        lambda: (0.0, 1.0),
+        _normal,
+        lambda u: -_normal(u),
+        _below_normal,
+        lambda x: _below_normal(-x),
+        _normal_density,
+    ),
     "lognorm": Family(
         ("s",),
         lambda s: s > 0.0,
         _log_normal_moments,
         lambda u, s: np.exp(s * _normal(u)),
         lambda u, s: np.exp(s * -_normal(u)),
+        lambda x, s: _below_normal(_log(x) / s),
+        lambda x, s: _below_normal(-_log(x) / s),
+        _log_normal_density,
     ),
-    "uniform": Family((), lambda: True, lambda: (0.5, 1.0 / 12.0), lambda u: u, lambda u: 1.0 - u),
+    "uniform": Family(
+        (),
+        lambda: True,
+        lambda: (0.5, 1.0 / 12.0),
+        lambda u: u,
+        lambda u: 1.0 - u,
+        lambda x: np.clip(x, 0.0, 1.0),
+        lambda x: np.clip(1.0 - x, 0.0, 1.0),
+        lambda x: np.where((x >= 0.0) & (x <= 1.0), 1.0, 0.0),
+    ),
 }
 
 
@@ -70,6 +117,9 @@ def _from_scipy(family: Any) -> Family:
         lambda *own: tuple(float(moment) for moment in family.stats(*own, moments="mv")),
         lambda u, *own: np.asarray(family.ppf(u, *own)),
         lambda u, *own: np.asarray(family.isf(u, *own)),
+        lambda x, *own: np.asarray(family.cdf(x, *own)),
+        lambda x, *own: np.asarray(family.sf(x, *own)),
+        lambda x, *own: np.asarray(family.pdf(x, *own)),
     )
 
 

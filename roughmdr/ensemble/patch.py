@@ -4,6 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
+from roughmdr.arguments import Floats
+from roughmdr.ensemble.draws import Draws
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.quantities import Length, Quantity
@@ -12,6 +14,7 @@ from roughmdr.quantities import Length, Quantity
 class PatchSource(Source):
     """A source whose asperities lie on a square of side ``patch``."""
 
+    shape: str
     patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
@@ -28,3 +31,20 @@ class PatchSource(Source):
         if self.placement == "hard_core" and self.min_distance is None:
             raise RoughmdrError('placement = "hard_core" needs min_distance')
         return self
+
+    @property
+    def shape_name(self) -> str:
+        """The shape of the asperities."""
+        return self.shape
+
+    def positions(self, draws: Draws, count: int) -> dict[str, Floats]:
+        """x and y [m] of ``count`` asperities; OutOfRange where they cannot stand as far apart as asked."""
+        from roughmdr.ensemble import placement
+
+        if self.min_distance is not None:
+            x, y = placement.hard_core(draws, count, self.patch, self.min_distance)
+        elif self.placement == "hexagonal":
+            x, y = placement.hexagonal(count, self.patch)
+        else:
+            x, y = placement.at_random(draws, count, self.patch)
+        return {"x": x, "y": y}

@@ -1,175 +1,159 @@
-"""source = "random": heights and shape parameters drawn from distributions, independent of each other."""
+"""source = "random": heights and shape parameters drawn from distributions."""
 
-import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
+from pydantic import BeforeValidator, model_validator
 
+from roughmdr.ensemble.count import poisson
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
-from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
+from roughmdr.ensemble.draws import PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.patch import PatchSource
+from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, WholeNumber
-from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
-from roughmdr.units import DIMENSIONLESS, quantity
+from roughmdr.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.shapes import SHAPES
+from roughmdr.units import DIMENSIONLESS
+
+_MOST = 1_000_000_000
+_Height = Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]
+
+
+class Second(Section):
+    """[asperities.second]: a second population, this share of all asperities; what it leaves out is as in the first."""
+
+    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, most=1.0))]
+    height: _Height | None = None
+
+
+class Correlation(Section):
+    """[asperities.correlation]: Spearman's rank correlation between the height and one shape parameter."""
 
 
 class RandomAsperities(PatchSource):
-    """[asperities] with source = "random": ``count`` asperities on a square of side ``patch``."""
+    """[asperities] with source = "random": ``count`` asperities, or a ``density``, on a square of side ``patch``."""
 
     source: Literal["random"]
-    shape: str
-    count: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))]
-    height: Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]
+    count: Annotated[int, BeforeValidator(WholeNumber(1, _MOST))] | None = None
+    density: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
+    height: _Height
+    second: Second | None = None
+    correlation: Correlation | None = None
 
     @model_validator(mode="after")
     def _parameters_describe_the_shape(self) -> "RandomAsperities":
         if self.fixed is None:
             SHAPES[self.shape].spelling(set(self.distributions))
+        if (self.count is None) == (self.density is None):
+            raise RoughmdrError("takes count, or a density from which the number in each realisation is drawn")
+        if self.density is not None and not self.expected_count <= _MOST:
+            raise EntryError(
+                "density", self.density, f"puts {self.expected_count:.3g} asperities on the patch; at most {_MOST:g}"
+            )
         return self
 
     @model_validator(mode="after")
-    def _parameters_go_together(self) -> "RandomAsperities":
-        for name, floor, reason in SHAPES[self.shape].not_below:
-            entry, least = self.distributions[name], self.distributions[floor]
-            if entry.least < least.greatest:
-                raise EntryError(
-                    name,
-                    f"from {entry.least:.3g}",
-                    f"must not be below {floor}, which can be as high as {least.greatest:.3g}: {reason}",
-                )
+    def _populations_fit(self) -> "RandomAsperities":
+        for name in _given(self.second, self.shape):
+            if name not in self.distributions:
+                raise EntryError(f"second.{name}", None, f"is not given for the first population: {self._spelled}")
+        for population in self.law.populations:
+            _check_order(self.shape, population)
+        name = self.law.correlated
+        if self.correlation is not None and not name:
+            raise EntryError("correlation", None, f"names no parameter of the {self.shape}; it takes {self._spelled}")
+        if len(_given(self.correlation, self.shape)) > 1:
+            raise EntryError("correlation", None, "takes one parameter: it goes with the height")
+        for quantity_name in (name, "height") if name else ():
+            if any(self._entry(each, quantity_name).constant is not None for each in self.law.populations):
+                raise EntryError(f"correlation.{name}", None, f"needs a {quantity_name} that is not always the same")
         return self
 
+    @property
+    def _spelled(self) -> str:
+        return ", ".join(self.distributions) or "none"
+
+    @staticmethod
+    def _entry(population: Population, name: str) -> Distribution:
+        return population.height if name == "height" else population.parameters[name]
+
     @cached_property
-    def fixed(self) -> Common | None:
-        """The one profile of all asperities, where the shape's parameters are no plain numbers."""
-        return None
+    def law(self) -> AsperityLaw:
+        """What heights and parameters are drawn from."""
+        first = Population(1.0, self.height, self.distributions)
+        populations = [first]
+        if self.second is not None:
+            share = self.second.share
+            parameters = {**self.distributions, **_given(self.second, self.shape)}
+            second = Population(share, self.second.height or self.height, parameters)
+            populations = [Population(1.0 - share, self.height, self.distributions), second]
+        order = list(SHAPES[self.shape].units)
+        streams = {name: PARAMETER + order.index(name) for name in self.distributions}
+        correlated = _given(self.correlation, self.shape)
+        name = next((name for name in correlated if name in self.distributions), "")
+        return AsperityLaw(tuple(populations), streams, name, correlated.get(name, 0.0))
 
     @property
     def least_exponent(self) -> float:
         """The least exponent among the tips."""
         if self.fixed is not None:
             return self.fixed.least_exponent(np.asarray(self.fixed.stretched()[2])[None])
-        exponent = self.distributions.get("exponent")
-        return math.inf if exponent is None else exponent.least
+        exponents = [
+            each.parameters["exponent"].least for each in self.law.populations if "exponent" in each.parameters
+        ]
+        return min(exponents, default=np.inf)
 
     @property
     def distributions(self) -> dict[str, Distribution]:
         """The distribution of each shape parameter that was given."""
-        if self.fixed is not None:
-            return {}
-        entries = {name: getattr(self, name) for name in SHAPES[self.shape].units}
-        return {name: entry for name, entry in entries.items() if entry is not None}
+        return {} if self.fixed is not None else _given(self, self.shape)
 
     def sampled(self, count: int) -> "RandomAsperities":
-        """The same with at most ``count`` asperities."""
-        return self.model_copy(update={"count": min(count, self.count)})
+        """The same with at most about ``count`` asperities."""
+        if self.count is not None:
+            return self.model_copy(update={"count": min(count, self.count)})
+        return self.model_copy(update={"density": min(count, self.expected_count) / self.patch / self.patch})
 
     @property
     def expected_count(self) -> float:
-        """How many asperities there are."""
-        return float(self.count)
+        """How many asperities there are, on average."""
+        return self.density * self.patch * self.patch if self.density is not None else float(self.count or 0)
 
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]."""
-        return self.height.std
+        return self.law.sigma
 
     def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
-        """The asperities of one realization."""
-        order = list(SHAPES[self.shape].units)
-        streams = {name: PARAMETER + order.index(name) for name in self.distributions}
-        varied = tuple(streams[name] for name, entry in self.distributions.items() if entry.constant is None)
-        draws = spread(seed, realization, (HEIGHT, *varied)) if stratified else independent(seed, realization)
-        height = self.height.quantile(draws(HEIGHT, self.count))
-        parameters = {
-            name: entry.quantile(draws(streams[name], self.count)) for name, entry in self.distributions.items()
-        }
+        """The asperities of one realization; their number is the nearest to the mean where they are stratified."""
+        draws = spread(seed, realization, self.law.varied) if stratified else independent(seed, realization)
+        if self.count is not None or stratified:
+            count = round(self.expected_count)
+        else:
+            count = poisson(draws, self.expected_count)
+        height, parameters = self.law.draw(draws, count)
+        positions = self.positions(draws, count) if placed else {}
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
-        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, attrs=attrs, fixed=self.fixed)
+        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, positions, attrs, self.fixed)
 
 
-def _terms(value: object) -> dict[str, float]:
-    """Reads the terms of a power series, { "exponent" = coefficient }."""
-    if not isinstance(value, dict) or not value:
-        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
-    terms = {}
-    for exponent, coefficient in value.items():
-        try:
-            float(exponent)
-        except ValueError:
-            raise EntryError(exponent, coefficient, 'the exponent must be a number, as in { "2" = 1e4 }') from None
-        try:
-            terms[exponent] = quantity(coefficient, DIMENSIONLESS)
-        except RoughmdrError as error:
-            hint = '; an exponent with a point needs quotes, as "2.5"' if isinstance(coefficient, dict) else ""
-            raise EntryError(exponent, coefficient, f"{error}{hint}") from None
-    PowerSeries(terms)
-    return terms
+def _given(section: Section | None, shape: str) -> dict[str, Any]:
+    """What a section says of the shape parameters, by their names."""
+    if section is None:
+        return {}
+    entries = {name: getattr(section, name, None) for name in SHAPES[shape].units}
+    return {name: entry for name, entry in entries.items() if entry is not None}
 
 
-def _lengths(value: object) -> list[float]:
-    """Reads a list of lengths."""
-    if not isinstance(value, list):
-        raise RoughmdrError('must be a list of lengths, as [0, "1 um", "2 um"]')
-    return [quantity(entry, "m") for entry in value]
-
-
-class RandomPowerSeries(RandomAsperities):
-    """Asperities that are all the same power series."""
-
-    shape: Literal["power_series"]
-    terms: Annotated[dict[str, float], BeforeValidator(_terms)]
-
-    @cached_property
-    def fixed(self) -> Common:
-        """The series; ShapeError where it is none."""
-        return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
-
-
-class RandomTabulated(RandomAsperities):
-    """Asperities that all have the same measured profile."""
-
-    shape: Literal["tabulated"]
-    r: Annotated[list[float], BeforeValidator(_lengths)]
-    f: Annotated[list[float], BeforeValidator(_lengths)]
-
-    @field_validator("f")
-    @classmethod
-    def _is_a_profile(cls, value: list[float], info: ValidationInfo) -> list[float]:
-        if "r" in info.data:
-            Tabulated(info.data["r"], value)
-        return value
-
-    @cached_property
-    def fixed(self) -> Common:
-        """The table; ShapeError where it is none."""
-        return Tabulated(self.r, self.f)
-
-
-def _section(shape: type[Shape]) -> type[RandomAsperities]:
-    """The section of one shape, with a key for each of its parameters."""
-    always = set.intersection(*(set(spelling) for spelling in shape.spellings))
-    keys: dict[str, Any] = {}
-    for name, unit in shape.units.items():
-        kind = Annotated[Distribution, BeforeValidator(Drawn(unit, positive=True))]
-        keys[name] = (kind, ...) if name in always else (kind | None, None)
-    keys["shape"] = (Literal[shape.name], ...)
-    return create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys)
-
-
-if TYPE_CHECKING:
-    AnyRandomAsperities = RandomAsperities
-else:
-    AnyRandomAsperities = Annotated[
-        Union[
-            RandomPowerSeries,
-            RandomTabulated,
-            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, Common)),
-        ],
-        Field(discriminator="shape"),
-    ]
+def _check_order(shape: str, population: Population) -> None:
+    for name, floor, reason in SHAPES[shape].not_below:
+        entry, least = population.parameters[name], population.parameters[floor]
+        if entry.least < least.greatest:
+            raise EntryError(
+                name,
+                f"from {entry.least:.3g}",
+                f"must not be below {floor}, which can be as high as {least.greatest:.3g}: {reason}",
+            )

@@ -16,7 +16,11 @@ class Source(Section):
     """Whether realisations differ."""
 
     source: str
-    shape: str
+
+    @property
+    def shape_name(self) -> str:
+        """The shape of the asperities."""
+        raise NotImplementedError
 
     @property
     def fixed(self) -> Common | None:

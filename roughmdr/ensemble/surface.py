@@ -3,13 +3,14 @@
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
+from pydantic import AfterValidator
 
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.file import check_is_file
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.units import unit_factor
@@ -27,7 +28,7 @@ class SurfaceAsperities(Source):
     drawn: ClassVar[bool] = False
 
     source: Literal["surface"]
-    file: str
+    file: Annotated[str, AfterValidator(check_is_file)]
     shape: Literal["paraboloid"] = "paraboloid"
 
     @cached_property
@@ -40,16 +41,10 @@ class SurfaceAsperities(Source):
         except SceneError as error:
             raise SceneError(f"{self.file}: {error}") from None
 
-    @field_validator("file")
-    @classmethod
-    def _is_there(cls, value: str) -> str:
-        try:
-            there = Path(value).is_file()
-        except OSError as error:
-            raise RoughmdrError(f"cannot be read: {error.strerror}") from None
-        if not there:
-            raise RoughmdrError("no such file")
-        return value
+    @property
+    def shape_name(self) -> str:
+        """The shape of the asperities."""
+        return self.shape
 
     @property
     def expected_count(self) -> float:

@@ -16,7 +16,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from roughmdr.adhesion import Adhesion
-from roughmdr.ensemble import Asperities, SurfaceAsperities
+from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.quantities import Quantity, Section, WholeNumber
 from roughmdr.scene.path import Path
@@ -169,8 +169,9 @@ class Scene(Section):
         except OutOfRange as error:
             raise _misfit("material.modulus", str(error)) from None
         if not self.asperities.drawn and self.batch.realizations > 1:
-            raise _misfit("batch.realizations", "must be 1 with a measured surface: there is only one")
-        if isinstance(self.asperities, SurfaceAsperities):
+            source = self.asperities.source
+            raise _misfit("batch.realizations", f"must be 1 with source {source!r}: nothing of it is drawn")
+        if not self.asperities.drawn:
             return self
         sigma = self.asperities.sigma
         if self.path.uses_sigma and not 0.0 < sigma < math.inf:

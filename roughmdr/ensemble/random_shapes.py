@@ -1,0 +1,103 @@
+"""The sections of source = "random", one a shape, with a key for each of its parameters."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+
+from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator
+
+from roughmdr.ensemble.distributions import Distribution
+from roughmdr.ensemble.drawn import Drawn
+from roughmdr.ensemble.random import Correlation, RandomAsperities, Second
+from roughmdr.errors import RoughmdrError
+from roughmdr.quantities import EntryError, Quantity
+from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
+from roughmdr.units import DIMENSIONLESS, quantity
+
+
+def _terms(value: object) -> dict[str, float]:
+    """Reads the terms of a power series, { "exponent" = coefficient }."""
+    if not isinstance(value, dict) or not value:
+        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
+    terms = {}
+    for exponent, coefficient in value.items():
+        try:
+            float(exponent)
+        except ValueError:
+            raise EntryError(exponent, coefficient, 'the exponent must be a number, as in { "2" = 1e4 }') from None
+        try:
+            terms[exponent] = quantity(coefficient, DIMENSIONLESS)
+        except RoughmdrError as error:
+            hint = '; an exponent with a point needs quotes, as "2.5"' if isinstance(coefficient, dict) else ""
+            raise EntryError(exponent, coefficient, f"{error}{hint}") from None
+    PowerSeries(terms)
+    return terms
+
+
+def _lengths(value: object) -> list[float]:
+    """Reads a list of lengths."""
+    if not isinstance(value, list):
+        raise RoughmdrError('must be a list of lengths, as [0, "1 um", "2 um"]')
+    return [quantity(entry, "m") for entry in value]
+
+
+class RandomPowerSeries(RandomAsperities):
+    """Asperities that are all the same power series."""
+
+    shape: Literal["power_series"]
+    terms: Annotated[dict[str, float], BeforeValidator(_terms)]
+
+    @cached_property
+    def fixed(self) -> Common:
+        """The series; ShapeError where it is none."""
+        return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
+
+
+class RandomTabulated(RandomAsperities):
+    """Asperities that all have the same measured profile."""
+
+    shape: Literal["tabulated"]
+    r: Annotated[list[float], BeforeValidator(_lengths)]
+    f: Annotated[list[float], BeforeValidator(_lengths)]
+
+    @field_validator("f")
+    @classmethod
+    def _is_a_profile(cls, value: list[float], info: ValidationInfo) -> list[float]:
+        if "r" in info.data:
+            Tabulated(info.data["r"], value)
+        return value
+
+    @cached_property
+    def fixed(self) -> Common:
+        """The table; ShapeError where it is none."""
+        return Tabulated(self.r, self.f)
+
+
+def _section(shape: type[Shape]) -> type[RandomAsperities]:
+    """The section of one shape, with a key for each of its parameters."""
+    always = set.intersection(*(set(spelling) for spelling in shape.spellings))
+    keys: dict[str, Any] = {}
+    others: dict[str, Any] = {}
+    together: dict[str, Any] = {}
+    rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, least=-1.0, most=1.0))]
+    for name, unit in shape.units.items():
+        kind = Annotated[Distribution, BeforeValidator(Drawn(unit, positive=True))]
+        keys[name] = (kind, ...) if name in always else (kind | None, None)
+        others[name] = (kind | None, None)
+        together[name] = (rank | None, None)
+    keys["shape"] = (Literal[shape.name], ...)
+    keys["second"] = (create_model(f"Second{shape.__name__}", __base__=Second, **others) | None, None)
+    keys["correlation"] = (create_model(f"Correlation{shape.__name__}", __base__=Correlation, **together) | None, None)
+    return create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys)
+
+
+if TYPE_CHECKING:
+    AnyRandomAsperities = RandomAsperities
+else:
+    AnyRandomAsperities = Annotated[
+        Union[
+            RandomPowerSeries,
+            RandomTabulated,
+            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, Common)),
+        ],
+        Field(discriminator="shape"),
+    ]
