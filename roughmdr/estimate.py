@@ -16,7 +16,7 @@ import tomli_w
 
 from roughmdr.aggregate import Route, compute
 from roughmdr.errors import RoughmdrError
-from roughmdr.plan import Cell, Plan, prepare_all
+from roughmdr.plan import Cell, Plan, law_of, prepare_all
 from roughmdr.shapes import SHAPES
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
@@ -90,6 +90,9 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
 
     def run() -> tuple[float, float]:
         started = time.perf_counter()
+        if scene.batch.estimator == "expected":
+            law_of(scene, route, 0, plan.scene.output.variables)
+            return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0)
         made = time.perf_counter()
         compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=plan.scene.output.variables)
@@ -100,7 +103,8 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
-    part = scene.asperities.expected_count / section.expected_count
+    sampled = scene.batch.estimator != "expected"
+    part = scene.asperities.expected_count / section.expected_count if sampled else 1.0
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 
 

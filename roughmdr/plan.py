@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate import Route, prepare
+from roughmdr.aggregate import LoadSeparation, Route, compute, prepare
 from roughmdr.aggregate.route import branches
 from roughmdr.errors import SceneError
 from roughmdr.labelled import Array
@@ -20,6 +20,7 @@ from roughmdr.variables import COORDINATES, LAW
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
 # batch into tasks that are long beside dask's own 0.4 ms.
 _DRAW, _VISIT, _VISIT_COHESIVE = 2e-7, 5e-9, 3e-7
+_NODES = 10_000  # what an expected law takes, in visits a step
 _TASK_SECONDS = 0.1  # a batch that takes less is one task: to load dask takes as long
 _TASKS_AT_LEAST = 8  # so that two or three workers finish together
 
@@ -134,6 +135,8 @@ def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
 
 def _seconds(cell: Cell) -> float:
     visit = _VISIT_COHESIVE if "dugdale" in cell.scene.law.candidates else _VISIT
+    if cell.scene.batch.estimator == "expected":
+        return _NODES * visit * cell.route.separation.size
     return cell.scene.asperities.expected_count * (_DRAW + visit * cell.route.separation.size)
 
 
@@ -142,9 +145,22 @@ def prepare_all(plan: Plan) -> None:
     needed = {}
     for cell in plan.cells:
         law = cell.scene.law
+        if cell.scene.batch.estimator == "expected":
+            continue  # its tables are made by kernels of one asperity, which compile when they are first used
         needed[cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known] = law
     for (shape, *_), law in needed.items():
         prepare(shape, law)
+
+
+def law_of(scene: Scene, route: Route, realization: int, variables: list[str]) -> LoadSeparation:
+    """The law of one realisation of a scene without a sweep, by its estimator."""
+    modulus, adhesion, section = scene.modulus, scene.law, scene.asperities
+    if scene.batch.estimator == "expected":
+        from roughmdr import expected
+
+        return expected.compute(section, route, modulus=modulus, adhesion=adhesion, variables=variables)
+    ensemble = section.ensemble(scene.seed, realization, stratified=scene.batch.estimator == "stratified")
+    return compute(ensemble, route, modulus=modulus, adhesion=adhesion, variables=variables)
 
 
 def left_out(scene: Scene) -> list[str]:
@@ -165,6 +181,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "range of the adhesion: adhesion.model is 'jkr'"
     if scene.work == 0.0:
         yield "hysteresis: without adhesion a contact has no memory"
+    if scene.batch.estimator == "expected":
+        yield "random draws: batch.estimator is 'expected'"
     if scene.asperities.drawn:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import compute
 from roughmdr.arguments import Floats
 from roughmdr.errors import LimitWarning, RoughmdrError
 from roughmdr.labelled import Labelled
 from roughmdr.limits import Extremes
-from roughmdr.plan import Plan, make_plan, prepare_all
+from roughmdr.plan import Plan, law_of, make_plan, prepare_all
 from roughmdr.progress import Advance, progress
 from roughmdr.result import LAWS, assemble
 from roughmdr.scene import Scene, read
@@ -114,9 +113,8 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
     for row, number in enumerate(runs):
         (scene, route), realization = plan.run(number)
         started = time.perf_counter()
-        ensemble = scene.asperities.ensemble(scene.seed, realization)
         try:
-            result = compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=names)
+            result = law_of(scene, route, realization, names)
         except RoughmdrError as error:
             raise type(error)(f"{plan.name_of(number)}: {error}") from None
         for name in names:

@@ -36,6 +36,7 @@ LINES = (
     ("ensemble",),
     ("scene",),
     ("aggregate",),
+    ("expected",),
     ("theory",),
     ("plan", "statistics", "store", "result", "progress", "runner", "estimate"),
     ("views", "curves", "analysis", "describe", "plots", "cli", "__main__"),

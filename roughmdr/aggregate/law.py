@@ -25,7 +25,7 @@ from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 if TYPE_CHECKING:
     import xarray as xr
 
-_ROW = {
+ROW = {
     "force": totals.FORCE,
     "pressure": totals.FORCE,
     "contact_area": totals.AREA,
@@ -36,6 +36,7 @@ _ROW = {
     "energy": totals.ENERGY,
     "dissipated_energy": totals.DISSIPATED,
 }
+"""Which row of the totals a variable is made from."""
 _PER_AREA = {"pressure", "contact_fraction"}
 
 
@@ -55,6 +56,29 @@ class LoadSeparation(NamedTuple):
     model: str
     """The law of adhesion that was taken."""
 
+    @classmethod
+    def of(
+        cls,
+        total: Floats,
+        names: list[str],
+        nominal_area: float | None,
+        extremes: Extremes,
+        visits: int,
+        tabor: float,
+        model: str,
+    ) -> "LoadSeparation":
+        """The law that ``total`` [row, step] comes to; OutOfRange where a variable is not representable."""
+        results = {name: total[ROW[name]] for name in names}
+        for name in _PER_AREA.intersection(names):
+            with np.errstate(over="ignore"):  # refused below
+                results[name] = results[name] / nominal_area
+            if not np.isfinite(results[name]).all():
+                raise OutOfRange(f"{name} is not representable on a nominal area of {nominal_area:g} m2")
+        largest, error = float(np.max(np.abs(total[totals.FORCE]))), float(np.max(total[totals.ERROR]))
+        relative = error / largest if largest > 0.0 else 0.0
+        taken = extremes._replace(tabor=tabor if model == "jkr" else math.inf)
+        return cls(results, relative, taken, visits, tabor, model)
+
 
 def compute(
     ensemble: Ensemble, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
@@ -68,7 +92,7 @@ def compute(
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
         raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
     columns = ensemble.columns()
-    reach = range_of(ensemble.shape, ensemble.height, columns, modulus, adhesion)
+    reach = range_of(ensemble.shape, float(np.std(ensemble.height)), columns, modulus, adhesion)
     adhesion = adhesion.settled(reach.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
     total, reached, visits = loop.add_asperities(
@@ -79,19 +103,10 @@ def compute(
         adhesion,
         route.separation,
         route.memory,
-        {totals.ERROR, totals.FORCE, *(_ROW[name] for name in names)},
+        {totals.ERROR, totals.FORCE, *(ROW[name] for name in names)},
     )
-    results = {name: total[_ROW[name]] for name in names}
-    for name in _PER_AREA.intersection(names):
-        with np.errstate(over="ignore"):  # refused below
-            results[name] = results[name] / ensemble.nominal_area
-        if not np.isfinite(results[name]).all():
-            raise OutOfRange(f"{name} is not representable on a nominal area of {ensemble.nominal_area:g} m2")
-    largest = float(np.max(np.abs(total[totals.FORCE])))
-    error = float(np.max(total[totals.ERROR]))
-    relative = error / largest if largest > 0.0 else 0.0
-    extremes = ensemble.extremes(reached)._replace(tabor=reach.tabor if adhesion.model == "jkr" else math.inf)
-    return LoadSeparation(results, relative, extremes, visits, reach.tabor, adhesion.model)
+    extremes = ensemble.extremes(reached)
+    return LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -105,7 +120,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         law = choose(shape, one, form)
         loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
     if adhesion.known:
-        range_of(shape, np.zeros(1), columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
+        range_of(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
 
 def load_separation(

@@ -6,8 +6,6 @@ from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple, cast
 
-import numpy as np
-
 from roughmdr._jit import specialise
 from roughmdr.adhesion import Adhesion, tabor_number
 from roughmdr.aggregate.block import BLOCK
@@ -61,16 +59,19 @@ def _compiled(law: Law) -> Callable[..., tuple[float, float]]:
 
 
 def range_of(
-    shape: str, height: Floats, columns: tuple[Floats, Floats, Floats], modulus: float, adhesion: Adhesion
+    shape: str, spread: float, columns: tuple[Floats, Floats, Floats], modulus: float, adhesion: Adhesion
 ) -> Range:
-    """Whether the range of adhesion matters; its Tabor number is 0 where a contact is not representable in JKR."""
+    """Whether the range of adhesion matters; its Tabor number is 0 where a contact is not representable in JKR.
+
+    ``spread`` is the standard deviation of the heights [m].
+    """
     if not adhesion.known:
         return Range()
     law = choose(shape, Adhesion(adhesion.work), columns[2])
     radius, depth = _compiled(law)(*columns, modulus, adhesion.work)
     if not 0.0 < radius < math.inf:
         return Range(0.0, math.inf)
-    tabor, spread = tabor_number(radius, modulus, adhesion.work, adhesion.strength), float(np.std(height))
+    tabor = tabor_number(radius, modulus, adhesion.work, adhesion.strength)
     kind = SHAPES[shape]
     sharp = issubclass(kind, Curved) and kind.profile.flat and kind.profile.corner
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf

@@ -37,6 +37,11 @@ class PatchSource(Source):
         """The shape of the asperities."""
         return self.shape
 
+    @property
+    def nominal_area(self) -> float:
+        """Of the patch [m2]."""
+        return self.patch * self.patch
+
     def positions(self, draws: Draws, count: int) -> dict[str, Floats]:
         """x and y [m] of ``count`` asperities; OutOfRange where they cannot stand as far apart as asked."""
         from roughmdr.ensemble import placement

@@ -11,6 +11,7 @@ from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.draws import PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
 from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.errors import RoughmdrError
@@ -127,6 +128,26 @@ class RandomAsperities(PatchSource):
         """Standard deviation of the heights [m]."""
         return self.law.sigma
 
+    def not_integrable(self, estimator: str) -> str:
+        """The expected law needs heights that are spread, and parameters that do not follow from them."""
+        if estimator != "expected":
+            return ""
+        if any(each.height.constant is not None for each in self.law.populations):
+            return "all heights are the same"
+        if abs(self.law.rank_correlation) == 1.0:
+            return "the height alone tells the parameter that is correlated with it"
+        return ""
+
+    @property
+    def one_parameter(self) -> bool:
+        """Whether just one shape parameter is drawn, and from one distribution."""
+        drawn = [entry for entry in self.distributions.values() if entry.constant is None]
+        return len(drawn) == 1 and len(self.law.populations) == 1
+
+    def nodes(self, rule: Rule) -> Nodes:
+        """Nodes at the scores of a rule, for each shape parameter that is not a constant."""
+        return nodes_of(self.law, rule)
+
     def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of one realization; their number is the nearest to the mean where they are stratified."""
         draws = spread(seed, realization, self.law.varied) if stratified else independent(seed, realization)
@@ -137,7 +158,7 @@ class RandomAsperities(PatchSource):
         height, parameters = self.law.draw(draws, count)
         positions = self.positions(draws, count) if placed else {}
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
-        return Ensemble.sorted(self.shape, height, parameters, self.patch * self.patch, positions, attrs, self.fixed)
+        return Ensemble.sorted(self.shape, height, parameters, self.nominal_area, positions, attrs, self.fixed)
 
 
 def _given(section: Section | None, shape: str) -> dict[str, Any]:

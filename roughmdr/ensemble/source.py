@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.quantities import Section
 from roughmdr.shapes import Common
 
@@ -40,6 +41,24 @@ class Source(Section):
     @property
     def expected_count(self) -> float:
         """How many asperities there are, on average."""
+        raise NotImplementedError
+
+    @property
+    def nominal_area(self) -> float | None:
+        """[m2]; None where it is not known."""
+        raise NotImplementedError
+
+    def not_integrable(self, estimator: str) -> str:
+        """Why the asperities cannot be "stratified" or their "expected" law be taken; empty where they can."""
+        return "" if self.drawn else f"nothing of source {self.source!r} is drawn"
+
+    @property
+    def one_parameter(self) -> bool:
+        """Whether just one shape parameter is drawn, and from one distribution."""
+        return False
+
+    def nodes(self, rule: Rule) -> Nodes:
+        """Asperities with weights that stand for all: at the scores of a rule for each parameter that is drawn."""
         raise NotImplementedError
 
     def sampled(self, count: int) -> "Source":

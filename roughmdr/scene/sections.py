@@ -106,8 +106,12 @@ class Output(Section):
 
 
 class Batch(Section):
-    """[batch]: how many realisations."""
+    """[batch]: how many realisations, and how each is made.
 
+    "sampled" draws asperities, "stratified" draws them evenly spread, "expected" integrates over their distribution.
+    """
+
+    estimator: Literal["sampled", "stratified", "expected"] = "sampled"
     realizations: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))] = 1
 
 
@@ -171,6 +175,10 @@ class Scene(Section):
         if not self.asperities.drawn and self.batch.realizations > 1:
             source = self.asperities.source
             raise _misfit("batch.realizations", f"must be 1 with source {source!r}: nothing of it is drawn")
+        if self.batch.estimator != "sampled" and (reason := self.asperities.not_integrable(self.batch.estimator)):
+            raise _misfit("batch.estimator", f"cannot be {self.batch.estimator!r}: {reason}")
+        if self.batch.estimator == "expected" and self.batch.realizations > 1:
+            raise _misfit("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
         if not self.asperities.drawn:
             return self
         sigma = self.asperities.sigma

@@ -1,0 +1,5 @@
+"""The expected law of an ensemble: integrals over the distribution that asperities are drawn from, instead of draws."""
+
+from roughmdr.expected.law import compute
+
+__all__ = ["compute"]

@@ -1,0 +1,141 @@
+"""Integrals of what a contact bears over the density of its heights, step by step: two tables multiplied."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr._jit import njit
+from roughmdr.arguments import Floats
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+# The last two coefficients of Legendre's polynomials in a product, which tell how far its integral may be off.
+_LAST = np.array([(n + 0.5) * _WEIGHTS * np.polynomial.legendre.Legendre.basis(n)(_NODES) for n in (14, 15)])
+
+
+@njit
+def evaluate(coefficients: Floats, u: Floats, out: Floats, before: Floats, earlier: Floats) -> None:
+    """A Chebyshev series at all u, by C. W. Clenshaw's recurrence."""
+    for i in range(u.size):
+        before[i] = 0.0
+        earlier[i] = 0.0
+    degree = coefficients.size - 1
+    while degree > 0 and coefficients[degree] == 0.0:
+        degree -= 1
+    for n in range(degree, 0, -1):
+        c = coefficients[n]
+        for i in range(u.size):
+            now = 2.0 * u[i] * before[i] - earlier[i] + c
+            earlier[i] = before[i]
+            before[i] = now
+    for i in range(u.size):
+        out[i] = u[i] * before[i] - earlier[i] + coefficients[0]
+
+
+@njit
+def _place(edges: Floats, value: float) -> int:
+    """The number of the first piece whose upper edge lies above a value."""
+    low, high = 0, edges.size
+    while low < high:
+        middle = (low + high) // 2
+        if edges[middle] > value:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+@njit
+def integrate(
+    step: NDArray[np.int64],
+    rung: NDArray[np.int64],
+    begin: Floats,
+    end: Floats,
+    separation: Floats,
+    depth: float,
+    lift: float,
+    first: NDArray[np.int64],
+    foot: Floats,
+    low: Floats,
+    high: Floats,
+    coefficients: Floats,
+    slack: Floats,
+    z_low: Floats,
+    z_high: Floats,
+    density: Floats,
+    density_slack: Floats,
+    total: Floats,
+    error: Floats,
+) -> int:
+    """Add to total[row, step] what summits between ``begin`` and ``end`` [m] bear on a branch, for each such interval.
+
+    Rows are over their natural scales; ``error`` [step] takes up how far the first row may be off. Returns how often
+    the tables were evaluated.
+    """
+    n = _NODES.size
+    s, u, phi, value = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    before, earlier = np.empty(n), np.empty(n)
+    pieces = 0
+    for i in range(step.size):
+        h, b = separation[step[i]], rung[i] - 1
+        start, stop = max(begin[i], z_low[0]), min(end[i], z_high[-1])
+        if not start < stop:
+            continue
+        base = lift - foot[b]
+        at = np.sqrt(max((start - h) / depth + base, 0.0))
+        last = min(np.sqrt(max((stop - h) / depth + base, 0.0)), high[first[b + 1] - 1])
+        k = first[b] + _place(high[first[b] : first[b + 1]], at)
+        j = _place(z_high, start)
+        while at < last and j < z_high.size and k < first[b + 1]:
+            z_edge = np.sqrt(max((z_high[j] - h) / depth + base, 0.0))
+            to = min(last, z_edge, high[k])
+            if to > at:
+                half, middle = 0.5 * (to - at), 0.5 * (to + at)
+                for m in range(n):
+                    s[m] = middle + half * _NODES[m]
+                    z = h + (s[m] * s[m] - base) * depth
+                    u[m] = (2.0 * z - z_low[j] - z_high[j]) / (z_high[j] - z_low[j])
+                evaluate(density[j, 0], u, phi, before, earlier)
+                for m in range(n):
+                    u[m] = (2.0 * s[m] - low[k] - high[k]) / (high[k] - low[k])
+                mass, most = 0.0, 0.0
+                for row in range(total.shape[0]):
+                    evaluate(coefficients[k, row], u, value, before, earlier)
+                    found = 0.0
+                    for m in range(n):
+                        found += _WEIGHTS[m] * value[m] * phi[m]
+                    total[row, step[i]] += half * depth * found
+                    if row == 0:
+                        off, odd, largest = 0.0, 0.0, 0.0
+                        for m in range(n):
+                            off += _LAST[0, m] * value[m] * phi[m]
+                            odd += _LAST[1, m] * value[m] * phi[m]
+                            largest = max(largest, abs(value[m] * phi[m]))
+                            mass += _WEIGHTS[m] * abs(phi[m])
+                            most += _WEIGHTS[m] * abs(value[m])
+                        tail = max(abs(off), abs(odd)) / largest if largest > 0.0 else 0.0
+                        doubt = largest * tail**1.5 + slack[k, 0] * mass + density_slack[j, 0] * most
+                        error[step[i]] += half * depth * doubt
+                pieces += 1
+            if to == high[k]:
+                k += 1
+            if to == z_edge:
+                j += 1
+            at = to
+    return pieces
+
+
+@njit
+def mass(below: Floats, z_low: Floats, z_high: Floats, density: Floats, z: float) -> float:
+    """The fraction of heights below z; ``below`` [piece + 1] are those below the edges."""
+    if z <= z_low[0]:
+        return 0.0
+    if z >= z_high[-1]:
+        return float(below[-1])
+    j = _place(z_high, z)
+    half, middle = 0.5 * (z - z_low[j]), 0.5 * (z + z_low[j])
+    u = (2.0 * (middle + half * _NODES) - z_low[j] - z_high[j]) / (z_high[j] - z_low[j])
+    phi, before, earlier = np.empty_like(u), np.empty_like(u), np.empty_like(u)
+    evaluate(density[j, 0], u, phi, before, earlier)
+    found = 0.0
+    for m in range(u.size):
+        found += _WEIGHTS[m] * phi[m]
+    return float(below[j] + half * found)

@@ -1,0 +1,104 @@
+"""The expected load-separation law: contacts integrated over the heights, and over the shape parameters.
+
+Over the heights by tables that know where contact begins and ends; over the parameters by Gauss's rule in their normal
+scores, of ever higher order until the force does not change any more.
+"""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from roughmdr.adhesion import Adhesion
+from roughmdr.aggregate import LoadSeparation, Route
+from roughmdr.aggregate.law import ROW
+from roughmdr.aggregate.tabor import range_of
+from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
+from roughmdr.arguments import Floats
+from roughmdr.ensemble import Ensemble, Source
+from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
+from roughmdr.expected.parted import Parted
+
+_ORDERS = (8, 12, 18, 27, 40, 60, 90, 135)
+_MOST_NODES = 20_000
+_AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
+_SLOW = 0.3  # a higher order that leaves so much of the difference does not help
+_PROBES = 5  # steps at which they are compared where all are alike
+_KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
+
+
+def compute(
+    source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
+) -> LoadSeparation:
+    """The expected law of the asperities of a source along a route; E* [Pa].
+
+    ``numerical_error`` is how far the force may be off by what the integrals leave out, and by how much it changes with
+    the number of nodes. OutOfRange where the contact of an asperity is not representable.
+    """
+    names, steps = list(variables), route.separation.size
+    rows = tuple(dict.fromkeys([FORCE, *(ROW[name] for name in names if ROW[name] != DISSIPATED)]))
+    coarse = _stand_ins(source, source.nodes(Rule.smooth(_ORDERS[0])))
+    reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
+    asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
+    parted = Parted.of(asked)
+    nodes, doubt = _enough(asked, parted)
+    total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
+    if DISSIPATED in (ROW[name] for name in names):
+        total[DISSIPATED] = dissipated_of(nodes, steps)
+    if parted is not None:
+        for step in parted.cuts:
+            total[:, step] = parted.total(step, dissipating=bool(total[DISSIPATED].any()))
+    count = source.expected_count
+    total *= count
+    largest = float(np.abs(total[FORCE]).max())
+    total[ERROR] += (doubt + _KERNEL_ERROR + max(node.heights.defect for node in nodes)) * largest
+    extremes = coarse.extremes(_reached(asked, count))
+    return LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
+
+
+def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
+    """The nodes as if they were asperities."""
+    return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
+
+
+def _enough(asked: Asked, parted: Parted | None) -> tuple[list[Node], float]:
+    """So many nodes that more of them do not change the force, and by how much of the largest force they do."""
+    separation = asked.route.separation
+    steps = list(range(separation.size))
+    if parted is not None or not asked.hysteretic:
+        plain = [step for step in steps if parted is None or step not in parted.cuts]
+        steps = [plain[i] for i in np.unique(np.linspace(0, len(plain) - 1, _PROBES).astype(int))]
+
+    def force(nodes: list[Node]) -> Floats:
+        return np.asarray(totals_of(nodes, separation, (FORCE,), steps)[0][FORCE])
+
+    nodes, doubt = set_up(asked, Rule.smooth(_ORDERS[0])), math.inf
+    found = force(nodes)
+    for order in _ORDERS[1:]:
+        rule = Rule.smooth(order)
+        count = asked.source.nodes(rule).share.size
+        if count == len(nodes):  # no parameter is drawn
+            return nodes, 0.0
+        if count > _MOST_NODES:
+            break
+        finer = set_up(asked, rule)
+        again = force(finer)
+        largest = float(np.abs(again).max())
+        before, doubt = doubt, float(np.abs(again - found).max()) / largest if largest > 0.0 else 0.0
+        if doubt <= _AGREE:
+            break
+        nodes, found = finer, again
+        if doubt > _SLOW * before:
+            break
+    return nodes, doubt
+
+
+def _reached(asked: Asked, count: float) -> Floats:
+    """The contact radius [m] of the highest of ``count`` summits where the flat is closest, for each coarse node."""
+    deepest = float(asked.route.separation.min())
+    radii = []
+    for node in set_up(asked, Rule.smooth(_ORDERS[0])):
+        indentation = np.array([node.heights.highest(count) - deepest])
+        radii.append(node.contact.at_indentation(indentation)["contact_radius"][0])
+    return np.array(radii)

@@ -1,0 +1,122 @@
+"""The nodes that stand for all asperities, each with what it bears and when it is in contact, and their sums."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.adhesion import Adhesion
+from roughmdr.aggregate import Route
+from roughmdr.aggregate.totals import ERROR, ROWS
+from roughmdr.arguments import Floats
+from roughmdr.contact import Contact
+from roughmdr.ensemble import Source
+from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.expected.curve import Curve, curves_of, scales_of
+from roughmdr.expected.heights import HeightTable
+from roughmdr.expected.integral import integrate
+from roughmdr.expected.memory import Intervals, lost, remember
+from roughmdr.kernels.laws import Law
+from roughmdr.shapes import SHAPES
+
+
+class Asked(NamedTuple):
+    """What the expected law is asked of."""
+
+    source: Source
+    route: Route
+    modulus: float
+    adhesion: Adhesion
+    rows: tuple[int, ...]
+    """As in ``totals``; the first is FORCE."""
+
+    @property
+    def law(self) -> Law:
+        """The law of one asperity."""
+        return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].law
+
+    @property
+    def hysteretic(self) -> bool:
+        """Whether contacts remember the path: where they stick, and the flat rises."""
+        return self.adhesion.work > 0.0 and bool((np.diff(self.route.separation) > 0.0).any())
+
+
+class Node(NamedTuple):
+    """One node: its share of all asperities, what they bear, and when they are in contact."""
+
+    share: float
+    contact: Contact
+    curve: Curve
+    heights: HeightTable
+    held: Intervals
+    moved: Intervals
+
+
+def contacts_of(asked: Asked, nodes: Nodes) -> list[Contact]:
+    """The contact of each node; OutOfRange where one is not representable."""
+    shape = SHAPES[asked.source.shape_name]
+    columns = {name: column.tolist() for name, column in nodes.parameters.items()}
+    shapes = [
+        asked.source.fixed or shape(**{name: column[number] for name, column in columns.items()})
+        for number in range(nodes.share.size)
+    ]
+    return [Contact.of(one, asked.modulus, asked.adhesion) for one in shapes]
+
+
+def set_up(asked: Asked, rule: Rule) -> list[Node]:
+    """The nodes at the scores of a rule."""
+    nodes = asked.source.nodes(rule)
+    contacts = contacts_of(asked, nodes)
+    tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
+    curves = curves_of(contacts, nodes.heights, float(asked.route.separation.min()), asked.rows)
+    return [
+        Node(float(share), contact, curve, tables[heights], *remember(contact, asked.route))
+        for share, contact, curve, heights in zip(nodes.share, contacts, curves, nodes.heights, strict=True)
+    ]
+
+
+def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], steps: list[int]) -> tuple[Floats, int]:
+    """[row, step] of ``totals`` for an asperity, at some steps (else 0); and how often tables were multiplied.
+
+    Row ERROR is how far the first of ``rows``, the force, may be off.
+    """
+    total, products = np.zeros((ROWS, separation.size)), 0
+    chosen = np.zeros(separation.size, dtype=np.bool_)
+    chosen[steps] = True
+    for share, contact, (first, foot, table), (heights, _), held, _ in nodes:
+        asked = chosen[held.step]
+        found, error = np.zeros((len(rows), separation.size)), np.zeros(separation.size)
+        products += integrate(
+            held.step[asked],
+            held.rung[asked],
+            held.begin[asked],
+            held.end[asked],
+            separation,
+            contact.depth[0],
+            1.0 if contact.law.adhesive else 0.0,
+            first,
+            foot,
+            table.low,
+            table.high,
+            table.coefficients,
+            table.slack,
+            heights.low,
+            heights.high,
+            heights.coefficients,
+            heights.slack,
+            found,
+            error,
+        )
+        scales = share * scales_of(contact, rows)
+        total[list(rows)] += scales[:, None] * found
+        total[ERROR] += scales[0] * error
+    return total, products
+
+
+def dissipated_of(nodes: list[Node], steps: int) -> Floats:
+    """The energy [J] that an asperity has lost in jumps up to each step."""
+    spent = np.zeros(steps)
+    for share, contact, _, heights, _, moved in nodes:
+        worth = share * contact.force * contact.depth[0]
+        parts = heights.between(moved.begin, moved.end)
+        np.add.at(spent, moved.step, worth * lost(contact, moved) * parts)
+    return np.cumsum(spent)

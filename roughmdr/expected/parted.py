@@ -1,0 +1,80 @@
+"""Steps at which some asperities have let go of their lowest summits and others not yet.
+
+On the way back a contact holds on to z = max(bottom, top - depth): over the shape parameters that has a kink where
+depth = top - bottom, and Gauss's rule must be parted there.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import Route
+from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
+from roughmdr.arguments import Floats
+from roughmdr.ensemble.nodes import Rule
+from roughmdr.expected.node import Asked, contacts_of, dissipated_of, set_up, totals_of
+
+_SCAN = 40  # scores at which the depth is looked at
+_ORDERS = (40, 56)  # on each side of a cut; the second tells how right the first is
+
+
+class Parted(NamedTuple):
+    """Where the rule over the one parameter that is drawn has to be parted."""
+
+    asked: Asked
+    cuts: dict[int, list[float]]
+    """The scores, for each step that needs it."""
+
+    @classmethod
+    def of(cls, asked: Asked) -> "Parted | None":
+        """None where there is nothing to part, or no single parameter to part it by."""
+        if not asked.hysteretic or asked.law.branched or not asked.source.one_parameter:
+            return None
+        scan = Rule.between([], _SCAN)
+        depths = _depths(asked, scan.scores)
+        cuts = {
+            step: [_score(asked, scan.scores, depths, kink) for kink in kinks]
+            for step, kinks in _kinks(asked.route, float(depths.min()), float(depths.max())).items()
+        }
+        return cls(asked, cuts)
+
+    def total(self, step: int, *, dissipating: bool) -> Floats:
+        """[row] of ``totals`` at a step, for an asperity."""
+        separation = self.asked.route.separation
+        found = []
+        for order in _ORDERS:
+            nodes = set_up(self.asked, Rule.between(self.cuts[step], order))
+            total = totals_of(nodes, separation, self.asked.rows, [step])[0][:, step]
+            if dissipating:
+                total[DISSIPATED] = dissipated_of(nodes, separation.size)[step]
+            found.append(total)
+        coarse, fine = found
+        fine[ERROR] += abs(fine[FORCE] - coarse[FORCE])
+        return fine
+
+
+def _depths(asked: Asked, scores: Floats) -> Floats:
+    """How far below first touch [m] the contacts at some scores let go."""
+    nodes = asked.source.nodes(Rule(scores, np.ones_like(scores)))
+    return np.array([contact.depth[0] for contact in contacts_of(asked, nodes)])
+
+
+def _kinks(route: Route, least: float, most: float) -> dict[int, list[float]]:
+    """The depths between ``least`` and ``most`` at which contacts part in what they remember, for each such step."""
+    first, bottom, top = route.memory
+    found = {}
+    for step in range(route.separation.size):
+        pairs = slice(first[step], first[step + 1])
+        gaps = np.unique(top[pairs, None] - bottom[None, pairs])
+        if (kinks := gaps[(gaps > least) & (gaps < most)]).size:
+            found[step] = kinks.tolist()
+    return found
+
+
+def _score(asked: Asked, scores: Floats, depths: Floats, kink: float) -> float:
+    """The score at which the depth is ``kink``, on the first interval of the scan where it passes that."""
+    from scipy.optimize import brentq
+
+    above = depths > kink
+    i = int(np.argmax(above[1:] != above[:-1]))
+    return float(brentq(lambda score: _depths(asked, np.array([score]))[0] / kink - 1.0, scores[i], scores[i + 1]))

@@ -1,0 +1,68 @@
+"""A function as a row of polynomials, on pieces that are halved until each holds it."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.arguments import Floats
+
+ORDER = 16
+"""Coefficients of each polynomial."""
+_MOST_HALVINGS = 60
+_NOTHING = 1e-16  # of the greatest value: such coefficients are roundings, and cost time
+
+_ANGLES = np.pi * (np.arange(ORDER) + 0.5) / ORDER
+_NODES = np.cos(_ANGLES)
+_TO_COEFFICIENTS = 2.0 / ORDER * np.cos(np.outer(np.arange(ORDER), _ANGLES))
+_TO_COEFFICIENTS[0] *= 0.5
+_TAIL = 2  # of the last coefficients, which tell how far the polynomial is off
+
+
+class Table(NamedTuple):
+    """Pieces from low to high, one after the other, each with Chebyshev coefficients of all rows."""
+
+    low: Floats
+    """[piece]"""
+    high: Floats
+    """[piece]"""
+    coefficients: Floats
+    """[piece, row, order]"""
+    slack: Floats
+    """How far the polynomials may be off: [piece, row]."""
+
+    @classmethod
+    def of(
+        cls,
+        function: Callable[[Floats], Floats],
+        edges: Floats,
+        tolerance: Floats,
+        narrow: Callable[[Floats, Floats], Floats],
+        ratio: float = np.inf,
+    ) -> "Table":
+        """The table of ``function``, points -> [row, point], between ``edges``.
+
+        A piece is held where its last coefficients are below ``tolerance`` [row] of the greatest value on it, and the
+        first row's values do not vary by more than ``ratio``, or where it is ``narrow`` (its ends -> how narrow).
+        """
+        low, high = edges[:-1], edges[1:]
+        held: list[tuple[Floats, ...]] = []
+        for _ in range(_MOST_HALVINGS):
+            middle, half = 0.5 * (low + high), 0.5 * (high - low)
+            values = function((middle[:, None] + half[:, None] * _NODES).ravel())
+            values = values.reshape(values.shape[0], -1, ORDER).swapaxes(0, 1)
+            coefficients = values @ _TO_COEFFICIENTS.T
+            tail = np.abs(coefficients[..., -_TAIL:]).max(axis=-1)
+            greatest = np.abs(values).max(axis=-1)
+            coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
+            least = np.abs(values[:, 0]).min(axis=-1)
+            fine = (tail <= tolerance * greatest).all(axis=-1) & (greatest[:, 0] <= ratio * least)
+            done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
+            held.append((low[done], high[done], coefficients[done], tail[done]))
+            low, middle, high = low[~done], middle[~done], high[~done]
+            if low.size == 0:
+                break
+            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+        low, high, coefficients, slack = (np.concatenate(parts) for parts in zip(*held, strict=True))
+        order = np.argsort(low, kind="stable")
+        return cls(low[order], high[order], np.ascontiguousarray(coefficients[order]), slack[order])
