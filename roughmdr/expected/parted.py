@@ -32,9 +32,10 @@ class Parted(NamedTuple):
             return None
         scan = Rule.between([], _SCAN)
         depths = _depths(asked, scan.scores)
+        kinks = _kinks(asked.route, float(depths.min()), float(depths.max()))
         cuts = {
-            step: [_score(asked, scan.scores, depths, kink) for kink in kinks]
-            for step, kinks in _kinks(asked.route, float(depths.min()), float(depths.max())).items()
+            step: [score for depth in found for score in _scores(asked, scan.scores, depths, depth)]
+            for step, found in kinks.items()
         }
         return cls(asked, cuts)
 
@@ -71,10 +72,13 @@ def _kinks(route: Route, least: float, most: float) -> dict[int, list[float]]:
     return found
 
 
-def _score(asked: Asked, scores: Floats, depths: Floats, kink: float) -> float:
-    """The score at which the depth is ``kink``, on the first interval of the scan where it passes that."""
+def _scores(asked: Asked, scores: Floats, depths: Floats, kink: float) -> list[float]:
+    """The scores at which the depth passes ``kink``, one in each interval of the scan where it does."""
     from scipy.optimize import brentq
 
+    def off(score: float) -> float:
+        return float(_depths(asked, np.array([score]))[0] / kink - 1.0)
+
     above = depths > kink
-    i = int(np.argmax(above[1:] != above[:-1]))
-    return float(brentq(lambda score: _depths(asked, np.array([score]))[0] / kink - 1.0, scores[i], scores[i + 1]))
+    found = np.flatnonzero(above[1:] != above[:-1])
+    return [float(brentq(off, scores[i], scores[i + 1])) for i in found]

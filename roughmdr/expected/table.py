@@ -10,6 +10,8 @@ from roughmdr.arguments import Floats
 ORDER = 16
 """Coefficients of each polynomial."""
 _MOST_HALVINGS = 60
+_MOST_AT_ONCE = 2**12  # pieces: of a function that no polynomial fits, halving would make more and more
+_NOISE, _BETTER = 1e-8, 0.25  # tails so small that halving does not lessen are the function's own roundings
 _NOTHING = 1e-16  # of the greatest value: such coefficients are roundings, and cost time
 
 _ANGLES = np.pi * (np.arange(ORDER) + 0.5) / ORDER
@@ -42,11 +44,13 @@ class Table(NamedTuple):
     ) -> "Table":
         """The table of ``function``, points -> [row, point], between ``edges``.
 
-        A piece is held where its last coefficients are below ``tolerance`` [row] of the greatest value on it, and the
-        first row's values do not vary by more than ``ratio``, or where it is ``narrow`` (its ends -> how narrow).
+        A piece is held where its last coefficients are below ``tolerance`` [row] of the greatest value on it, or are
+        roundings, and the first row's values do not vary by more than ``ratio``, or where it is ``narrow`` (its ends ->
+        how narrow).
         """
         low, high = edges[:-1], edges[1:]
         held: list[tuple[Floats, ...]] = []
+        before = np.full((low.size, tolerance.size), np.inf)
         for _ in range(_MOST_HALVINGS):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
             values = function((middle[:, None] + half[:, None] * _NODES).ravel())
@@ -56,13 +60,15 @@ class Table(NamedTuple):
             greatest = np.abs(values).max(axis=-1)
             coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
             least = np.abs(values[:, 0]).min(axis=-1)
-            fine = (tail <= tolerance * greatest).all(axis=-1) & (greatest[:, 0] <= ratio * least)
+            noise = (tail <= _NOISE * greatest) & (tail > _BETTER * before)
+            fine = ((tail <= tolerance * greatest) | noise).all(axis=-1) & (greatest[:, 0] <= ratio * least)
             done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
+            done |= low.size > _MOST_AT_ONCE
             held.append((low[done], high[done], coefficients[done], tail[done]))
-            low, middle, high = low[~done], middle[~done], high[~done]
+            low, middle, high, tail = low[~done], middle[~done], high[~done], tail[~done]
             if low.size == 0:
                 break
-            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+            low, high, before = (np.concatenate(pair) for pair in ((low, middle), (middle, high), (tail, tail)))
         low, high, coefficients, slack = (np.concatenate(parts) for parts in zip(*held, strict=True))
         order = np.argsort(low, kind="stable")
         return cls(low[order], high[order], np.ascontiguousarray(coefficients[order]), slack[order])
