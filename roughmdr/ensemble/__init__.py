@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.nayak import NayakAsperities
 from roughmdr.ensemble.random import AnyRandomAsperities, RandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.surface import SurfaceAsperities
@@ -15,9 +16,9 @@ from roughmdr.faults import find_faults
 if TYPE_CHECKING:
     import xarray as xr
 
-Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities, Field(discriminator="source")]
+Asperities = Annotated[AnyRandomAsperities | NayakAsperities | SurfaceAsperities, Field(discriminator="source")]
 
-__all__ = ["Asperities", "Ensemble", "RandomAsperities", "Source", "SurfaceAsperities", "generate"]
+__all__ = ["Asperities", "Ensemble", "NayakAsperities", "RandomAsperities", "Source", "SurfaceAsperities", "generate"]
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
@@ -44,4 +45,6 @@ def _validated(table: dict[str, Any]) -> Source:
         if not isinstance(table, dict):
             raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
         found = find_faults(error, table, Asperities)
-        raise SceneError.of([fault._replace(key=f"asperities.{fault.key}") for fault in found]) from None
+        raise SceneError.of(
+            [fault._replace(key=".".join(filter(None, ("asperities", fault.key)))) for fault in found]
+        ) from None
