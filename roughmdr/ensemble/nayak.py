@@ -70,7 +70,7 @@ class NayakAsperities(PatchSource):
 
     @model_validator(mode="after")
     def _the_patch_holds_some(self) -> "NayakAsperities":
-        expected = self.law.density * self.patch * self.patch
+        expected = self._on_average
         if not expected > 0.5:
             side = 1.0 / math.sqrt(self.law.density)
             raise EntryError(
@@ -97,7 +97,12 @@ class NayakAsperities(PatchSource):
     @property
     def count(self) -> int:
         """How many summits there are: the whole number nearest to density times area."""
-        return round(self.law.density * self.patch * self.patch)
+        return round(self._on_average)
+
+    @property
+    def _on_average(self) -> float:
+        """How many summits a patch of this size has."""
+        return self.law.density * self.patch * self.patch
 
     def sampled(self, count: int) -> "NayakAsperities":
         """The same on a patch that holds at most ``count`` asperities."""
