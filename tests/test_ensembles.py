@@ -101,7 +101,7 @@ def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
     ("changes", "says"),
     [
         ({"shape": "spheer"}, "asperities.shape = 'spheer': not available"),
-        ({"source": "file"}, "asperities.source = 'file': not available; it can be nayak, random, surface"),
+        ({"source": "file"}, "asperities.source = 'file': not available; it can be random, nayak, surface"),
         ({"count": 0}, "asperities.count = 0: must be from 1"),
         ({"radius": "-1 um"}, "asperities.radius = '-1 um': can be as low as -1e-06"),
         ({"radius": {"distribution": "normal", "mean": 1e-6, "std": 1e-6}}, "can be as low as .* must be above 0"),
