@@ -232,7 +232,7 @@ def changed(table: dict[str, Any], **changes: Any) -> dict[str, Any]:
         (changed(WAVES, rms_slope=None), "asperities: needs rms_height or rms_slope; source 'nayak' takes m0, m2 and"),
         (changed(WAVES, hurst=None, long_wave=None), "asperities: needs hurst and long_wave"),
         (changed(WAVES, m0="1 um^2"), "asperities.hurst = 0.8: does not go with m0"),
-        (changed(WAVES, short_wave="200 um"), "asperities.short_wave = 0.0002: must be below long_wave, 0.0001 m"),
+        (changed(WAVES, short_wave="200 um"), "asperities.short_wave = '200 um': must be below long_wave, 0.0001 m"),
         (changed(WAVES, short_wave=1e-200), "no float can hold the moments"),
         (changed(WAVES, long_wave=1e150, patch=1e3, short_wave=1.0), "no float can hold the moments"),
         (changed(WAVES, hurst=1.2), "asperities.hurst = 1.2: must be at most 1"),
@@ -253,6 +253,13 @@ def changed(table: dict[str, Any], **changes: Any) -> dict[str, Any]:
 def test_what_is_no_surface_is_refused(table: dict[str, Any], says: str) -> None:
     with pytest.raises(rm.SceneError, match=says):
         rm.generate(table, seed=1)
+
+
+def test_all_that_is_wrong_is_said_at_once() -> None:
+    with pytest.raises(rm.SceneError) as error:
+        rm.generate({**WAVES, "m0": "1 um^2", "short_wave": "1 mm", "rms_height": "-1 um"}, seed=1)
+    wrong = {fault.key for fault in error.value.faults}
+    assert wrong == {f"asperities.{key}" for key in ("hurst", "long_wave", "short_wave", "rms_height", "rms_slope")}
 
 
 def test_a_scene_runs_and_sweeps_its_slope() -> None:

@@ -4,7 +4,7 @@ import math
 from functools import cached_property
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
@@ -40,19 +40,36 @@ class NayakAsperities(PatchSource):
     rms_height: Length | None = None
     rms_slope: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
 
+    @field_validator(*_WAVES, *_AMPLITUDES)
+    @classmethod
+    def _moments_stand_alone(cls, value: float, info: ValidationInfo) -> float:
+        moments = [key for key in _MOMENTS if info.data.get(key) is not None]
+        if moments:
+            raise RoughmdrError(f"does not go with {' and '.join(moments)}; source 'nayak' {_EITHER}")
+        return value
+
+    @field_validator("short_wave")
+    @classmethod
+    def _short_is_below_long(cls, value: float, info: ValidationInfo) -> float:
+        long_wave = info.data.get("long_wave")
+        if long_wave is not None and not value < long_wave:
+            raise RoughmdrError(f"must be below long_wave, {long_wave:g} m")
+        return value
+
+    @field_validator("rms_slope")
+    @classmethod
+    def _one_amplitude(cls, value: float, info: ValidationInfo) -> float:
+        if info.data.get("rms_height") is not None:
+            raise RoughmdrError("does not go with rms_height; either tells the other")
+        return value
+
     @model_validator(mode="after")
-    def _one_description(self) -> "NayakAsperities":
+    def _one_whole_description(self) -> "NayakAsperities":
         moments, waves = self._given(_MOMENTS), self._given(_WAVES + _AMPLITUDES)
-        if moments and waves:
-            key = next(iter(waves))
-            raise EntryError(key, waves[key], f"does not go with {', '.join(moments)}; source 'nayak' {_EITHER}")
         if not moments and not waves:
             raise RoughmdrError(_EITHER)
-        amplitudes = self._given(_AMPLITUDES)
-        if len(amplitudes) == len(_AMPLITUDES):
-            raise EntryError("rms_slope", self.rms_slope, "does not go with rms_height; either tells the other")
-        missing = [key for key in (_MOMENTS if moments else _WAVES) if getattr(self, key) is None]
-        if waves and not amplitudes:
+        missing = [key for key in (_MOMENTS if moments else _WAVES) if key not in {**moments, **waves}]
+        if waves and not self._given(_AMPLITUDES):
             missing.append("rms_height or rms_slope")
         if missing:
             raise RoughmdrError(f"needs {' and '.join(missing)}; source 'nayak' {_EITHER}")
@@ -60,8 +77,6 @@ class NayakAsperities(PatchSource):
 
     @model_validator(mode="after")
     def _there_is_such_a_surface(self) -> "NayakAsperities":
-        if self.long_wave is not None and self.short_wave is not None and not self.short_wave < self.long_wave:
-            raise EntryError("short_wave", self.short_wave, f"must be below long_wave, {self.long_wave:g} m")
         try:
             _ = self.law
         except ArithmeticError:
