@@ -89,7 +89,10 @@ def jackknife(of: Callable[[Floats], Floats], maps: Floats) -> tuple[Floats, Flo
 
 
 def summits(count: int = 20, grids: tuple[int, ...] = GRIDS, drawn: int = DRAWN) -> tuple[xr.Dataset, Summits]:
-    """All the numbers of this study, and the summits found exactly."""
+    """All the numbers of this study, and the summits found exactly.
+
+    What is drawn has no area of its own: its density is the law's.
+    """
     law, area = law_of_maps(), SIZE * SIZE
     draws = independent(1, 0)
     sampled = statistics(sums(law.draw(*(draws(stream, drawn) for stream in range(3)))), drawn / law.density)

@@ -29,8 +29,10 @@ def mean_curvature(uniform: Floats) -> Floats:
     S = np.interp(_stretched(uniform, 1.0 - uniform), *_table())
     t = S * S
     excess = _excess(t)
-    # Whichever of the fractions below and above is the smaller one, since the other is too coarse.
-    off = np.where(uniform > 0.5, (1.0 - uniform) - _above(S), _below(S) - uniform)
+    # From the smaller of the fractions below and above: 1 - u is exact, and the other one is too coarse.
+    off, upper = np.empty_like(S), uniform > 0.5
+    off[upper] = (1.0 - uniform[upper]) - _above(S[upper])
+    off[~upper] = _below(S[~upper]) - uniform[~upper]
     newton = off / (_LEVEL * excess * np.exp(-0.5 * t))
     return np.asarray(S - newton / (1.0 - 0.5 * newton * S * (2.0 * t / excess - 3.0)))
 
@@ -54,16 +56,18 @@ def product_of_curvatures(uniform: Floats, S: Floats) -> Floats:
 
 def _excess(v: Floats) -> Floats:
     """v - 1 + exp(-v)."""
-    return np.where(v < _SMALL, v * v * _polynomial(_EXCESS, np.minimum(v, _SMALL)), v - 1.0 + np.exp(-v))
+    excess, small = v - 1.0 + np.exp(-v), v < _SMALL
+    excess[small] = v[small] ** 2 * _polynomial(_EXCESS, v[small])
+    return excess
 
 
 def _below(S: Floats) -> Floats:
     """The fraction of the summits whose mean curvature is below S."""
     from scipy.special import erf
 
-    small = np.minimum(S, _SMALL_MEAN)
-    series = _LEVEL * small**5 * _polynomial(_BELOW, small * small)
-    return np.where(S < _SMALL_MEAN, series, erf(math.sqrt(1.5) * S) - _LEVEL * S * np.exp(-0.5 * S * S))
+    below, small = np.asarray(erf(math.sqrt(1.5) * S) - _LEVEL * S * np.exp(-0.5 * S * S)), S < _SMALL_MEAN
+    below[small] = _LEVEL * S[small] ** 5 * _polynomial(_BELOW, S[small] ** 2)
+    return below
 
 
 def _above(S: Floats) -> Floats:
