@@ -175,6 +175,8 @@ def test_a_spectrum_is_its_moments() -> None:
     by_moments = rm.generate({"source": "nayak", "patch": 1e-3, "m0": m0, "m2": m2, "m4": m4}, seed=3)
     by_slope = rm.generate(WAVES, seed=3)
     assert by_moments.identical(by_slope)
+    nothing = dict.fromkeys(("hurst", "long_wave", "short_wave", "rms_height", "rms_slope"))
+    assert rm.generate({**MOMENTS, **nothing}, seed=3).identical(rm.generate(MOMENTS, seed=3))
     by_height = {key: value for key, value in WAVES.items() if key != "rms_slope"} | {"rms_height": given.rms_height}
     np.testing.assert_allclose(rm.generate(by_height, seed=3).radius, by_slope.radius, rtol=1e-13)
     assert by_slope.attrs["density"] == pytest.approx(m4 / (6.0 * math.pi * math.sqrt(3.0) * m2), rel=1e-14)

@@ -42,24 +42,24 @@ class NayakAsperities(PatchSource):
 
     @field_validator(*_WAVES, *_AMPLITUDES)
     @classmethod
-    def _moments_stand_alone(cls, value: float, info: ValidationInfo) -> float:
+    def _moments_stand_alone(cls, value: float | None, info: ValidationInfo) -> float | None:
         moments = [key for key in _MOMENTS if info.data.get(key) is not None]
-        if moments:
+        if value is not None and moments:
             raise RoughmdrError(f"does not go with {' and '.join(moments)}; source 'nayak' {_EITHER}")
         return value
 
     @field_validator("short_wave")
     @classmethod
-    def _short_is_below_long(cls, value: float, info: ValidationInfo) -> float:
+    def _short_is_below_long(cls, value: float | None, info: ValidationInfo) -> float | None:
         long_wave = info.data.get("long_wave")
-        if long_wave is not None and not value < long_wave:
+        if value is not None and long_wave is not None and not value < long_wave:
             raise RoughmdrError(f"must be below long_wave, {long_wave:g} m")
         return value
 
     @field_validator("rms_slope")
     @classmethod
-    def _one_amplitude(cls, value: float, info: ValidationInfo) -> float:
-        if info.data.get("rms_height") is not None:
+    def _one_amplitude(cls, value: float | None, info: ValidationInfo) -> float | None:
+        if value is not None and info.data.get("rms_height") is not None:
             raise RoughmdrError("does not go with rms_height; either tells the other")
         return value
 
