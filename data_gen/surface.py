@@ -3,6 +3,7 @@
     python data_gen/surface.py results/surface.nc --points 256 --size "100 um" --rms "0.5 um" --short-wave "6 um"
 
 The spectrum is C(q) ~ q^(-2 (1 + H)) between the long- and the short-wave cut-off; phases and amplitudes are random.
+The map is scaled to have the r.m.s. height, or with --slope the r.m.s. slope, exactly.
 """
 
 import shlex
@@ -11,33 +12,51 @@ from pathlib import Path
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
+from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.labelled import Labelled
+from roughmdr.spectrum import SelfAffine
 from roughmdr.store import provenance, write
-from roughmdr.units import quantity
+from roughmdr.units import DIMENSIONLESS, quantity
+
+_EDGE = 1e-9  # waves as long as a limit of the spectrum count as within it, whatever their rounding
 
 
-def self_affine(
-    points: int, size: float, rms: float, hurst: float, long_wave: float, short_wave: float, seed: int
-) -> NDArray[np.float64]:
-    """Heights [m] on a periodic square grid of points x points over ``size`` [m], with r.m.s. height ``rms`` [m].
+def gaussian_map(spectrum: SelfAffine, points: int, size: float, seed: int) -> Floats:
+    """Heights [m] on a periodic square grid of points x points over ``size`` [m], Gaussian, with this spectrum.
 
+    Each wave of the grid has the amplitude that the spectrum gives it on average over maps; one map has more or less.
     OutOfRange where the grid cannot hold the waves: 2 spacings <= short_wave < long_wave <= size.
     """
-    if not 2.0 * size / points <= short_wave < long_wave <= size:
+    if not 2.0 * size / points <= spectrum.short_wave < spectrum.long_wave <= size:
         raise OutOfRange(
-            f"short_wave {short_wave:g} m and long_wave {long_wave:g} m must lie between two spacings, "
-            f"{2.0 * size / points:g} m, and the size, {size:g} m"
+            f"short_wave {spectrum.short_wave:g} m and long_wave {spectrum.long_wave:g} m must lie between "
+            f"two spacings, {2.0 * size / points:g} m, and the size, {size:g} m"
         )
-    along = 2.0 * np.pi * np.fft.fftfreq(points, size / points)
-    q = np.hypot(along[:, None], along[None, :])
-    inside = (q >= 2.0 * np.pi / long_wave * (1 - 1e-9)) & (q <= 2.0 * np.pi / short_wave * (1 + 1e-9))
-    amplitude = np.where(inside, q, np.inf) ** (-1.0 - hurst)
     noise = np.random.Generator(np.random.Philox(seed)).standard_normal((points, points))
-    height = np.fft.ifft2(np.fft.fft2(noise) * amplitude).real
-    return height * (rms / np.std(height))
+    amplitude = points * np.sqrt(wave_variances(spectrum, points, size))
+    return np.asarray(np.fft.ifft2(np.fft.fft2(noise) * amplitude).real)
+
+
+def wave_variances(spectrum: SelfAffine, points: int, size: float) -> Floats:
+    """C(q) (2 pi/size)^2 [m2] of each wave of the grid, in the order of the discrete Fourier transform."""
+    wider = spectrum._replace(
+        long_wave=spectrum.long_wave * (1.0 + _EDGE), short_wave=spectrum.short_wave * (1.0 - _EDGE)
+    )
+    return np.asarray(wider(wave_numbers(points, size)) * (2.0 * np.pi / size) ** 2)
+
+
+def wave_numbers(points: int, size: float) -> Floats:
+    """q [1/m] of each wave of the grid, in the order of the discrete Fourier transform."""
+    along = 2.0 * np.pi * np.fft.fftfreq(points, size / points)
+    return np.asarray(np.hypot(along[:, None], along[None, :]))
+
+
+def rms_slope(height: Floats, size: float) -> float:
+    """sqrt(<|grad h|^2>) [1] of a periodic map without waves at the limit of its grid, over ``size`` [m]."""
+    points = height.shape[0]
+    return float(np.sqrt(np.sum(np.abs(np.fft.fft2(height)) ** 2 * wave_numbers(points, size) ** 2)) / points**2)
 
 
 def _length(text: str) -> float:
@@ -48,28 +67,50 @@ def _length(text: str) -> float:
 @click.argument("output", type=click.Path(dir_okay=False, path_type=Path))
 @click.option("--points", type=click.IntRange(8, 8192), default=256, show_default=True, help="Grid points a side.")
 @click.option("--size", default="100 um", show_default=True, help="Side of the map.")
-@click.option("--rms", default="0.5 um", show_default=True, help="Root-mean-square height.")
+@click.option("--rms", help="Root-mean-square height.  [default: 0.5 um, without --slope]")
+@click.option("--slope", help="Root-mean-square slope, instead of --rms.")
 @click.option("--hurst", type=click.FloatRange(0.0, 1.0), default=0.8, show_default=True)
 @click.option("--long-wave", default="50 um", show_default=True, help="Longest wavelength.")
 @click.option("--short-wave", default="6 um", show_default=True, help="Shortest wavelength.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
 def main(
-    output: Path, points: int, size: str, rms: str, hurst: float, long_wave: str, short_wave: str, seed: int
+    output: Path,
+    points: int,
+    size: str,
+    rms: str | None,
+    slope: str | None,
+    hurst: float,
+    long_wave: str,
+    short_wave: str,
+    seed: int,
 ) -> None:
     """Write a synthetic height map."""
     import xarray as xr
 
+    if rms is not None and slope is not None:
+        raise click.UsageError("takes --rms or --slope, not both")
     try:
         side = _length(size)
-        height = self_affine(points, side, _length(rms), hurst, _length(long_wave), _length(short_wave), seed)
+        waves = {"hurst": hurst, "long_wave": _length(long_wave), "short_wave": _length(short_wave)}
+        if slope is None:
+            wanted = SelfAffine.of(**waves, rms_height=_length(rms or "0.5 um"))
+            height = gaussian_map(wanted, points, side, seed)
+            height *= wanted.rms_height / np.std(height)
+        else:
+            wanted = SelfAffine.of(**waves, rms_slope=quantity(slope, DIMENSIONLESS))
+            height = gaussian_map(wanted, points, side, seed)
+            height *= wanted.rms_slope / rms_slope(height, side)
         at = ((np.arange(points) + 0.5) * side / points, {"units": "m", "long_name": "position"})
         dataset = xr.Dataset(
             {"height": (("x", "y"), height, {"units": "m", "long_name": "surface height"})},
             coords={"x": ("x", *at), "y": ("y", *at)},
-            attrs=provenance(
-                f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}",
-                f"surface.py {shlex.join(sys.argv[1:])}",
-            ),
+            attrs={
+                **provenance(
+                    f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}",
+                    f"surface.py {shlex.join(sys.argv[1:])}",
+                ),
+                "periodic": 1,
+            },
         )
         output.parent.mkdir(parents=True, exist_ok=True)
         write(Labelled.of(dataset), output)

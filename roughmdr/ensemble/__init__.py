@@ -7,6 +7,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.file import FileAsperities
+from roughmdr.ensemble.nayak import NayakAsperities
 from roughmdr.ensemble.random import RandomAsperities
 from roughmdr.ensemble.random_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
@@ -17,9 +18,20 @@ from roughmdr.faults import find_faults
 if TYPE_CHECKING:
     import xarray as xr
 
-Asperities = Annotated[AnyRandomAsperities | SurfaceAsperities | FileAsperities, Field(discriminator="source")]
+Asperities = Annotated[
+    AnyRandomAsperities | NayakAsperities | SurfaceAsperities | FileAsperities, Field(discriminator="source")
+]
 
-__all__ = ["Asperities", "Ensemble", "RandomAsperities", "Source", "SurfaceAsperities", "generate", "make"]
+__all__ = [
+    "Asperities",
+    "Ensemble",
+    "NayakAsperities",
+    "RandomAsperities",
+    "Source",
+    "SurfaceAsperities",
+    "generate",
+    "make",
+]
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
@@ -51,4 +63,6 @@ def _validated(table: dict[str, Any]) -> Source:
         if not isinstance(table, dict):
             raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
         found = find_faults(error, table, Asperities)
-        raise SceneError.of([fault._replace(key=f"asperities.{fault.key}") for fault in found]) from None
+        raise SceneError.of(
+            [fault._replace(key=".".join(filter(None, ("asperities", fault.key)))) for fault in found]
+        ) from None
