@@ -54,6 +54,8 @@ class LoadSeparation(NamedTuple):
     """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
     model: str
     """The law of adhesion that was taken."""
+    doubts: tuple[str, ...]
+    """What makes the ensemble itself doubtful."""
 
 
 def compute(
@@ -91,7 +93,7 @@ def compute(
     error = float(np.max(total[totals.ERROR]))
     relative = error / largest if largest > 0.0 else 0.0
     extremes = ensemble.extremes(reached)._replace(tabor=reach.tabor if adhesion.model == "jkr" else math.inf)
-    return LoadSeparation(results, relative, extremes, visits, reach.tabor, adhesion.model)
+    return LoadSeparation(results, relative, extremes, visits, reach.tabor, adhesion.model, ensemble.warnings)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -150,7 +152,8 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
-    attrs = {"warnings": "\n".join(result.extremes.warnings)} if result.extremes.warnings else {}
-    for text in result.extremes.warnings:
+    doubts = [*result.doubts, *result.extremes.warnings]
+    attrs = {"warnings": "\n".join(doubts)} if doubts else {}
+    for text in doubts:
         warnings.warn(text, LimitWarning, stacklevel=2)
     return Labelled(data, {"separation": way, "branch": route.branch()}, attrs).to_xarray()
