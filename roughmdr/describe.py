@@ -60,7 +60,7 @@ def describe_ensemble(ensemble: Labelled) -> str:
             ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
             ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
             ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
-            ("", f"misfit {attrs['misfit']:.2g} (up to 0.15, noise and spacing change the curvatures by 15 % at most)"),
+            ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
         ]
     return _table([*lines, *_several("warning", tuple(attrs.get("warnings", "").splitlines()))])
 

@@ -119,6 +119,8 @@ def test_the_measured_surface_has_about_140_summits() -> None:
     data = surface(OPTICAL)
     assert 130 <= data.sizes["asperity"] <= 145
     assert 400 < data.attrs["points_per_summit"] < 460
+    assert data.attrs["rms_slope"] == pytest.approx(0.09, abs=0.005)
+    assert "warnings" not in data.attrs
     assert float(data.height.std()) == pytest.approx(0.28e-6, rel=0.05)
     assert 1e-6 < float(data.radius.min()) < float(data.radius.max()) < 1e-4
     path = np.linspace(1.2e-6, 0.0, 60)

@@ -39,6 +39,11 @@ class HeightMap(NamedTuple):
     """What the number format of the file leaves of a height's last digits [m]."""
 
     @property
+    def highest(self) -> float:
+        """The largest magnitude of a height [m]."""
+        return float(max(np.nanmax(self.height), -np.nanmin(self.height)))
+
+    @property
     def defined(self) -> int:
         """How many points have a height."""
         return int(np.isfinite(self.height).sum())
@@ -86,7 +91,8 @@ def read_map(
         raise SceneError(f"{path}: all its {height.size} heights are undefined")
     height[undefined] = np.nan
     wraps = bool(content.periodic) if periodic is None else periodic
-    return HeightMap(height, dx, dy, wraps, eps * float(max(np.nanmax(height), -np.nanmin(height))))
+    found = HeightMap(height, dx, dy, wraps)
+    return found._replace(rounding=eps * found.highest)
 
 
 def _content(path: Path, channel: str | None) -> Content:

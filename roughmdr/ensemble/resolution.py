@@ -10,10 +10,10 @@ from roughmdr.ensemble.maps import HeightMap
 FEW = 40.0
 """Points a summit below which there is a warning.
 
-On maps without noise, the fit finds the mean curvature of the summits 2 % low at 290 points a summit, 9 % at 74, 15 % at
-42 and 29 % at 19 where all waves are equally long, 3 % at 260, 14 % at 68 and 23 % at 42 where they are self-affine. White
-noise alone has 9.5. Noise on a well-sampled map lies above; that is told by the misfit of the fit: up to 0.15, the
-curvature is within 15 %, whether noise or the spacing is to blame.
+On maps without noise, the fit finds the mean curvature of the summits 2 % low at 290 points a summit, 9 % at 74, 15 %
+at 42 and 29 % at 19 where all waves are equally long; 3 % at 260, 14 % at 68 and 23 % at 42 where they are self-affine.
+White noise alone has 9.5. Less noise on many points a wave can lie above; that is told by the misfit of the fit: up to
+0.15, the mean curvature is within 15 %, whether noise or the spacing is to blame.
 """
 
 

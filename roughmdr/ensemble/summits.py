@@ -18,8 +18,8 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     (2006) 191). A point whose paraboloid is a saddle is no summit, nor is one beside an undefined point; the nominal
     area [m2] is that of the points that are defined. SceneError where no summit is found.
 
-    Attributes: ``points_per_summit``; ``saddles``, the points left out as such; ``misfit``, the fourth difference h_xxyy
-    over the second, h_xx + h_yy, both r.m.s. over the summits: what the fit leaves over what it finds.
+    Attributes: ``points_per_summit``; ``saddles``, the points left out as such; ``misfit``, the fourth difference
+    h_xxyy over the second, h_xx + h_yy, both r.m.s. over the summits: what the fit leaves over what it finds.
     """
     height, dx, dy, periodic, _ = surface
     nx, ny = height.shape

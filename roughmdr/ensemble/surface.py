@@ -64,7 +64,7 @@ class SurfaceAsperities(Source):
         """The asperities of the map; SceneError where it cannot be read or has none."""
         path = Path(self.file)
         surface = read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
-        highest = float(np.nanmax(np.abs(surface.height)))
+        noise = surface.rounding + _ROUNDING * surface.highest
         trend = self.detrend or ("mean" if surface.periodic else "quadratic")
         try:
             if surface.periodic and trend in ("plane", "quadratic"):
@@ -72,7 +72,9 @@ class SurfaceAsperities(Source):
             surface = surface._replace(height=remove_trend(surface.height, trend))
             if self.cutoff is not None:
                 surface = remove_short_waves(surface, self.cutoff)
-            found = find_summits(surface, surface.rounding + _ROUNDING * highest)
+            if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
+                raise SceneError(f"the map has no summit: with detrend {trend!r} it is flat, but for rounding")
+            found = find_summits(surface, noise)
         except SceneError as error:
             raise SceneError(f"{self.file}: {error}") from None
         asked = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
