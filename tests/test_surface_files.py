@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -207,6 +208,58 @@ def test_what_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     (tmp_path / "scan.spm").write_bytes(b"\\*File list\r\n")
     with pytest.raises(rm.SceneError, match=r"scan.spm: .spm is left to SurfaceTopography.*pip install 'roughmdr\[sur"):
         generate(tmp_path / "scan.spm")
+
+
+class Instrument(SimpleNamespace):
+    """A file as SurfaceTopography gives it, with one channel."""
+
+    def __init__(self, **changes: object) -> None:
+        known = {"name": "Z", "dim": 2, "data_kind": SimpleNamespace(value="height"), "physical_sizes": (100.0, 300.0)}
+        heights = np.ma.masked_greater(bumps() * 1e10, 1500.0)
+        data = SimpleNamespace(unit="A", is_periodic=True, heights=lambda: heights)
+        data.__dict__.update({key: value for key, value in changes.items() if key not in known})
+        channel = SimpleNamespace(**{**known, **changes}, topography=lambda **_: data)
+        super().__init__(channels=[channel], default_channel=channel)
+
+    def __enter__(self) -> "Instrument":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+
+def opened(monkeypatch: pytest.MonkeyPatch, path: Path, instrument: Instrument) -> Path:
+    path.write_text("of an instrument")
+    module = SimpleNamespace(open_topography=lambda _: instrument)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", SimpleNamespace(IO=module))
+    monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", module)
+    return path
+
+
+def test_what_an_instrument_says_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In angstroms, periodic, masked where undefined."""
+    found = generate(opened(monkeypatch, tmp_path / "a.spm", Instrument()))
+    np.save(tmp_path / "a.npy", np.where(bumps() > 1.5e-7, np.nan, bumps()))
+    expected = generate(tmp_path / "a.npy", size=["10 nm", "30 nm"], periodic=True)
+    xr.testing.assert_allclose(found, expected, rtol=1e-12)
+    assert found.attrs["undefined_share"] == expected.attrs["undefined_share"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"dim": 1}, "channel 'Z' holds a line, not a map of heights"),
+        ({"data_kind": SimpleNamespace(value="phase")}, "channel 'Z' holds phase, not a map of heights"),
+        ({"unit": None}, "does not say in which unit it is"),
+        ({"unit": "mV"}, "unknown unit 'mV'"),
+        ({"physical_sizes": None}, "give size"),
+    ],
+)
+def test_what_an_instrument_leaves_open_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], says: str
+) -> None:
+    with pytest.raises(rm.SceneError, match=f"a.spm: .*{says}"):
+        generate(opened(monkeypatch, tmp_path / "a.spm", Instrument(**changes)))
 
 
 def test_files_of_instruments_without_a_size(tmp_path: Path) -> None:

@@ -30,7 +30,8 @@ def read_netcdf(path: Path, channel: str | None) -> Content:
     height = dataset[name].transpose("x", "y") if set(dataset[name].dims) == {"x", "y"} else dataset[name]
     check_points(height.shape)
     dx, dy = (_spacing(dataset, str(dim)) for dim in height.dims)
-    return Content(height.to_numpy(), height.attrs.get("units"), (dx, dy), _periodic(dataset))
+    unit = str(height.attrs.get("units", "")).strip() or None
+    return Content(height.to_numpy(), unit, (dx, dy), _periodic(dataset))
 
 
 def _spacing(dataset: "xr.Dataset", dim: str) -> float:
