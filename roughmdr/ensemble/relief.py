@@ -30,13 +30,12 @@ def remove_trend(height: Floats, trend: Trend) -> Floats:
     both_x, both_y = ((a[:, :, None] * a[:, None, :]).reshape(len(a), -1) for a in (along_x, along_y))
     products = (both_x.T @ defined @ both_y).reshape(4 * (degree + 1,))
     normal = np.array([[products[i, k, j, m] for k, m in powers] for i, j in powers])
-    for _ in range(2):  # the second round takes out what rounding left, as of a large offset
-        moments = along_x.T @ np.where(defined, height, 0.0) @ along_y
-        found = np.linalg.lstsq(normal, np.array([moments[power] for power in powers]), rcond=None)[0]
-        coefficients = np.zeros((degree + 1, degree + 1))
-        coefficients[tuple(zip(*powers, strict=True))] = found
-        height = height - along_x @ coefficients @ along_y.T
-    return height
+    moments = along_x.T @ np.where(defined, height, 0.0) @ along_y
+    coefficients = np.zeros((degree + 1, degree + 1))
+    coefficients[tuple(zip(*powers, strict=True))] = np.linalg.lstsq(
+        normal, np.array([moments[power] for power in powers]), rcond=None
+    )[0]
+    return np.asarray(height - along_x @ coefficients @ along_y.T)
 
 
 def remove_short_waves(surface: HeightMap, cutoff: float) -> HeightMap:

@@ -27,7 +27,7 @@ def measures(surface: HeightMap) -> dict[str, float | int | str]:
     return {
         "rms_height": float(np.nanstd(height)),
         "rms_slope": math.sqrt(sum(slopes)),
-        "undefined_share": 1.0 - surface.defined / height.size,
+        "undefined_share": (height.size - surface.defined) / height.size,
         "periodic": int(periodic),
     }
 
