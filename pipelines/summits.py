@@ -20,8 +20,9 @@ from exact_summits import Series
 
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import independent
+from roughmdr.ensemble.maps import HeightMap
 from roughmdr.ensemble.summit_law import SummitLaw, Summits, product_density
-from roughmdr.ensemble.surface import find_summits
+from roughmdr.ensemble.summits import find_summits
 from roughmdr.labelled import Labelled
 from roughmdr.spectrum import Moments, SelfAffine
 from roughmdr.store import provenance, replacing, write
@@ -59,8 +60,8 @@ def law_of_maps() -> SummitLaw:
 
 def fitted(series: Series, points: int) -> Summits:
     """What a fit of paraboloids through nine points finds on a grid; it tells no mean curvature."""
-    wrapped = np.pad(series.on_grid(points), 1, mode="wrap")
-    found = find_summits(wrapped, series.size / points, series.size / points)
+    spacing = series.size / points
+    found = find_summits(HeightMap(series.on_grid(points), spacing, spacing, periodic=True))
     return Summits(found.height, np.full_like(found.height, np.nan), found.parameters["radius"])
 
 

@@ -180,6 +180,7 @@ def new(scene: Path) -> None:
 @_changes
 def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ...]) -> None:
     """Write the asperities that a run of SCENE presses on."""
+    from roughmdr.describe import describe_ensemble
     from roughmdr.ensemble import make
     from roughmdr.scene import read
     from roughmdr.store import check_writable, provenance, write
@@ -193,5 +194,5 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
     check_writable(output, asked.inputs)
     made = make(asked.asperities, asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
-    click.echo(f"asperities   {made.sizes['asperity']} of shape {made.attrs['shape']}")
+    click.echo(describe_ensemble(made))
     click.echo(f"ensemble     {click.format_filename(output)}")

@@ -4,7 +4,6 @@ import numpy as np
 
 from roughmdr.arguments import Floats
 from roughmdr.labelled import Array, Labelled
-from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
 from roughmdr.statistics import summarise
 from roughmdr.store import provenance
@@ -23,7 +22,7 @@ LAWS = ("none", "jkr", "dugdale")
 def assemble(
     plan: Plan,
     variables: dict[str, Floats],
-    extremes: Extremes,
+    warnings: list[str],
     command: str,
     *,
     run_time: Floats,
@@ -32,7 +31,7 @@ def assemble(
     adhesion_law: Floats,
 ) -> Labelled:
     """The result, from ``variables`` [run, step] in SI, and over the runs: run times [s], numerical errors, the least
-    Tabor numbers and the laws of adhesion that were taken.
+    Tabor numbers and the laws of adhesion that were taken. ``warnings`` are for the user.
     """
     scene = plan.scene
     swept, realization = tuple(plan.sizes), ("realization",)
@@ -63,6 +62,6 @@ def assemble(
         data["tabor_number"] = Array(dims, tabor, RUN["tabor_number"].attrs)
         data["adhesion_law"] = Array(dims, laws.astype(np.int8), {"long_name": RUN["adhesion_law"].long_name, **flags})
     attrs = {"references": _REFERENCES, "seed": scene.seed, "scene": scene.toml, "left_out": "\n".join(plan.left_out)}
-    if extremes.warnings:
-        attrs["warnings"] = "\n".join(extremes.warnings)
+    if warnings:
+        attrs["warnings"] = "\n".join(warnings)
     return Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})

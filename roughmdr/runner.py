@@ -32,6 +32,8 @@ class Shard(NamedTuple):
     adhesion_law: Floats
     """Numbers as in ``result.LAWS``."""
     extremes: list[Extremes]
+    doubts: list[str]
+    """What makes the ensembles doubtful."""
 
 
 def run(
@@ -75,7 +77,8 @@ def execute(plan: Plan, target: Path | None, *, workers: int, quiet: bool, comma
         for name in ("run_time", "numerical_error", "tabor", "adhesion_law")
     }
     extremes = reduce(Extremes.joined, (each for shard in shards for each in shard.extremes))
-    result = assemble(plan, variables, extremes, command, **beside)
+    doubts = dict.fromkeys(text for shard in shards for text in shard.doubts)
+    result = assemble(plan, variables, [*doubts, *extremes.warnings], command, **beside)
     if target is not None:
         write(result, target)
     return result
@@ -109,7 +112,7 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
     """The law of each of the given runs."""
     names, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
     run_time, error, tabor, law = np.empty((4, len(runs)))
-    shard = Shard({name: np.empty((len(runs), steps)) for name in names}, run_time, error, tabor, law, [])
+    shard = Shard({name: np.empty((len(runs), steps)) for name in names}, run_time, error, tabor, law, [], [])
     for row, number in enumerate(runs):
         (scene, route), realization = plan.run(number)
         started = time.perf_counter()
@@ -123,5 +126,6 @@ def compute_shard(plan: Plan, runs: range) -> Shard:
         shard.tabor[row] = result.tabor
         shard.adhesion_law[row] = LAWS.index(result.model if scene.work > 0.0 else "none")
         shard.extremes.append(result.extremes)
+        shard.doubts.extend(result.doubts)
         shard.run_time[row] = time.perf_counter() - started
     return shard

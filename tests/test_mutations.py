@@ -61,6 +61,20 @@ BASES: dict[str, dict[str, Any]] = {
         }.items()
     },
     "a surface": {**SCENE, "asperities": {"source": "surface", "file": "map.nc", "shape": "paraboloid"}, "batch": {}},
+    "a surface of plain numbers": {
+        **SCENE,
+        "asperities": {
+            "source": "surface",
+            "file": "map.npz",
+            "size": ["10 um", "10 um"],
+            "unit": "nm",
+            "channel": "height",
+            "detrend": "plane",
+            "periodic": False,
+            "cutoff": "1 um",
+        },
+        "batch": {},
+    },
 }
 MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
 NONSENSE: dict[str, object] = {
@@ -130,7 +144,7 @@ def mutations() -> Iterator[Mutation]:
                 continue
             if not reader.dimension:
                 yield mutated(base, key, "no name", 5)
-                if key != "title":
+                if key not in ("title", "asperities.channel"):  # any title will do; channels are the file's to name
                     yield mutated(base, key, "unknown name", "nonsens")
                 continue
             for what, wrong in NONSENSE.items():
@@ -176,6 +190,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     x = np.linspace(0.0, 1e-5, 40)
     waves = 1e-7 * np.outer((1.0 + 1e5 * x) * np.cos(2e6 * x), np.cos(2e6 * x))
     xr.Dataset({"height": (("x", "y"), waves)}, coords={"x": x, "y": x}).to_netcdf(made / "map.nc")
+    np.savez(made / "map.npz", height=1e9 * waves)
     return made
 
 

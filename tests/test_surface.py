@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roughmdr as rm
-from roughmdr.ensemble.surface import find_summits, read_map, remove_quadratic
+from roughmdr.ensemble.maps import HeightMap, read_map
+from roughmdr.ensemble.relief import remove_trend
+from roughmdr.ensemble.summits import find_summits
 
 OPTICAL = Path(__file__).parents[2] / "shared" / "surfaces" / "optical.nc"
 
@@ -41,7 +43,7 @@ def test_a_paraboloid_is_found_exactly(
     inner = height[3:6, 4:7]
     if np.argmax(inner) != 4:
         return  # a long ridge across the grid: its top is not above all eight neighbours
-    found = find_summits(height, dx, dy)
+    found = find_summits(HeightMap(height, dx, dy))
     radius = 1.0 / np.sqrt(k1 * k2 - k12 * k12)
     best = int(np.argmin(np.abs(found.height - 3.0 * unit)))
     assert found.parameters["radius"][best] == pytest.approx(radius, rel=1e-9)
@@ -56,7 +58,7 @@ def test_the_radius_converges_with_the_grid_on_an_egg_box() -> None:
     for points in (64, 128, 256):
         x = np.arange(points) / points + 0.003
         height = np.cos(2 * np.pi * 3 * x)[:, None] * np.cos(2 * np.pi * 5 * x)[None, :]
-        found = find_summits(height, 1.0 / points, 1.0 / points)
+        found = find_summits(HeightMap(height, 1.0 / points, 1.0 / points))
         radius = 1.0 / ((2 * np.pi) ** 2 * 15.0)
         errors.append(float(np.max(np.abs(found.parameters["radius"] / radius - 1.0))))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
@@ -67,18 +69,18 @@ def test_the_radius_converges_with_the_grid_on_an_egg_box() -> None:
 def test_a_quadratic_is_removed() -> None:
     x, y = np.arange(30.0)[:, None], np.arange(40.0)[None, :]
     trend = 3.0 + 0.1 * x - 0.2 * y + 0.01 * x * x + 0.02 * x * y - 0.03 * y * y
-    assert np.max(np.abs(remove_quadratic(trend))) < 1e-12 * np.max(np.abs(trend))
+    assert np.max(np.abs(remove_trend(trend, "quadratic"))) < 1e-12 * np.max(np.abs(trend))
     bumps = np.sin(x) * np.cos(1.3 * y)
-    np.testing.assert_allclose(remove_quadratic(trend + bumps), remove_quadratic(bumps), atol=1e-11)
+    np.testing.assert_allclose(remove_trend(trend + bumps, "quadratic"), remove_trend(bumps, "quadratic"), atol=1e-11)
 
 
 def test_units_of_a_map(tmp_path: Path) -> None:
     rng = np.random.default_rng(2)
     bumps = rng.normal(size=(20, 30))
-    metres, _, _ = read_map(write_map(tmp_path / "a.nc", bumps * 1e-9))
-    nano, dx, dy = read_map(write_map(tmp_path / "b.nc", bumps, units="nm"))
-    np.testing.assert_allclose(nano, metres, rtol=1e-15)
-    assert (dx, dy) == pytest.approx((1e-6, 2e-6), rel=1e-12)
+    metres = read_map(write_map(tmp_path / "a.nc", bumps * 1e-9))
+    nano = read_map(write_map(tmp_path / "b.nc", bumps, units="nm"))
+    np.testing.assert_allclose(nano.height, metres.height, rtol=1e-15)
+    assert (nano.dx, nano.dy) == pytest.approx((1e-6, 2e-6), rel=1e-12)
 
 
 def surface(path: Path) -> xr.Dataset:
@@ -88,7 +90,7 @@ def surface(path: Path) -> xr.Dataset:
 @pytest.mark.parametrize(
     ("height", "extra", "says"),
     [
-        (np.full((9, 9), np.nan), {}, "81 of 81 heights are undefined"),
+        (np.full((9, 9), np.nan), {}, "all its 81 heights are undefined"),
         (np.zeros((9, 9)), {}, "no summit"),
         (np.zeros((1, 9)), {}, "1 x 9 points; it needs at least 3 x 3"),
         (np.eye(9), {"units": "Pa"}, "'Pa' is a unit of Pa"),
@@ -117,6 +119,8 @@ def test_the_measured_surface_has_about_140_summits() -> None:
     data = surface(OPTICAL)
     assert 130 <= data.sizes["asperity"] <= 145
     assert 400 < data.attrs["points_per_summit"] < 460
+    assert data.attrs["rms_slope"] == pytest.approx(0.09, abs=0.005)
+    assert "warnings" not in data.attrs
     assert float(data.height.std()) == pytest.approx(0.28e-6, rel=0.05)
     assert 1e-6 < float(data.radius.min()) < float(data.radius.max()) < 1e-4
     path = np.linspace(1.2e-6, 0.0, 60)
@@ -133,7 +137,7 @@ def test_area_positions_and_saddles_are_counted() -> None:
         bumps += np.maximum(0.0, 1.0 - 0.1 * ((x - at_x) ** 2 + (y - at_y) ** 2))
     # Above all eight neighbours, yet the fit through it is a saddle: a ridge along the diagonal, dented beside it.
     bumps[15:18, 3:6] = [[0.99, -9.0, -9.0], [-0.01, 1.0, -0.01], [-9.0, -9.0, 0.99]]
-    found = find_summits(bumps, 0.5, 2.0)
+    found = find_summits(HeightMap(bumps, 0.5, 2.0))
     assert found.height.size == 2
     assert found.attrs["saddles"] == 1
     assert found.nominal_area == 20 * 0.5 * 30 * 2.0
@@ -145,7 +149,7 @@ def test_a_top_beyond_the_neighbours_is_not_trusted(side: float, top: float) -> 
     """Drops of 0 and 1 before and behind, ``side`` beside: the fit peaks 0.83 of a spacing away, or 1.39 away."""
     height = np.full((5, 5), -9.0)
     height[1:4, 1:4] = [[-1.0, -1.0, -1.0], [-side, 0.0, -side], [-1e-9, -1e-9, -1e-9]]
-    found = find_summits(height, 1.0, 1.0)
+    found = find_summits(HeightMap(height, 1.0, 1.0))
     assert found.height.tolist() == [pytest.approx(top, abs=1e-8)]
 
 

@@ -55,6 +55,8 @@ class LoadSeparation(NamedTuple):
     """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
     model: str
     """The law of adhesion that was taken."""
+    doubts: tuple[str, ...] = ()
+    """What makes the ensemble itself doubtful."""
 
     @classmethod
     def of(
@@ -106,7 +108,8 @@ def compute(
         {totals.ERROR, totals.FORCE, *(ROW[name] for name in names)},
     )
     extremes = ensemble.extremes(reached)
-    return LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
+    found = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
+    return found._replace(doubts=ensemble.warnings)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -165,7 +168,8 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
-    attrs = {"warnings": "\n".join(result.extremes.warnings)} if result.extremes.warnings else {}
-    for text in result.extremes.warnings:
+    doubts = [*result.doubts, *result.extremes.warnings]
+    attrs = {"warnings": "\n".join(doubts)} if doubts else {}
+    for text in doubts:
         warnings.warn(text, LimitWarning, stacklevel=2)
     return Labelled(data, {"separation": way, "branch": route.branch()}, attrs).to_xarray()

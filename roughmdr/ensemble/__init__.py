@@ -1,6 +1,7 @@
 """Where asperities come from: one file a source, each with the section of the scene that asks for it."""
 
 import operator
+import warnings
 from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
 from pydantic import Field, TypeAdapter, ValidationError
@@ -12,7 +13,7 @@ from roughmdr.ensemble.random import RandomAsperities
 from roughmdr.ensemble.random_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.surface import SurfaceAsperities
-from roughmdr.errors import SceneError
+from roughmdr.errors import LimitWarning, SceneError
 from roughmdr.faults import find_faults
 
 if TYPE_CHECKING:
@@ -39,10 +40,14 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
 
     asperities is the section of a scene or a dictionary with its keys, quantities as numbers in SI or as strings with
     a unit. The result holds ``height`` [m] and each shape parameter under its argument's name; attrs ``shape``,
-    ``nominal_area`` [m2], ``patch`` [m] and ``seed``. SceneError, with all faults at once, where the section is wrong.
+    ``nominal_area`` [m2], ``patch`` [m] and ``seed``; ``warnings``, issued as LimitWarning too, where the asperities
+    are doubtful. SceneError, with all faults at once, where the section is wrong.
     """
     section = asperities if isinstance(asperities, Source) else _validated(asperities)
-    return make(section, _whole("seed", seed), _whole("realization", realization)).labelled().to_xarray()
+    made = make(section, _whole("seed", seed), _whole("realization", realization))
+    for text in made.warnings:
+        warnings.warn(text, LimitWarning, stacklevel=2)
+    return made.labelled().to_xarray()
 
 
 def make(section: Source, seed: int, realization: int) -> Ensemble:

@@ -1,6 +1,6 @@
 """An ensemble of asperities: plain arrays inside, an xarray dataset outside."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +29,8 @@ class Ensemble:
     attrs: dict[str, float | int | str] = field(default_factory=dict)
     fixed: Common | None = None
     """The one profile of all asperities, of a shape that has no plain numbers for parameters."""
+    warnings: tuple[str, ...] = ()
+    """What makes the asperities themselves doubtful, for the user."""
 
     @classmethod
     def sorted(
@@ -78,7 +80,8 @@ class Ensemble:
         for name, column in self.positions.items():
             variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
         area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
-        return Labelled(variables, {}, {"shape": self.shape, **self.attrs, **area})
+        doubts = {"warnings": "\n".join(self.warnings)} if self.warnings else {}
+        return Labelled(variables, {}, {"shape": self.shape, **self.attrs, **area, **doubts})
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
@@ -100,7 +103,8 @@ class Ensemble:
         sides: dict[str, float | int | str] = {
             name: float(dataset.attrs[name]) for name in ("patch", "patch_x", "patch_y") if name in dataset.attrs
         }
-        return cls.sorted(shape, height, parameters, area, positions, sides, fixed)
+        found = cls.sorted(shape, height, parameters, area, positions, sides, fixed)
+        return replace(found, warnings=tuple(str(dataset.attrs.get("warnings", "")).splitlines()))
 
 
 def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], Common | None]:

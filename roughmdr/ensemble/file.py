@@ -16,11 +16,11 @@ from roughmdr.errors import RoughmdrError, SceneError
 def check_is_file(value: str) -> str:
     """The name of a file that is there; RoughmdrError where it is not."""
     try:
-        there = Path(value).is_file()
+        there, folder = Path(value).is_file(), Path(value).is_dir()
     except OSError as error:
         raise RoughmdrError(f"cannot be read: {error.strerror}") from None
     if not there:
-        raise RoughmdrError("no such file")
+        raise RoughmdrError("is a folder; expected a file" if folder else "no such file")
     return value
 
 

@@ -1,15 +1,17 @@
 """source = "nayak": the summits of an isotropic Gaussian surface, as paraboloids."""
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.nodes import END as HEIGHT_END
+from roughmdr.ensemble.nodes import Heights, Nodes, Rule
 from roughmdr.ensemble.patch import PatchSource
-from roughmdr.ensemble.summit_law import SummitLaw
+from roughmdr.ensemble.summit_law import SummitLaw, product_of_score
 from roughmdr.errors import RoughmdrError
 from roughmdr.quantities import EntryError, Length, Quantity
 from roughmdr.spectrum import Moments, SelfAffine
@@ -134,6 +136,21 @@ class NayakAsperities(PatchSource):
         """Standard deviation of the heights over the law [m]."""
         return self.law.sigma
 
+    @property
+    def one_parameter(self) -> bool:
+        """The product of the curvatures alone says what contacts bear."""
+        return True
+
+    def nodes(self, rule: Rule) -> Nodes:
+        """Nodes at products of curvatures of these normal scores."""
+        v = product_of_score(rule.scores)
+        return Nodes(rule.weights, {"radius": self.law.radius(v)}, tuple(map(self._heights, v.tolist())))
+
+    def _heights(self, v: float) -> Heights:
+        """The heights of the summits that have a product of curvatures v."""
+        end, spread = HEIGHT_END * math.sqrt(self.law.moments.m0), self.law.height_spread
+        return Heights(partial(self.law.height_density, v=v), -end, end, spread)
+
     def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of one realization."""
         draws = spread(seed, realization, _STREAMS) if stratified else independent(seed, realization)
@@ -145,6 +162,6 @@ class NayakAsperities(PatchSource):
             "density": self.law.density,
             "alpha": self.law.moments.alpha,
         }
-        return Ensemble.sorted(
-            self.shape, summits.height, {"radius": summits.radius}, self.patch * self.patch, attrs=attrs
-        )
+        radii = {"radius": summits.radius}
+        positions = self.positions(draws, self.count) if placed else {}
+        return Ensemble.sorted(self.shape, summits.height, radii, self.nominal_area, positions, attrs)

@@ -11,7 +11,8 @@ from roughmdr.arguments import Floats
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.population import AsperityLaw, Population
 
-_END = 10.0  # normal score beyond which heights are left out: their share is 1e-23
+END = 10.0
+"""The normal score beyond which heights are left out: their share is 1e-23."""
 _LAST = 8.5  # normal score beyond which parameters are left out: their share is 1e-17
 _QUARTER = 0.6745  # normal score that a quarter of all heights lie above
 
@@ -31,14 +32,14 @@ class Heights(NamedTuple):
     @classmethod
     def of(cls, distribution: Distribution) -> "Heights":
         """Heights that have a distribution of their own."""
-        low, lower, upper, high = distribution.of_scores(np.array([-_END, -_QUARTER, _QUARTER, _END]))
+        low, lower, upper, high = distribution.of_scores(np.array([-END, -_QUARTER, _QUARTER, END]))
         return cls(distribution.density, float(low), float(high), float(upper - lower))
 
     @classmethod
     def given(cls, distribution: Distribution, score: float, correlation: float) -> "Heights":
         """Those that go with the normal score of another quantity, by a normal copula."""
         spread = math.sqrt((1.0 - correlation) * (1.0 + correlation))
-        scores = correlation * score + spread * np.array([-_END, -_QUARTER, _QUARTER, _END])
+        scores = correlation * score + spread * np.array([-END, -_QUARTER, _QUARTER, END])
         low, lower, upper, high = distribution.of_scores(scores)
 
         def density(z: Floats) -> Floats:

@@ -22,6 +22,7 @@ from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.summit_quantiles import mean_curvature, product_of_curvatures
 from roughmdr.spectrum import RING, Moments
 
+_WIDE = 12.0  # in sqrt(v): above it by so much lies next to nothing
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
 
 
@@ -70,6 +71,11 @@ class SummitLaw(NamedTuple):
         """1 - c^2, without the difference of numbers that are nearly equal."""
         return (self.moments.alpha - RING) / self.moments.alpha
 
+    @property
+    def height_spread(self) -> float:
+        """The least spread of the heights of summits that have all derivatives in common [m]."""
+        return math.sqrt(self.moments.m0 * self._loose)
+
     def draw(self, height: Floats, mean: Floats, product: Floats) -> Summits:
         """Summits from independent uniform numbers for the height, the mean curvature and the product of curvatures.
 
@@ -102,6 +108,34 @@ class SummitLaw(NamedTuple):
         far = erfc(np.minimum(y, 0.0)) * np.exp(np.minimum(1.5 * (root * root - zeta * zeta / kept), 0.0))
         scale = math.sqrt(1.5 / (math.pi * kept)) / unit
         return np.asarray(scale * np.where(y > 0.0, near, far) / erfcx(math.sqrt(1.5) * root))
+
+
+def product_of_score(scores: Floats) -> Floats:
+    """v [1] that lies as high among all summits as a normal score from -9 to 9 does among its own.
+
+    By Newton's method in y = sqrt(v), on the fractions below and above, each by Gauss's rule over its own side.
+    """
+    from scipy.special import ndtri
+
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+
+    def score(y: Floats) -> Floats:
+        below = _part(0.5 * y[:, None] * (1.0 + nodes)) @ weights * 0.5 * y
+        above = _part(y[:, None] + 0.5 * _WIDE * (1.0 + nodes)) @ weights * 0.5 * _WIDE
+        return np.where(below < above, ndtri(below), -ndtri(above))
+
+    grid = np.concatenate([np.geomspace(1e-9, 0.05, 300), np.linspace(0.05, 12.0, 700)[1:]])
+    y = np.interp(scores, score(grid), grid)
+    for _ in range(4):
+        own = score(y)
+        slope = _part(y) * np.sqrt(2.0 * np.pi) * np.exp(0.5 * own**2)
+        y = np.clip(y - (own - scores) / slope, 0.5 * y, 2.0 * y)
+    return np.asarray(y * y)
+
+
+def _part(y: Floats) -> Floats:
+    """The density of sqrt(v)."""
+    return 2.0 * y * product_density(y * y)
 
 
 def product_density(v: ArrayLike) -> Floats:
