@@ -1,0 +1,95 @@
+"""Integrals over panels, refined until they settle, and functions tabulated once by Chebyshev polynomials."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.arguments import Floats
+
+Rows = NDArray[np.intp]
+
+_NODES = 16
+# A panel is done where its halves change it by less than this part of the whole integral. The halves are far better
+# than their change tells. One node at an end of a power x^p, p > -1, is reached within the halvings.
+_SETTLED = 2e-14
+_HALVINGS = 120
+
+
+@cache
+def gauss(count: int) -> tuple[Floats, Floats]:
+    """Nodes and weights of Gauss and Legendre on -1 to 1."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights
+
+
+def panels(edges: Floats, count: int = _NODES) -> tuple[Floats, Floats]:
+    """Nodes and weights on the panels between ``edges``, one row a panel."""
+    nodes, weights = gauss(count)
+    half = 0.5 * np.diff(edges)[:, None]
+    return edges[:-1, None] + half * (1.0 + nodes), half * weights
+
+
+def integrate(integrand: Callable[[Rows, Floats], Floats], edges: Floats) -> Floats:
+    """One integral for each row of ``edges`` (rows, edges), which do not descend.
+
+    ``integrand(rows, x)`` takes panels, one row of ``x`` each, and tells to which integrals they belong. A panel is
+    halved until it settles, so that kinks, jumps and powers at its ends are found.
+    """
+    nodes, weights = gauss(_NODES)
+
+    def rule(rows: Rows, low: Floats, high: Floats) -> Floats:
+        half = 0.5 * (high - low)
+        values = integrand(rows, low[:, None] + half[:, None] * (1.0 + nodes))
+        return np.asarray(half * (values @ weights))
+
+    count = len(edges)
+    rows, at = np.nonzero(edges[:, 1:] > edges[:, :-1])
+    low, high = edges[rows, at], edges[rows, at + 1]
+    whole = rule(rows, low, high)
+    total, size = np.zeros(count), np.bincount(rows, np.abs(whole), count)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        left, right = rule(rows, low, middle), rule(rows, middle, high)
+        size = np.maximum(size, np.bincount(rows, np.abs(left) + np.abs(right), count))
+        settled = np.abs(left + right - whole) <= _SETTLED * size[rows]
+        settled |= (middle <= low) | (middle >= high)
+        total += np.bincount(rows[settled], (left + right)[settled], count)
+        more = ~settled
+        if not more.any():
+            return total
+        low, high = np.concatenate([low[more], middle[more]]), np.concatenate([middle[more], high[more]])
+        rows, whole = np.tile(rows[more], 2), np.concatenate([left[more], right[more]])
+    return np.asarray(total + np.bincount(rows, whole, count))
+
+
+class Table(NamedTuple):
+    """A smooth function between the first and the last of ``edges``, by polynomials between them; constant outside."""
+
+    edges: Floats
+    terms: Floats
+    """Chebyshev coefficients, one column a panel."""
+
+    @classmethod
+    def of(cls, function: Callable[[Floats], Floats], edges: Floats, count: int = _NODES) -> "Table":
+        """``function`` takes a one-dimensional array."""
+        angles = np.pi * (np.arange(count) + 0.5) / count
+        half = 0.5 * np.diff(edges)[:, None]
+        x = edges[:-1, None] + half * (1.0 + np.cos(angles))
+        values = function(x.ravel()).reshape(x.shape)
+        terms = 2.0 / count * np.cos(np.arange(count)[:, None] * angles) @ values.T
+        terms[0] *= 0.5
+        return cls(edges, terms)
+
+    def __call__(self, x: Floats) -> Floats:
+        """The function at each x, an array of any shape."""
+        at = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
+        low, high = self.edges[at], self.edges[at + 1]
+        t = np.clip((2.0 * x - low - high) / (high - low), -1.0, 1.0)
+        # Clenshaw's recurrence.
+        ahead, last = np.zeros_like(t), np.zeros_like(t)
+        for row in self.terms[:0:-1]:
+            ahead, last = row[at] + 2.0 * t * ahead - last, ahead
+        return np.asarray(self.terms[0][at] + t * ahead - last)
