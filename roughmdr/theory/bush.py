@@ -46,6 +46,6 @@ def check_load(pressure: ArrayLike, modulus: float, rms_slope: float) -> Floats:
     pressures = check_values("pressure", pressure)
     if (pressures < 0.0).any():
         raise OutOfRange(f"pressure is {np.min(pressures):g} Pa; it must be at least 0")
-    full = check_number("modulus", modulus, "Pa") * check_number("rms_slope", rms_slope, "1")
-    with np.errstate(all="ignore"):  # what overflows is refused by who asks
-        return np.asarray(pressures / full)
+    modulus, rms_slope = check_number("modulus", modulus, "Pa"), check_number("rms_slope", rms_slope, "1")
+    with np.errstate(over="ignore"):  # beyond every float, full contact is as sure
+        return np.asarray(pressures / modulus / rms_slope)

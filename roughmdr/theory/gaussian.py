@@ -47,14 +47,15 @@ def mean_over_summits(
         "contact_fraction": math.pi * deviation / curvature,
         "contact_density": 1.0,
     }[variable]
-    h = given.ravel() / deviation
     heights = _weighted(contacts, variable, moments.alpha)
-    ahead = np.maximum(heights.edges[0] - h, 0.0)
+    with np.errstate(over="ignore", invalid="ignore"):  # refused below
+        h = given.ravel() / deviation
+        ahead = np.maximum(heights.edges[0] - h, 0.0)
 
-    def carried(rows: Rows, beyond: Floats) -> Floats:
-        return np.asarray((ahead[rows, None] + beyond) ** power)
+        def carried(rows: Rows, beyond: Floats) -> Floats:
+            return np.asarray((ahead[rows, None] + beyond) ** power)
 
-    return representable(variable, density * unit * heights.mean(h, carried), given)
+        return representable(variable, density * unit * heights.mean(h, carried), given)
 
 
 def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:

@@ -90,7 +90,8 @@ def _of_distribution(given: Distribution | None) -> Heights:
     first, last = np.nextafter(lowest, math.inf), np.nextafter(highest, -math.inf)
 
     def density(z: Floats) -> Floats:
-        return np.asarray(given.pdf(np.clip(z, first, last)), dtype=np.float64)
+        with np.errstate(all="ignore"):  # far out some overflow on their way to 0
+            return np.asarray(given.pdf(np.clip(z, first, last)), dtype=np.float64)
 
     shares = np.asarray(given.ppf(_SHARES), dtype=np.float64)
     steps = (shares[-1] - shares[0]) * 2.0 ** np.arange(_DOUBLINGS)

@@ -16,6 +16,8 @@ _NODES = 16
 # than their change tells. One node at an end of a power x^p, p > -1, is reached within the halvings.
 _SETTLED = 2e-14
 _HALVINGS = 120
+# More panels than these at work on an integral mean that its integrand is noisy: the limit rises to the noise.
+_AT_WORK = 64
 
 
 @cache
@@ -30,6 +32,32 @@ def panels(edges: Floats, count: int = _NODES) -> tuple[Floats, Floats]:
     nodes, weights = gauss(count)
     half = 0.5 * np.diff(edges)[:, None]
     return edges[:-1, None] + half * (1.0 + nodes), half * weights
+
+
+def refined(function: Callable[[Floats], Floats], edges: Floats) -> Floats:
+    """``edges`` with more of them where the running integral of a function of at least 0 has not settled."""
+    for _ in range(_HALVINGS):
+        middles = 0.5 * (edges[:-1] + edges[1:])
+        nodes, share = panels(np.sort(np.concatenate([edges, middles])))
+        halves = np.sum(function(nodes) * share, axis=1).reshape(-1, 2).sum(axis=1)
+        nodes, share = panels(edges)
+        change = np.abs(np.sum(function(nodes) * share, axis=1) - halves)
+        split = (change > _SETTLED * np.cumsum(halves)) & (edges[:-1] < middles) & (middles < edges[1:])
+        if not split.any():
+            break
+        edges = np.sort(np.concatenate([edges, middles[split]]))
+    return edges
+
+
+def running(values: Floats, edges: Floats) -> Floats:
+    """The integral from the first of ``edges`` to each node of ``panels(edges)``, of the values there."""
+    nodes, _ = gauss(values.shape[1])
+    half = 0.5 * np.diff(edges)[:, None]
+    powers = np.polynomial.legendre.legvander(nodes, len(nodes) - 1)
+    primitives = np.polynomial.legendre.legint(np.eye(len(nodes)), lbnd=-1)
+    inside = half * (values @ np.linalg.inv(powers).T @ np.polynomial.legendre.legval(nodes, primitives))
+    whole = panels(edges, len(nodes))[1] * values
+    return np.asarray(np.concatenate([[0.0], np.cumsum(whole.sum(axis=1))[:-1]])[:, None] + inside)
 
 
 def integrate(integrand: Callable[[Rows, Floats], Floats], edges: Floats) -> Floats:
@@ -50,16 +78,19 @@ def integrate(integrand: Callable[[Rows, Floats], Floats], edges: Floats) -> Flo
     low, high = edges[rows, at], edges[rows, at + 1]
     whole = rule(rows, low, high)
     total, size = np.zeros(count), np.bincount(rows, np.abs(whole), count)
+    limit = _SETTLED
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         left, right = rule(rows, low, middle), rule(rows, middle, high)
         size = np.maximum(size, np.bincount(rows, np.abs(left) + np.abs(right), count))
-        settled = np.abs(left + right - whole) <= _SETTLED * size[rows]
-        settled |= (middle <= low) | (middle >= high)
+        # What is not finite is left to the caller.
+        settled = ~(np.abs(left + right - whole) > limit * size[rows]) | (middle <= low) | (middle >= high)
         total += np.bincount(rows[settled], (left + right)[settled], count)
         more = ~settled
         if not more.any():
             return total
+        if np.count_nonzero(more) > _AT_WORK * count:
+            limit *= 4.0
         low, high = np.concatenate([low[more], middle[more]]), np.concatenate([middle[more], high[more]])
         rows, whole = np.tile(rows[more], 2), np.concatenate([left[more], right[more]])
     return np.asarray(total + np.bincount(rows, whole, count))
