@@ -73,7 +73,9 @@ class Heights(NamedTuple):
         last = integrate(integrand, edges[:, -2:])
         inside = edges[:, -2] > 0.0
         if (np.abs(last)[inside] > 1e-12 * np.abs(values)[inside]).any():
-            raise OutOfRange("heights have too heavy a tail: there is no finite mean of what the summits carry")
+            raise OutOfRange(
+                "heights have too heavy a tail: what the summits carry has no finite mean, or none that converges"
+            )
 
 
 def _normal(std: float) -> Heights:

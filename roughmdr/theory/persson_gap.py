@@ -26,9 +26,10 @@ def persson_separation(*, pressure: ArrayLike, modulus: float, spectrum: Spectru
     the elastic energy U = pi/2 E* ∫ dq q^2 C P [gamma + (1 - gamma) P^2] of a unit area.
     At small pressures u falls by log(p) times gamma sqrt(pi) ∫ dq q^2 C w; at full contact it is 0.
 
-    modulus E* [Pa]; spectrum C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave`` [m]; gamma from 0 to
-    1, 0.4 to 0.5 in the literature. The shape is that of pressure, a number or one-dimensional. OutOfRange where an
-    argument is not above 0: without pressure there is no finite gap. Accurate to about 1e-12 of itself.
+    modulus E* [Pa]; spectrum C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave`` [m];
+    gamma from 0 to 1, 0.4 to 0.5 in the literature. The shape is that of pressure, a number or one-dimensional.
+    OutOfRange where an argument is not above 0 (without pressure there is no finite gap), RoughmdrError where spectrum
+    is none. Accurate to about 1e-12 of itself.
     """
     given = check_values("pressure", pressure)
     if (given <= 0.0).any():
