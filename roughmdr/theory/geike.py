@@ -32,10 +32,12 @@ def rough_line(
     ``line_heights``, each of its points on a spring of stiffness E* dx. F = E* dx sum of (z - h) over all z > h, and
     k = E* dx times their number. No spring knows of its neighbours.
 
-    What it gives is how stiffness grows with force: over self-affine waves as F^(1/(1 + H)) (R. Pohrt, V. L. Popov,
-    A. E. Filippov, Phys. Rev. E 86 (2012) 026710). Its separation and its area of contact are NOT those of the surface:
-    at a given gap it carries about a fifth of the force that boundary elements find, and the length that touches is no
-    area (I. A. Lyashenko, L. Pastewka, B. N. J. Persson, Tribol. Lett. 52 (2013) 223).
+    What it gives is how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long as
+    the line, the power law that boundary elements find (exponents 0.51 to 0.77: R. Pohrt, V. L. Popov, Phys. Rev. Lett.
+    108 (2012) 104301) in surfaces of that size, and only there (L. Pastewka and others, Phys. Rev. E 87 (2013) 062809).
+    Its separation and its area of contact are NOT those of the surface: at a given gap it carries about a fifth of the
+    force that boundary elements find, and the length that touches is no area (I. A. Lyashenko, L. Pastewka, B. N. J.
+    Persson, Tribol. Lett. 52 (2013) 223).
 
     modulus E* [Pa]; the others and the errors as for ``line_heights``. The shapes are that of separation, a number or
     one-dimensional. OutOfRange where an argument is.
@@ -59,7 +61,8 @@ def line_heights(*, spectrum: Spectrum, length: float, points: int, seed: int) -
     """Heights [m] of a periodic line of ``length`` [m] with random phases, at evenly spaced points.
 
     Its spectrum is C1(q) = pi q C(q), with <h^2> = 2 ∫ C1 dq the same as that of the surface (Geike and Popov, as
-    above): every line has it, whatever its phases. Each wave of the line stands for the waves nearest to it.
+    above): every line has it, whatever its phases. Its <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave
+    of the line stands for the waves nearest to it.
     spectrum C(q) [m4] between ``long_wave`` and ``short_wave``. OutOfRange where the length is below the longest wave,
     or the points are not more than two in the shortest; where seed is not a whole number of at least 0.
     """

@@ -64,7 +64,7 @@ class Heights(NamedTuple):
 
         edges = np.sqrt(np.maximum(self.edges - from_here, 0.0))
         values = integrate(integrand, edges)
-        if self.endless and (values > 0.0).any():
+        if self.endless:
             self._check_tail(integrand, edges, values)
         return values
 
