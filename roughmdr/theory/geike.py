@@ -32,9 +32,10 @@ def rough_line(
     ``line_heights``, each of its points on a spring of stiffness E* dx. F = E* dx sum of (z - h) over all z > h, and
     k = E* dx times their number. No spring knows of its neighbours.
 
-    What it gives is how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long as
-    the line, the power law that boundary elements find (exponents 0.51 to 0.77: R. Pohrt, V. L. Popov, Phys. Rev. Lett.
-    108 (2012) 104301) in surfaces of that size, and only there (L. Pastewka and others, Phys. Rev. E 87 (2013) 062809).
+    What it gives is how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long
+    as the line, the power law that boundary elements find (exponents 0.51 to 0.77: R. Pohrt, V. L. Popov, Phys. Rev.
+    Lett. 108 (2012) 104301) in surfaces of that size, and only there (L. Pastewka and others, Phys. Rev. E 87 (2013)
+    062809).
     Its separation and its area of contact are NOT those of the surface: at a given gap it carries about a fifth of the
     force that boundary elements find, and the length that touches is no area (I. A. Lyashenko, L. Pastewka, B. N. J.
     Persson, Tribol. Lett. 52 (2013) 223).
