@@ -28,8 +28,8 @@ _POWERS: dict[Variable, tuple[float, float]] = {
     "contact_fraction": (1.0, 1.0),
     "contact_density": (0.0, 0.0),
 }
-# Down to contacts so narrow that none is left: their share goes as (b/a)^3.
-_RATIOS = np.append(0.0, 2.0 ** np.arange(-20, 1))
+# Down to contacts so narrow that none is left: their share goes as (b/a)^3. Up to round ones: those of high summits.
+_RATIOS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -1), 1.0 - 2.0 ** np.arange(-1, -7, -1), [1.0]])
 _LARGEST = 64.0  # S; heights up to 39 and 9 deviations beyond
 
 
