@@ -14,6 +14,7 @@ from roughmdr.theory.quadrature import Rows, integrate
 NORMAL_EDGES = np.array([-9.0, -5.0, -2.0, 0.0, 2.0, 5.0, 9.0, 16.0, 39.0])
 _SHARES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 _DOUBLINGS = 128
+_LIGHT = 40  # doublings after which only heavy tails are followed further
 _NOTHING = 1e-20
 _BLOCK = 512  # separations at a time
 
@@ -100,7 +101,9 @@ def _of_distribution(given: Distribution | None) -> Heights:
     if not (np.isfinite(shares).all() and steps[0] > 0.0):
         raise OutOfRange(f"heights have the percentiles {shares}; they must be finite and differ")
     above, below = shares[-1] + steps, shares[0] - steps
-    above, below, steps = above[above < highest], below[below > lowest], steps[below > lowest]
-    inner = [below[density(below) * steps > _NOTHING], shares, above[density(above) > 0.0]]
+    above, below = above[above < highest], below[below > lowest]
+    mass, force = density(below) * steps[: len(below)], density(above) * steps[: len(above)] ** 2.5
+    far = (np.arange(len(above)) < _LIGHT) | (force > _NOTHING**2 * force[:1])
+    inner = [below[mass > _NOTHING], shares, above[(force > 0.0) & far]]
     ends = [end for end in (lowest, highest) if math.isfinite(end)]
     return Heights(density, np.unique(np.concatenate([*inner, ends])), highest == math.inf)
