@@ -72,6 +72,29 @@ def test_normal_heights_are_those_of_a_std(variable: str, turning: float | None)
     np.testing.assert_allclose(given, rm.theory.fuller_tabor(separation=h, std=1e-6, **surface), rtol=1e-11)
 
 
+class Step:
+    """Heights from 0 to 1, above a step three times as dense as below it."""
+
+    def __init__(self, at: float) -> None:
+        self.at, self.level = at, 1.0 / (3.0 - 2.0 * at)
+
+    def pdf(self, z: np.ndarray) -> np.ndarray:
+        return self.level * np.where(z < self.at, 1.0, 3.0)
+
+    def ppf(self, q: np.ndarray) -> np.ndarray:
+        q = np.asarray(q) / self.level
+        return np.where(q < self.at, q, self.at + (q - self.at) / 3.0)
+
+    def support(self) -> tuple[float, float]:
+        return 0.0, 1.0
+
+
+@pytest.mark.parametrize("at", [0.1234, 0.4990269942147343, 0.7488977605179967])
+def test_a_jump_that_lies_between_the_nodes_is_found(at: float) -> None:
+    exact = (3.0 - 2.0 * at**2.5) / 2.5 / (3.0 - 2.0 * at)
+    assert f_3_2(0.0, Step(at)) == pytest.approx(exact, rel=1e-10)
+
+
 def test_summits_out_of_reach_carry_nothing() -> None:
     assert f_3_2(1.5, st.uniform(-1.0, 2.0)) == 0.0
 

@@ -31,8 +31,8 @@ def greenwood_williamson(
     or ``heights``, any frozen continuous distribution of scipy.stats; the separation is from their zero.
     The shape is that of separation, a number or one-dimensional. OutOfRange where an argument is not above 0 or the
     mean does not exist, RoughmdrError unless exactly one of std and heights is given.
-    Accurate to about 1e-13 of itself where the density is; to about 1e-8 of its largest values where the density is
-    infinite at a height other than 0, or jumps inside its support.
+    Accurate to about 1e-13 of itself where the density is; to about 1e-10 where the density jumps inside its support,
+    and to 1e-8 of its largest values where it is infinite at a height other than 0.
     """
     contact = Contact.of(Paraboloid(radius), modulus, Adhesion())
     return Summits(contact, Heights.of(std, heights), density).over(variable, separation, lambda h: h)

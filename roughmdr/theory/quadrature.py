@@ -16,6 +16,10 @@ _NODES = 16
 # than their change tells. One node at an end of a power x^p, p > -1, is reached within the halvings.
 _SETTLED = 2e-14
 _HALVINGS = 120
+# A jump that no node sees lies between an end and the node next to it: it is looked for this near to the ends, and
+# followed down to this part of the whole.
+_END = 1e-9
+_JUMP = 1e-11
 # More panels than these at work on an integral mean that its integrand is noisy: the limit rises to the noise.
 _AT_WORK = 64
 
@@ -67,24 +71,33 @@ def integrate(integrand: Callable[[Rows, Floats], Floats], edges: Floats) -> Flo
     halved until it settles, so that kinks, jumps and powers at its ends are found.
     """
     nodes, weights = gauss(_NODES)
+    ends = np.array([_END - 1.0, 1.0 - _END])
+    vander = np.polynomial.legendre.legvander
+    to_ends = vander(ends, _NODES - 1) @ np.linalg.inv(vander(nodes, _NODES - 1))
+    places = 1.0 + np.append(nodes, ends)
 
-    def rule(rows: Rows, low: Floats, high: Floats) -> Floats:
+    def rule(rows: Rows, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+        """The integral over each panel, and what a jump between its ends and the nodes next to them would be worth."""
         half = 0.5 * (high - low)
-        values = integrand(rows, low[:, None] + half[:, None] * (1.0 + nodes))
-        return np.asarray(half * (values @ weights))
+        values = integrand(rows, low[:, None] + half[:, None] * places)
+        inside = values[:, :_NODES]
+        jumps = np.abs(values[:, _NODES:] - inside @ to_ends.T).sum(axis=1)
+        return half * (inside @ weights), half * places[0] * jumps
 
     count = len(edges)
     rows, at = np.nonzero(edges[:, 1:] > edges[:, :-1])
     low, high = edges[rows, at], edges[rows, at + 1]
-    whole = rule(rows, low, high)
+    whole, _ = rule(rows, low, high)
     total, size = np.zeros(count), np.bincount(rows, np.abs(whole), count)
     limit = _SETTLED
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        left, right = rule(rows, low, middle), rule(rows, middle, high)
+        (left, doubt), (right, more_doubt) = rule(rows, low, middle), rule(rows, middle, high)
         size = np.maximum(size, np.bincount(rows, np.abs(left) + np.abs(right), count))
         # What is not finite is left to the caller.
-        settled = ~(np.abs(left + right - whole) > limit * size[rows]) | (middle <= low) | (middle >= high)
+        settled = ~(np.abs(left + right - whole) > limit * size[rows])
+        settled &= ~(doubt + more_doubt > np.maximum(limit, _JUMP) * size[rows])
+        settled |= (middle <= low) | (middle >= high)
         total += np.bincount(rows[settled], (left + right)[settled], count)
         more = ~settled
         if not more.any():
