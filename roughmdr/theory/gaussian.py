@@ -22,7 +22,7 @@ from roughmdr.theory.summits import Variable, check_variable, representable
 
 Contacts = Literal["elliptic", "circular"]
 
-# delta to this power, and (k1 k2) to less than half of it, make the force, the area and the count.
+# n and p of delta^n (k1 k2)^(-p/2), as which the force, the area and the count of a contact go.
 _POWERS: dict[Variable, tuple[float, float]] = {
     "pressure": (1.5, 0.5),
     "contact_fraction": (1.0, 1.0),
@@ -40,7 +40,7 @@ def mean_over_summits(
     modulus = check_number("modulus", modulus, "Pa")
     given = check_values("separation", separation)
     power, _ = _POWERS[check_variable(variable)]
-    deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 * moments.m4 / 3.0)
+    deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
     density = moments.m4 / moments.m2 / (6.0 * math.pi * math.sqrt(3.0))
     unit = {
         "pressure": 4.0 / 3.0 * modulus * deviation * math.sqrt(deviation / curvature),

@@ -37,8 +37,8 @@ def persson_separation(*, pressure: ArrayLike, modulus: float, spectrum: Spectru
     modulus = check_number("modulus", modulus, "Pa")
     if not (gamma := check_number("gamma", gamma, "1", zero=True)) <= 1.0:
         raise OutOfRange(f"gamma is {gamma:g}; it must be from 0 to 1")
-    q, squared_slope, change = _slopes(spectrum)
     with np.errstate(all="ignore"):  # refused below
+        q, squared_slope, change = _slopes(spectrum)
         x = given.reshape(-1, 1) / modulus / np.sqrt(squared_slope)
         gaps = _over_pressure(x, gamma) @ (change / q / np.sqrt(math.pi * squared_slope))
     return representable("mean gap", gaps, given)
@@ -58,7 +58,7 @@ def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
 
     def slope(v: Floats) -> Floats:
         q = wave_number(v)
-        return np.asarray(2.0 * math.pi * v * q**4 * levels(spectrum, q))
+        return np.asarray(2.0 * math.pi * v * q * q * (q * q * levels(spectrum, q)))
 
     edges = refined(slope, edges)
     v, share = panels(edges)

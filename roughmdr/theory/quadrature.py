@@ -13,7 +13,7 @@ Rows = NDArray[np.intp]
 
 _NODES = 16
 # A panel is done where its halves change it by less than this part of the whole integral. The halves are far better
-# than their change tells. One node at an end of a power x^p, p > -1, is reached within the halvings.
+# than their change tells. The halvings suffice for powers x^p at an end down to p = -0.6.
 _SETTLED = 2e-14
 _HALVINGS = 120
 # A jump that no node sees lies between an end and the node next to it: it is looked for this near to the ends, and
