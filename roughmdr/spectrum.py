@@ -4,7 +4,7 @@ The spectrum C(q) [m4] over the wave vector is such that <h^2> = ∫ C d^2q = 2 
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,6 +42,50 @@ class Moments(NamedTuple):
         return (self.m0 / self.m2) * (self.m4 / self.m2)
 
 
+class Spectrum(Protocol):
+    """An isotropic spectrum between two wavelengths, such as ``SelfAffine``."""
+
+    @property
+    def long_wave(self) -> float:
+        """The longest wavelength [m]."""
+
+    @property
+    def short_wave(self) -> float:
+        """The shortest [m]."""
+
+    def __call__(self, q: Floats) -> Floats:
+        """C(q) [m4] at wave numbers q [1/m] between those of the two."""
+
+
+def wave_numbers(spectrum: Spectrum) -> tuple[float, float]:
+    """The smallest and the largest wave number [1/m] of a spectrum.
+
+    RoughmdrError where it is none, OutOfRange where its wavelengths are not above 0 and in order.
+    """
+    if not (callable(spectrum) and hasattr(spectrum, "long_wave") and hasattr(spectrum, "short_wave")):
+        raise RoughmdrError(
+            f"spectrum is {spectrum!r}; it must be C(q) with long_wave and short_wave, as SelfAffine is"
+        )
+    long_wave, short_wave = check_waves(spectrum.long_wave, spectrum.short_wave)
+    return 2.0 * math.pi / long_wave, 2.0 * math.pi / short_wave
+
+
+def levels(spectrum: Spectrum, q: Floats) -> Floats:
+    """C(q) [m4]; OutOfRange unless it is finite and at least 0."""
+    level = np.asarray(spectrum(q), dtype=np.float64)
+    if not (np.isfinite(level).all() and (level >= 0.0).all()):
+        raise OutOfRange("spectrum has levels that are not finite or below 0; C(q) must be finite and at least 0")
+    return level
+
+
+def check_waves(long_wave: float, short_wave: float) -> tuple[float, float]:
+    """Both [m]; OutOfRange unless they are above 0 and in order."""
+    long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
+    if not short_wave < long_wave:
+        raise OutOfRange(f"short_wave is {short_wave:g} m; it must be below long_wave, {long_wave:g} m")
+    return long_wave, short_wave
+
+
 class SelfAffine(NamedTuple):
     """C(q) = level (q/q0)^(-2 - 2 hurst) from q0 = 2 pi/long_wave to q1 = 2 pi/short_wave, 0 elsewhere."""
 
@@ -69,9 +113,7 @@ class SelfAffine(NamedTuple):
         hurst = check_number("hurst", hurst, "1", zero=True)
         if hurst > 1.0:
             raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
-        long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
-        if not short_wave < long_wave:
-            raise OutOfRange(f"short_wave is {short_wave:g} m; it must be below long_wave, {long_wave:g} m")
+        long_wave, short_wave = check_waves(long_wave, short_wave)
         one = cls(hurst, long_wave, short_wave, 1.0)
         if rms_height is not None and rms_slope is None:
             return one._replace(level=(check_number("rms_height", rms_height, "m") / one.rms_height) ** 2)

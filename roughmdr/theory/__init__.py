@@ -1,0 +1,24 @@
+"""Named laws from the literature, to stand beside computed ones. Arrays in and out, SI."""
+
+from roughmdr.theory.bush import bush_gibson_thomas, bush_gibson_thomas_asymptote
+from roughmdr.theory.fuller import fuller_tabor
+from roughmdr.theory.geike import RoughLine, line_heights, rough_line
+from roughmdr.theory.greenwood import greenwood_williamson
+from roughmdr.theory.maugis import dmt_maugis
+from roughmdr.theory.mildly_elliptic import greenwood_elliptic
+from roughmdr.theory.persson import persson_contact_fraction
+from roughmdr.theory.persson_gap import persson_separation
+
+__all__ = [
+    "RoughLine",
+    "bush_gibson_thomas",
+    "bush_gibson_thomas_asymptote",
+    "dmt_maugis",
+    "fuller_tabor",
+    "greenwood_elliptic",
+    "greenwood_williamson",
+    "line_heights",
+    "persson_contact_fraction",
+    "persson_separation",
+    "rough_line",
+]

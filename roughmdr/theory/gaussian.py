@@ -1,0 +1,105 @@
+"""The summits of an isotropic Gaussian surface: how high they are and how curved, and what they carry.
+
+P. R. Nayak, J. Lubr. Technol. 93 (1971) 398. With a = m4/3, mean curvature (k1 + k2)/2 = sqrt(2 a) S and half the
+difference of the curvatures sqrt(2 a q), the density of (S, q) over all summits is
+sqrt(6/pi) (S^2 - q) exp(-q - S^2/2), 0 < q < S^2. The height z = sqrt(m0) zeta is normal given S, whatever q is:
+zeta and S correlate by rho = sqrt(3/(2 alpha)), and exp(-S^2/2) is that of a normal S. k1 k2 = 2 a (S^2 - q).
+"""
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats, check_number, check_values
+from roughmdr.spectrum import RING, Moments
+from roughmdr.theory.ellipse import Ellipses
+from roughmdr.theory.heights import NORMAL_EDGES, Heights
+from roughmdr.theory.quadrature import Rows, Table, panels
+from roughmdr.theory.summits import Variable, check_variable, representable
+
+Contacts = Literal["elliptic", "circular"]
+
+# n and p of delta^n (k1 k2)^(-p/2), as which the force, the area and the count of a contact go.
+_POWERS: dict[Variable, tuple[float, float]] = {
+    "pressure": (1.5, 0.5),
+    "contact_fraction": (1.0, 1.0),
+    "contact_density": (0.0, 0.0),
+}
+# Down to contacts so narrow that none is left: their share goes as (b/a)^3. Up to round ones: those of high summits.
+_RATIOS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -1), 1.0 - 2.0 ** np.arange(-1, -7, -1), [1.0]])
+_LARGEST = 64.0  # S; heights up to 39 and 9 deviations beyond
+
+
+def mean_over_summits(
+    contacts: Contacts, separation: ArrayLike, modulus: float, moments: Moments, variable: Variable
+) -> Floats:
+    """``variable`` at separations [m] from the mean plane of the surface."""
+    modulus = check_number("modulus", modulus, "Pa")
+    given = check_values("separation", separation)
+    power, _ = _POWERS[check_variable(variable)]
+    deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
+    density = moments.m4 / moments.m2 / (6.0 * math.pi * math.sqrt(3.0))
+    unit = {
+        "pressure": 4.0 / 3.0 * modulus * deviation * math.sqrt(deviation / curvature),
+        "contact_fraction": math.pi * deviation / curvature,
+        "contact_density": 1.0,
+    }[variable]
+    heights = _weighted(contacts, variable, moments.alpha)
+    with np.errstate(over="ignore", invalid="ignore"):  # refused below
+        h = given.ravel() / deviation
+        ahead = np.maximum(heights.edges[0] - h, 0.0)
+
+        def carried(rows: Rows, beyond: Floats) -> Floats:
+            return np.asarray((ahead[rows, None] + beyond) ** power)
+
+        return representable(variable, density * unit * heights.mean(h, carried), given)
+
+
+def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
+    """The density of heights zeta over the summits, each weighted with what its curvatures make of ``variable``.
+
+    It is phi(zeta) Q(zeta) with Q = ∫ phi(x) G(rho zeta + c x) dx over S = rho zeta + c x > 0, c^2 = 1 - rho^2.
+    """
+    rho, c = math.sqrt(RING / alpha), math.sqrt((alpha - RING) / alpha)
+    weight = _weight_of_curvature(contacts, variable)
+    steps, share = (part.ravel() for part in panels(np.linspace(0.0, 1.0, 7)))
+
+    def smoothed(zeta: Floats) -> Floats:
+        """Q, over the root of the distance to S = 0, where G goes as a half-integer power."""
+        zeta = zeta[:, None]
+        first = np.maximum(-rho * zeta / c, -9.0)
+        reach = np.sqrt(np.maximum(first, 0.0) + 10.0 - first)
+        y = reach * steps
+        x = first + y * y
+        S = np.maximum(rho * zeta + c * x, 0.0)
+        return np.asarray(np.sum(2.0 * reach * share * y * np.exp(-0.5 * x * x) * weight(S), axis=1))
+
+    # Q bends at heights of about c/rho, where S = 0 comes within its deviation.
+    bends = c * 2.0 ** np.arange(-1, math.ceil(math.log2(NORMAL_EDGES[-1] / c)))
+    edges = np.concatenate([NORMAL_EDGES[[0, -1]], [0.0], -bends[bends < -NORMAL_EDGES[0]], bends])
+    Q = Table.of(smoothed, np.unique(edges), 24)
+    return Heights(lambda zeta: np.exp(-0.5 * zeta * zeta) / (2.0 * math.pi) * Q(zeta), NORMAL_EDGES)
+
+
+def _weight_of_curvature(contacts: Contacts, variable: Variable) -> Callable[[Floats], Floats]:
+    """G(S) = sqrt(12) ∫ (S^2 - q) exp(-q) (S^2 - q)^(-p/2) f dq over 0 < q < S^2, p and f those of ``variable``.
+
+    sqrt(12) = sqrt(6/pi) sqrt(2 pi). With q = (r S)^2 the integral is over the spread r of the curvatures, and r is
+    known from the axes of the contact.
+    """
+    ratio, share = (part.ravel() for part in panels(_RATIOS))
+    ellipses = Ellipses.of(ratio)
+    r, dr = ellipses.spread, -share * ellipses.spread_slope
+    _, p = _POWERS[variable]
+    shape = {"pressure": ellipses.force, "contact_fraction": ellipses.area, "contact_density": np.ones_like(r)}
+    factor = shape[variable] if contacts == "elliptic" else np.ones_like(r)
+    weights = math.sqrt(12.0) * 2.0 * (1.0 - r * r) ** (1.0 - 0.5 * p) * factor * r * dr
+
+    def over_power(S: Floats) -> Floats:
+        return np.asarray(np.exp(-((S[:, None] * r) ** 2)) @ weights)
+
+    table = Table.of(over_power, np.append(0.0, 2.0 ** np.arange(0, math.log2(_LARGEST) + 0.5, 0.5)), 20)
+    return lambda S: np.asarray(S ** (4.0 - p) * table(S))
