@@ -79,13 +79,16 @@ def _curve(contact: Contact, farthest: float, nearest: float, rows: tuple[int, .
     def narrow(low: Floats, high: Floats) -> Floats:
         return np.where(low <= least, least, _LAST_BITS * high)
 
+    def weight(low: Floats, high: Floats) -> Floats:
+        return (high - low) / high
+
     branches, tables = _branches(contact, farthest), []
     for rung, (foot, top) in enumerate(branches, start=1):
 
         def bears(s: Floats, rung: int = rung, foot: float = foot) -> Floats:
             return _quantities(contact, s, foot, rung, rows)
 
-        tables.append(Table.of(bears, np.array([0.0, math.sqrt(top - foot)]), tolerance, narrow))
+        tables.append(Table.of(bears, np.array([0.0, math.sqrt(top - foot)]), tolerance, narrow, weight))
     first = np.cumsum([0, *(table.low.size for table in tables)])
     merged = Table(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
     return Curve(first, np.array([foot for foot, _ in branches]), merged)

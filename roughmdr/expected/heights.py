@@ -31,7 +31,10 @@ class HeightTable(NamedTuple):
         def narrow(low: Floats, high: Floats) -> Floats:
             return np.full_like(low, _LAST_BITS * heights.scale)
 
-        table = Table.of(lambda z: heights.density(z)[None], edges, _TOLERANCE, narrow, _RATIO)
+        def weight(low: Floats, high: Floats) -> Floats:
+            return np.minimum((high - low) / heights.scale, 1.0)
+
+        table = Table.of(lambda z: heights.density(z)[None], edges, _TOLERANCE, narrow, weight, _RATIO)
         pieces = 0.5 * (table.high - table.low) * (table.coefficients[:, 0] @ _INTEGRALS)
         return cls(table, np.concatenate([[0.0], np.cumsum(pieces)]))
 

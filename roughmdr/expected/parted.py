@@ -14,6 +14,7 @@ from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Asked, contacts_of, dissipated_of, set_up, totals_of
 
+_MOST = 32  # steps; where more would be parted it takes longer than it is worth
 _SCAN = 40  # scores at which the depth is looked at
 _ORDERS = (40, 56)  # on each side of a cut; the second tells how right the first is
 
@@ -27,12 +28,14 @@ class Parted(NamedTuple):
 
     @classmethod
     def of(cls, asked: Asked) -> "Parted | None":
-        """None where there is nothing to part, or no single parameter to part it by."""
+        """None where there is nothing to part, or no single parameter to part it by, or too many steps need it."""
         if not asked.hysteretic or asked.law.branched or not asked.source.one_parameter:
             return None
         scan = Rule.between([], _SCAN)
         depths = _depths(asked, scan.scores)
         kinks = _kinks(asked.route, float(depths.min()), float(depths.max()))
+        if len(kinks) > _MOST:
+            return None
         cuts = {
             step: [score for depth in found for score in _scores(asked, scan.scores, depths, depth)]
             for step, found in kinks.items()

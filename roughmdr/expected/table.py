@@ -40,13 +40,14 @@ class Table(NamedTuple):
         edges: Floats,
         tolerance: Floats,
         narrow: Callable[[Floats, Floats], Floats],
+        weight: Callable[[Floats, Floats], Floats],
         ratio: float = np.inf,
     ) -> "Table":
         """The table of ``function``, points -> [row, point], between ``edges``.
 
-        A piece is held where its last coefficients are below ``tolerance`` [row] of the greatest value on it, or are
-        roundings, and the first row's values do not vary by more than ``ratio``, or where it is ``narrow`` (its ends ->
-        how narrow).
+        A piece is held where its last coefficients, times the ``weight`` of the piece, are below ``tolerance`` [row] of
+        the greatest value on it, or are roundings, and the first row's values do not vary by more than ``ratio``; or
+        where it is ``narrow`` (its ends -> how narrow).
         """
         low, high = edges[:-1], edges[1:]
         held: list[tuple[Floats, ...]] = []
@@ -61,7 +62,9 @@ class Table(NamedTuple):
             coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
             least = np.abs(values[:, 0]).min(axis=-1)
             noise = (tail <= _NOISE * greatest) & (tail > _BETTER * before)
-            fine = ((tail <= tolerance * greatest) | noise).all(axis=-1) & (greatest[:, 0] <= ratio * least)
+            fine = ((weight(low, high)[:, None] * tail <= tolerance * greatest) | noise).all(axis=-1) & (
+                greatest[:, 0] <= ratio * least
+            )
             done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
             done |= low.size > _MOST_AT_ONCE
             held.append((low[done], high[done], coefficients[done], tail[done]))
