@@ -138,12 +138,12 @@ def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
 
 
 def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:
-    """A remark where the path begins or ends with contacts."""
+    """A remark where the path begins or ends with contacts; less than half of one, as expected laws have, is none."""
     name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
     if name not in result.variables:
         return
     count = result.variables[name].values
-    first, last = (int((count[..., step] > 0.0).sum()) for step in (0, -1))
+    first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))
     if first or last:
         what = f"{count[..., 0].size} {'runs' if name == 'contact_count' else 'cells'}"
         yield "note", f"in contact at the first step in {first}, at the last in {last} of {what}"

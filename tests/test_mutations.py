@@ -20,6 +20,7 @@ from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
 
 _DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
+_WAVES = {"shape": "paraboloid", "hurst": 0.8, "long_wave": "50 um", "short_wave": "5 um"}
 BASES: dict[str, dict[str, Any]] = {
     "every section": {
         **SCENE,
@@ -32,6 +33,21 @@ BASES: dict[str, dict[str, Any]] = {
         **SCENE,
         "material": {"effective_modulus": "4 MPa"},
         "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
+    },
+    "populations": {
+        **SCENE,
+        "asperities": {
+            **{key: value for key, value in ASPERITIES.items() if key != "count"},
+            "density": "50 /mm^2",
+            "second": {"share": 0.2, "height": ASPERITIES["height"], "radius": ASPERITIES["radius"]},
+            "correlation": {"radius": -0.3},
+        },
+        "batch": {"estimator": "stratified"},
+    },
+    "moments": {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", "m0": "1 um^2", "m2": 0.02, "m4": 5e9}},
+    **{
+        name: {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", **_WAVES, name: amplitude}}
+        for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
     },
     "adhesion by its strength": {
         **SCENE,
@@ -150,7 +166,8 @@ def mutations() -> Iterator[Mutation]:
             for what, wrong in NONSENSE.items():
                 yield mutated(base, key, what, wrong)
             yield mutated(base, key, "wrong dimension", "3 MPa" if reader.dimension != "Pa" else "3 um")
-            if key.rpartition(".")[2] not in MAY_BE_NEGATIVE or key == "asperities.radius.mean":
+            negative = key.rpartition(".")[2] in MAY_BE_NEGATIVE or key.startswith("asperities.correlation.")
+            if not negative or key == "asperities.radius.mean":
                 yield mutated(base, key, "negative", -1)
         yield mutated(base, "path.unload", "no truth", "yes")
     base = "every section"
@@ -209,7 +226,7 @@ def refused(folder: Path, text: str | bytes) -> str:
 
 def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> None:
     known = {key for table in BASES.values() for key in paths(table)} | {"sweep"}
-    assert set(declared(Scene)) == {key for key in known if value_is_declared(key)}
+    assert {first(key) for key in declared(Scene)} == {first(key) for key in known if value_is_declared(key)}
     assert len(ALL) > 400
     for table in BASES.values():
         (folder / "right.toml").write_text(tomli_w.dumps(table))
@@ -219,9 +236,14 @@ def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> N
         (folder / made).unlink()
 
 
+def first(key: str) -> str:
+    """A key of the second population, or of the correlation, as that of the first population that it repeats."""
+    return key.replace("asperities.second.", "asperities.").replace("asperities.correlation.", "asperities.")
+
+
 def value_is_declared(key: str) -> bool:
     """Whether a key stands in the schema itself, and not in the table of a distribution."""
-    return not any(key.startswith(f"asperities.{name}.") for name in ("height", "radius", "terms"))
+    return not any(first(key).startswith(f"asperities.{name}.") for name in ("height", "radius", "terms"))
 
 
 @pytest.mark.parametrize("mutation", ALL, ids=str)

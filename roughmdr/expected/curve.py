@@ -24,6 +24,8 @@ _TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
 _LAST_BITS = 2.0**-44
 _NEAREST = 1e-7  # of the width of the heights: what is less deep adds nothing
+_SHALLOW = 1e-2  # likewise: the first piece, and how much wider than the one before each other piece may be
+_WIDER, _MOST_EDGES = 4.0, 100
 
 
 class Curve(NamedTuple):
@@ -58,7 +60,7 @@ def curves_of(
     """
     ranges = np.array(
         [
-            (max((own.high - deepest) / contact.depth[0], 0.0) + 1.0, _NEAREST * own.scale / contact.depth[0])
+            (max(own.high - deepest, own.scale) / contact.depth[0], own.scale / contact.depth[0])
             for contact, own in zip(contacts, heights, strict=True)
         ]
     )
@@ -66,15 +68,17 @@ def curves_of(
     curves = {}
     for form in dict.fromkeys(forms):
         alike = [number for number, other in enumerate(forms) if other == form]
-        farthest, nearest = float(ranges[alike, 0].max()), float(ranges[alike, 1].min())
-        curves[form] = _curve(contacts[alike[0]], farthest, nearest, rows)
+        farthest, typical = float(ranges[alike, 0].max()), float(ranges[alike, 1].min())
+        curves[form] = _curve(contacts[alike[0]], farthest, typical, rows)
     return [curves[form] for form in forms]
 
 
-def _curve(contact: Contact, farthest: float, nearest: float, rows: tuple[int, ...]) -> Curve:
-    """Up to the reduced distance ``farthest``, from as near the onset as ``nearest``."""
+def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, ...]) -> Curve:
+    """Up to the reduced indentation ``farthest``, for heights that are as wide as ``typical``."""
     tolerance = np.array([_TOLERANCE_STIFFNESS if row == STIFFNESS else _TOLERANCE for row in rows])
-    least = _FOLD if contact.law.adhesive else math.sqrt(nearest)
+    adhesive = contact.law.adhesive
+    least = _FOLD if adhesive else math.sqrt(_NEAREST * typical)
+    first_edge = 1.0 if adhesive else math.sqrt(_SHALLOW * typical)
 
     def narrow(low: Floats, high: Floats) -> Floats:
         return np.where(low <= least, least, _LAST_BITS * high)
@@ -82,27 +86,31 @@ def _curve(contact: Contact, farthest: float, nearest: float, rows: tuple[int, .
     def weight(low: Floats, high: Floats) -> Floats:
         return (high - low) / high
 
-    branches, tables = _branches(contact, farthest), []
-    for rung, (foot, top) in enumerate(branches, start=1):
+    feet, tops = branch_ends(contact)
+    last = max(farthest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
+    tables = []
+    for rung, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
 
         def bears(s: Floats, rung: int = rung, foot: float = foot) -> Floats:
             return _quantities(contact, s, foot, rung, rows)
 
-        tables.append(Table.of(bears, np.array([0.0, math.sqrt(top - foot)]), tolerance, narrow, weight))
+        # A piece that reaches far higher than another begins would not hold what is small there.
+        end = math.sqrt(top - foot)
+        edges = [0.0, *(first_edge * _WIDER**k for k in range(_MOST_EDGES) if first_edge * _WIDER**k < end), end]
+        tables.append(Table.of(bears, np.array(edges), tolerance, narrow, weight))
     first = np.cumsum([0, *(table.low.size for table in tables)])
     merged = Table(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
-    return Curve(first, np.array([foot for foot, _ in branches]), merged)
+    return Curve(first, np.array(feet), merged)
 
 
-def _branches(contact: Contact, farthest: float) -> list[tuple[float, float]]:
-    """Where each branch begins and ends, in x."""
-    if not contact.law.branched:
-        return [(0.0, farthest)]
+def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
+    """x where each stable branch begins, and where each but the last ends."""
     row = contact.form
+    if not contact.law.branched or row.size < -places.TOP_X:  # the row of a punch has no place for others
+        return [0.0], []
     count = int(row[places.COUNT])
     feet = np.maximum(row[places.FOOT_X : places.FOOT_X + count], 0.0).tolist()
-    tops = row[places.TOP_X : places.TOP_X + count - 1].tolist()
-    return list(zip(feet, [*tops, max(farthest, feet[-1] + 1.0)], strict=True))
+    return feet, row[places.TOP_X : places.TOP_X + count - 1].tolist()
 
 
 def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple[int, ...]) -> Floats:

@@ -21,7 +21,7 @@ from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.parted import Parted
 
 _ORDERS = (8, 12, 18, 27, 40, 60, 90, 135)
-_MOST_NODES = 20_000
+_MOST_NODES = 6_000
 _AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
 _SLOW = 0.3  # a higher order that leaves so much of the difference does not help
 _PROBES = 5  # steps at which they are compared where all are alike
@@ -99,6 +99,6 @@ def _reached(asked: Asked, count: float) -> Floats:
     deepest = float(asked.route.separation.min())
     radii = []
     for node in set_up(asked, Rule.smooth(_ORDERS[0])):
-        indentation = np.array([node.heights.highest(count) - deepest])
+        indentation = np.array([node.heights.highest(count * node.share) - deepest])
         radii.append(node.contact.at_indentation(indentation)["contact_radius"][0])
     return np.array(radii)

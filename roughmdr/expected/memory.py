@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from roughmdr.aggregate import Route
 from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
-from roughmdr.kernels.row import COUNT, FOOT_X, ONSET, TOP_X
+from roughmdr.expected.curve import branch_ends
+from roughmdr.kernels.row import ONSET
 
 
 class Intervals(NamedTuple):
@@ -58,9 +59,8 @@ def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Inter
     law_rung = contact.law.rung
     if law_rung is None:
         raise AssertionError("a branched law has rungs")
-    count = int(row[COUNT])
-    marks = [*row[FOOT_X : FOOT_X + count], *row[TOP_X : TOP_X + count - 1], row[ONSET]]
-    offsets = [(float(mark) - 1.0) * depth for mark in marks]
+    feet, tops = branch_ends(contact)
+    offsets = [(mark - 1.0) * depth for mark in (*feet, *tops, float(row[ONSET]))]
     bounds, rungs = [-math.inf, math.inf], [0]
     held, moved = [], []
     for step, h in enumerate(separation.tolist()):
