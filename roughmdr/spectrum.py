@@ -41,6 +41,11 @@ class Moments(NamedTuple):
         """How broad the spectrum is, m0 m4/m2^2 (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
         return (self.m0 / self.m2) * (self.m4 / self.m2)
 
+    @property
+    def summit_density(self) -> float:
+        """Summits of a unit of area, m4/(6 pi sqrt(3) m2) [1/m2] (Nayak)."""
+        return self.m4 / self.m2 / (6.0 * math.pi * math.sqrt(3.0))
+
 
 class Spectrum(Protocol):
     """An isotropic spectrum between two wavelengths, such as ``SelfAffine``."""

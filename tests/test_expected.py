@@ -131,6 +131,22 @@ def test_the_mean_of_draws_is_the_expected_law(
     assert float(expected.numerical_error) < 1e-3
 
 
+@pytest.mark.parametrize("m4", [6.2e8, 1e9, 5e9, 4e12])
+def test_summits_of_a_gaussian_surface_are_greenwoods(m4: float) -> None:
+    """Two independent ways to the same integral, for alpha from 1.55 to 10 000, within what the law says of its error."""
+    moments = {"m0": 1e-12, "m2": 0.02, "m4": m4}
+    asked = scene({"source": "nayak", "count": None, "height": None, **moments}, None)
+    path = {"separation": {"start": "4 um", "stop": "0 um", "steps": 9}}
+    output = {"variables": ["pressure", "contact_fraction"]}
+    got = rm.run({**asked, "path": path, "output": output, "batch": {"estimator": "expected"}}).isel(realization=0)
+    density = m4 / 0.02 / (6.0 * math.pi * math.sqrt(3.0))
+    for name in output["variables"]:
+        law = rm.theory.greenwood_elliptic(separation=got.separation, modulus=4e6, variable=name, **moments)
+        law *= round(density * 1e-6) / (density * 1e-6)  # the patch holds a whole number
+        assert float(np.abs(got[name] - law).max()) <= 2.0 * float(got.numerical_error) * law.max()
+    assert float(got.numerical_error) < (1e-9 if m4 >= 1e9 else 1e-2)
+
+
 @pytest.mark.parametrize("adhesion", [None, {"model": "jkr", "work": "50 mJ/m^2"}])
 def test_the_same_physics_in_other_units(adhesion: dict[str, object] | None) -> None:
     """Lengths a million times as large, the modulus too and the work so that all is alike: forces in proportion."""

@@ -44,8 +44,8 @@ class SummitLaw(NamedTuple):
 
     @property
     def density(self) -> float:
-        """Summits of a unit of area, m4/(6 pi sqrt(3) m2) [1/m2] (Nayak)."""
-        return self.moments.m4 / self.moments.m2 / (6.0 * math.pi * math.sqrt(3.0))
+        """Summits of a unit of area [1/m2]."""
+        return self.moments.summit_density
 
     @property
     def mean(self) -> float:

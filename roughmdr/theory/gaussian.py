@@ -41,7 +41,6 @@ def mean_over_summits(
     given = check_values("separation", separation)
     power, _ = _POWERS[check_variable(variable)]
     deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
-    density = moments.m4 / moments.m2 / (6.0 * math.pi * math.sqrt(3.0))
     unit = {
         "pressure": 4.0 / 3.0 * modulus * deviation * math.sqrt(deviation / curvature),
         "contact_fraction": math.pi * deviation / curvature,
@@ -55,7 +54,7 @@ def mean_over_summits(
         def carried(rows: Rows, beyond: Floats) -> Floats:
             return np.asarray((ahead[rows, None] + beyond) ** power)
 
-        return representable(variable, density * unit * heights.mean(h, carried), given)
+        return representable(variable, moments.summit_density * unit * heights.mean(h, carried), given)
 
 
 def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
