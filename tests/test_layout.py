@@ -39,7 +39,7 @@ LINES = (
     ("expected",),
     ("theory",),
     ("plan", "statistics", "store", "result", "progress", "runner", "estimate"),
-    ("views", "curves", "analysis", "describe", "plots", "cli", "__main__"),
+    ("named", "views", "curves", "analysis", "describe", "comparison", "plots", "cli", "__main__"),
 )
 LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
