@@ -33,7 +33,7 @@ class Comparison(NamedTuple):
 
     lines: list[Line]
     remarks: list[str]
-    """Which laws are drawn, and why the others are not, as lines "law: remark"."""
+    """Whether they are drawn, and if not why."""
 
 
 def plan_of(file: Path, result: Labelled) -> Plan:
@@ -54,11 +54,16 @@ def expected_law(plan: Plan, names: list[str]) -> Comparison:
 
 
 def named_laws(plan: Plan, names: list[str]) -> Comparison:
-    """The named laws, in each cell to which they apply, in those of the variables that they speak of."""
-    found = [_compare(plan, name, law.note, _saying(law, names)) for name, law in LAWS.items()]
-    return Comparison(
-        [line for each in found for line in each.lines], [text for each in found for text in each.remarks]
-    )
+    """The named laws, in each cell to which they apply, in those of the variables that they speak of.
+
+    Their names stand before the remarks.
+    """
+    lines, remarks = [], []
+    for name, law in LAWS.items():
+        found = _compare(plan, name, law.note, _saying(law, names))
+        lines += found.lines
+        remarks += [f"{name}: {text}" for text in found.remarks]
+    return Comparison(lines, remarks)
 
 
 def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Floats]]) -> Comparison:
@@ -67,9 +72,9 @@ def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Fl
         try:
             said = say(cell)
         except RoughmdrError as error:
-            remarks.append(f"{law}: not drawn: {error}")
+            remarks.append(f"not drawn: {error}")
             continue
-        remarks.append(f"{law}: drawn{note and f', {note}'}")
+        remarks.append(f"drawn{note and f'; {note}'}")
         lines += [Line(law, name, number, cell.route.separation, values) for name, values in said.items()]
     return Comparison(lines, in_cells(remarks, len(plan.cells)))
 

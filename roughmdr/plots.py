@@ -22,7 +22,7 @@ _DASH = {"loading": "-", "unloading": "--"}
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _MOST_LABELS = 16
 _Said = list[tuple[Line, dict[str, Any]]]
-_LAW_INKS = ("#2a8c4a", "#8e44ad", "#d98c00", "#17a2b8", "#8c564b")
+_LAW_INKS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
 
 
 def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] = ()) -> None:
@@ -49,7 +49,7 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     handles, shown = axes.flat[0].get_legend_handles_labels()
-    handles += [Line2D([], [], label=law, **_law_style(law, laws, 0, len(cells))) for law in laws]
+    handles += [Line2D([], [], label=law, **_law_style(law, laws, None, len(cells))) for law in laws]
     if len(cells) > 1:
         figure.legend(handles=handles, loc="outside lower left", frameon=False, fontsize=8)
     else:
@@ -79,7 +79,7 @@ def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str], said: _S
             ax.plot(h, curve.runs.T / scale, color=style["color"], lw=0.3, alpha=0.25)
         if name != "stiffness" or curve.branch == "loading":  # where contacts let go its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=style["color"], alpha=0.3, lw=0)
-        ax.plot(h, mean, lw=1.8 if len(labels) == 1 else 1.2, **style)
+        ax.plot(h, mean, lw=2.6 if len(labels) == 1 else 1.6, **style)
     for line, style in said:
         ax.plot(line.separation / h_scale, line.values / scale, **style)
     if name in ("force", "pressure", "stiffness"):
@@ -108,13 +108,18 @@ def _style(curve: Curve, labels: list[str]) -> dict[str, Any]:
     }
 
 
-def _law_style(law: str, laws: list[str], cell: int, cells: int) -> dict[str, Any]:
-    """Of the expected law a thin dark line; of a named one dots of its own, in its own colour or in that of a cell."""
+def _law_style(law: str, laws: list[str], cell: int | None, cells: int) -> dict[str, Any]:
+    """Of the expected law a thin dark line; of a named one dots of its own, in the colour of its cell.
+
+    A single cell leaves a colour to each law; the legend, which is of no cell, is grey.
+    """
     if law == EXPECTED:
-        return {"color": "#111111", "lw": 0.9}
+        return {"color": "#111111", "lw": 0.7 if cells == 1 else 0.5}
     number = laws.index(law)
-    colour = _LAW_INKS[number % len(_LAW_INKS)] if cells == 1 else _cell_colour(cell, cells)
-    return {"color": colour, "ls": (0, (1.0, 1.0 + number)), "lw": 1.8}
+    dots = {"ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 1.8}
+    if cells == 1:
+        return {"color": _LAW_INKS[number % len(_LAW_INKS)], **dots}
+    return {"color": "0.4" if cell is None else _cell_colour(cell, cells), **dots}
 
 
 def _cell_colour(cell: int, cells: int) -> Any:
@@ -135,7 +140,7 @@ def _zoom_on_tension(
         return
     inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
     for curve in drawn:
-        inset.plot(curve.separation / h_scale, curve.mean / scale, lw=1.2, **_style(curve, labels))
+        inset.plot(curve.separation / h_scale, curve.mean / scale, lw=1.8, **_style(curve, labels))
     for line, style in said:
         inset.plot(line.separation / h_scale, line.values / scale, **style)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)

@@ -20,7 +20,7 @@ from roughmdr.theory import (
 )
 from roughmdr.theory.summits import Variable
 
-_DEFORMED = "at the mean gap to the deformed surface, while the scene's separation is from the undeformed mean plane"
+_DEFORMED = "its separation is the mean gap to the deformed surface, the scene's is from the undeformed mean plane"
 
 
 class _OfSummits(Protocol):
@@ -75,6 +75,6 @@ LAWS = {
     "greenwood_elliptic": NamedLaw(lambda cell, variable: _of_summits(greenwood_elliptic, cell, variable)),
     "persson_separation": NamedLaw(_persson, ("pressure",), _DEFORMED),
     "persson_contact_fraction": NamedLaw(
-        _persson, ("contact_fraction",), f"at the pressure of persson_separation, {_DEFORMED}"
+        _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}"
     ),
 }
