@@ -119,6 +119,8 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["run", "small.toml", "-o", "x.nc"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
+        (["plot", "out.nc", "-o", "x.png", "--with-expected"], {"matplotlib", "scipy", "numba"}),
+        (["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
