@@ -132,13 +132,31 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
 @click.argument("result", type=_FILE)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="The picture to write: .png, .pdf or .svg.")
 @click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: all.")
-def plot(result: Path, output: Path, variables: tuple[str, ...]) -> None:
+@click.option("--with-expected", is_flag=True, help="Draw the expected law of the scene as well.")
+@click.option("--with-theory", is_flag=True, help="Draw the named laws as well that apply to the scene.")
+def plot(result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool) -> None:
     """Draw the load-separation law in RESULT."""
     from roughmdr.plots import plot
     from roughmdr.store import check_writable, read
+    from roughmdr.views import asked_variables
 
     check_writable(output, [result])
-    plot(read(result), output, list(variables))
+    data = read(result)
+    names, lines = asked_variables(data, variables), []
+    if with_expected or with_theory:
+        from roughmdr.comparison import expected_law, named_laws, plan_of
+
+        planned = plan_of(result, data)
+        for wanted, title, compared in (
+            (with_expected, "expected", expected_law),
+            (with_theory, "theory", named_laws),
+        ):
+            if wanted:
+                found = compared(planned, names)
+                lines += found.lines
+                for line in found.remarks:
+                    click.echo(f"{title:<12} {line}")
+    plot(data, output, names, lines)
     click.echo(f"picture      {click.format_filename(output)}")
 
 

@@ -25,6 +25,21 @@ class Curve(NamedTuple):
     """[realization, step]; no realisations where they were not kept."""
 
 
+EXPECTED = "expected"
+
+
+class Line(NamedTuple):
+    """What a law says of a variable in one cell of a result, over the whole way of the flat."""
+
+    law: str
+    """Its name; ``EXPECTED`` for the expected law of the scene."""
+    variable: str
+    cell: int
+    separation: Floats
+    values: Floats
+    """NaN where the law says nothing."""
+
+
 def curves(result: Labelled, name: str) -> Iterator[Curve]:
     """The curves of a variable, cell by cell."""
     branches = result.coordinates["branch"].values
@@ -35,15 +50,15 @@ def curves(result: Labelled, name: str) -> Iterator[Curve]:
     else:
         mean, error = (result.variables[f"{name}_{what}"].values for what in ("mean", "sem"))
         runs = np.empty((*mean.shape[:-1], 0, branches.size))
-    separation = _over_cells(result)
+    separation = separations(result)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         for way, steps in enumerate(ways):
             columns = separation[cell][steps], mean[cell][steps], error[cell][steps], runs[cell][:, steps]
             yield Curve(number, way, str(branches[steps[0]]), *columns)
 
 
-def _over_cells(result: Labelled) -> Floats:
-    """The separation [..., step] of every cell."""
+def separations(result: Labelled) -> Floats:
+    """The separation [m] of every cell, over the swept keys and step."""
     separation = result.coordinates["separation"]
     sizes = swept_sizes(result)
     shape = [size if name in separation.dims else 1 for name, size in sizes.items()]

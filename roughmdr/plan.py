@@ -1,7 +1,6 @@
 """From a scene to tasks: which runs go together, and what is left out and why."""
 
 import math
-from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
@@ -16,6 +15,7 @@ from roughmdr.labelled import Array
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
 from roughmdr.variables import COORDINATES, LAW
+from roughmdr.wording import in_cells
 
 # One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
 # batch into tasks that are long beside dask's own 0.4 ms.
@@ -165,9 +165,7 @@ def law_of(scene: Scene, route: Route, realization: int, variables: list[str]) -
 
 def left_out(scene: Scene) -> list[str]:
     """What the scene does not need, and why, as lines "part: reason"; in which cells, where not in all."""
-    lines = Counter(line for cell in scene.cells for line in _left_out(cell))
-    cells = len(scene.cells)
-    return [line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in lines.items()]
+    return in_cells((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
 
 
 def _left_out(scene: Scene) -> Iterator[str]:

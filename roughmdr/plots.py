@@ -1,17 +1,18 @@
 """Pictures of a result."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.curves import Curve, curves
+from roughmdr.curves import EXPECTED, Curve, Line, curves
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.store import replacing
 from roughmdr.variables import LAW
-from roughmdr.views import cell_label, cells_of, held_variables, realizations_of
+from roughmdr.views import cell_label, cells_of, realizations_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,37 +21,39 @@ _INK = {"loading": "#1b6ca8", "unloading": "#c8553d"}
 _DASH = {"loading": "-", "unloading": "--"}
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _MOST_LABELS = 16
+_Said = list[tuple[Line, dict[str, Any]]]
+_LAW_INKS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
 
 
-def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> None:
-    """Draw variables of a result against separation into ``path``; StoreError for a name that the result lacks.
+def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] = ()) -> None:
+    """Draw variables of a result against separation into ``path``, and over them what laws say of them.
 
     Every realisation is a thin line, the mean a thick one, twice its standard error a band. The cells of a sweep have a
-    colour each and no thin lines; the way back is dashed. Without ``variables`` all that the result holds.
+    colour each and no thin lines; the way back is dashed. The expected law is thin and dark, the named laws are dotted.
+    StoreError where the picture cannot be written.
     """
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
-    held = held_variables(result)
-    names = variables or held
-    for name in names:
-        if name not in held:
-            raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(held)}")
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     cells = cells_of(result)
-    below = 0.2 * min(len(cells), _MOST_LABELS) if len(cells) > 1 else 0.0
+    laws = list(dict.fromkeys(line.law for line in lines))
+    below = 0.2 * (min(len(cells), _MOST_LABELS) + len(laws)) if len(cells) > 1 else 0.0
     figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + below), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     labels = [cell_label(result, cell).replace("$", r"\$") for cell in cells]  # no mathematics
     for ax, name in zip(axes.flat, names, strict=False):
-        _draw(ax, name, list(curves(result, name)), labels)
+        said = [(line, _law_style(line.law, laws, line.cell, len(cells))) for line in lines if line.variable == name]
+        _draw(ax, name, list(curves(result, name)), labels, said)
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
+    handles, shown = axes.flat[0].get_legend_handles_labels()
+    handles += [Line2D([], [], label=law, **_law_style(law, laws, None, len(cells))) for law in laws]
     if len(cells) > 1:
-        handles, shown = axes.flat[0].get_legend_handles_labels()
-        figure.legend(handles, shown, loc="outside lower left", frameon=False, fontsize=8)
+        figure.legend(handles=handles, loc="outside lower left", frameon=False, fontsize=8)
     else:
-        axes.flat[0].legend(frameon=False)
+        axes.flat[0].legend(handles=handles, frameon=False)
     count = realizations_of(result)
     note = f"{count} realisations, mean ± 2 standard errors" if count > 1 else "one realisation"
     if len(cells) > 1:
@@ -64,7 +67,7 @@ def plot(result: Labelled, path: Path, variables: list[str] | None = None) -> No
         figure.savefig(temporary, dpi=160, format=suffix)
 
 
-def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str]) -> None:
+def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str], said: _Said) -> None:
     units = LAW[name].units
     h_scale, h_prefix = _scale(np.concatenate([curve.separation for curve in drawn]))
     shown = _shown(name, drawn)
@@ -76,11 +79,13 @@ def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str]) -> None:
             ax.plot(h, curve.runs.T / scale, color=style["color"], lw=0.3, alpha=0.25)
         if name != "stiffness" or curve.branch == "loading":  # where contacts let go its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=style["color"], alpha=0.3, lw=0)
-        ax.plot(h, mean, lw=1.8 if len(labels) == 1 else 1.2, **style)
+        ax.plot(h, mean, lw=2.6 if len(labels) == 1 else 1.6, **style)
+    for line, style in said:
+        ax.plot(line.separation / h_scale, line.values / scale, **style)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
-        _zoom_on_tension(ax, drawn, labels, h_scale, scale)
+        _zoom_on_tension(ax, drawn, labels, said, h_scale, scale)
     low, high = float(shown.min()) / scale, float(shown.max()) / scale
     if high > low:
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
@@ -94,15 +99,38 @@ def _style(curve: Curve, labels: list[str]) -> dict[str, Any]:
     if len(labels) == 1:
         first = curve.way < 2
         return {"color": _INK[curve.branch], "label": curve.branch if first else None}
-    from matplotlib import colormaps
-
     every = -(-len(labels) // _MOST_LABELS)
     labelled = curve.way == 0 and curve.cell % every == 0
-    colour = colormaps["viridis"](0.92 * curve.cell / (len(labels) - 1))
-    return {"color": colour, "ls": _DASH[curve.branch], "label": labels[curve.cell] if labelled else None}
+    return {
+        "color": _cell_colour(curve.cell, len(labels)),
+        "ls": _DASH[curve.branch],
+        "label": labels[curve.cell] if labelled else None,
+    }
 
 
-def _zoom_on_tension(ax: "Axes", drawn: list[Curve], labels: list[str], h_scale: float, scale: float) -> None:
+def _law_style(law: str, laws: list[str], cell: int | None, cells: int) -> dict[str, Any]:
+    """Of the expected law a thin dark line; of a named one dots of its own, in the colour of its cell.
+
+    A single cell leaves a colour to each law; the legend, which is of no cell, is grey.
+    """
+    if law == EXPECTED:
+        return {"color": "#111111", "lw": 0.7 if cells == 1 else 0.5}
+    number = laws.index(law)
+    dots = {"ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 1.8}
+    if cells == 1:
+        return {"color": _LAW_INKS[number % len(_LAW_INKS)], **dots}
+    return {"color": "0.4" if cell is None else _cell_colour(cell, cells), **dots}
+
+
+def _cell_colour(cell: int, cells: int) -> Any:
+    from matplotlib import colormaps
+
+    return colormaps["viridis"](0.92 * cell / (cells - 1))
+
+
+def _zoom_on_tension(
+    ax: "Axes", drawn: list[Curve], labels: list[str], said: _Said, h_scale: float, scale: float
+) -> None:
     """An inset where the tension is too small beside the compression to be seen."""
     h = np.concatenate([curve.separation for curve in drawn]) / h_scale
     values = np.concatenate([curve.mean for curve in drawn]) / scale
@@ -112,7 +140,9 @@ def _zoom_on_tension(ax: "Axes", drawn: list[Curve], labels: list[str], h_scale:
         return
     inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
     for curve in drawn:
-        inset.plot(curve.separation / h_scale, curve.mean / scale, lw=1.2, **_style(curve, labels))
+        inset.plot(curve.separation / h_scale, curve.mean / scale, lw=1.8, **_style(curve, labels))
+    for line, style in said:
+        inset.plot(line.separation / h_scale, line.values / scale, **style)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     inset.set(xlim=(tense.min(), tense.max()), ylim=(1.3 * lowest, -1.3 * lowest))
     inset.tick_params(labelsize=7)

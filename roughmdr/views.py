@@ -1,7 +1,10 @@
 """How a result is laid out: its variables, its cells, its realisations."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.variables import LAW
 
@@ -13,6 +16,16 @@ def held_variables(result: Labelled) -> list[str]:
         for name, array in result.variables.items()
         if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW
     ]
+
+
+def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:
+    """The variables ``asked`` for, or else all that the result holds; StoreError for one that it lacks."""
+    held = held_variables(result)
+    names = list(asked) or held
+    for name in names:
+        if name not in held:
+            raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(held)}")
+    return names
 
 
 def realizations_of(result: Labelled) -> int:

@@ -1,5 +1,6 @@
 """Small parts of messages: values as they stand in a scene, and names that may have been meant."""
 
+from collections import Counter
 from collections.abc import Iterable
 
 _NEAR = 0.7  # of difflib's ratio: one or two letters of a word
@@ -32,3 +33,10 @@ def shown(value: object) -> str:
     except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables without end
         return "..."
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def in_cells(lines: Iterable[str], cells: int) -> list[str]:
+    """Each line once, and in how many of the cells of a sweep it was said, where not in all."""
+    return [
+        line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in Counter(lines).items()
+    ]

@@ -39,7 +39,7 @@ LINES = (
     ("expected",),
     ("theory",),
     ("plan", "statistics", "store", "result", "progress", "runner", "estimate"),
-    ("views", "curves", "analysis", "describe", "plots", "cli", "__main__"),
+    ("named", "views", "curves", "analysis", "describe", "comparison", "plots", "cli", "__main__"),
 )
 LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
@@ -119,6 +119,8 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["run", "small.toml", "-o", "x.nc"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
+        (["plot", "out.nc", "-o", "x.png", "--with-expected"], {"matplotlib", "scipy", "numba"}),
+        (["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

@@ -53,6 +53,18 @@ def test_heights_of_beta_with_two_infinite_ends() -> None:
     assert f_3_2(0.0, st.beta(0.5, 0.5)) == pytest.approx(float(mp.beta(2, 0.5) / mp.beta(0.5, 0.5)), rel=1e-7)
 
 
+@pytest.mark.parametrize(
+    "heights", [st.gumbel_r(), st.gumbel_l(), st.skewnorm(30.0), st.skewnorm(-30.0), st.exponnorm(9.0)]
+)
+def test_all_heights_count_however_thin_a_tail_is(heights: st.distributions.rv_frozen) -> None:
+    given = {"heights": heights, "modulus": 1.0, "radius": 1.0 / math.pi, "density": 1.0}
+    h = np.append(heights.ppf([1e-9, 1e-3, 0.5, 0.999]), heights.mean() - 50.0)
+    number = rm.theory.greenwood_williamson(separation=h, variable="contact_density", **given)
+    np.testing.assert_allclose(number, heights.sf(h), rtol=1e-10)
+    area = rm.theory.greenwood_williamson(separation=h[-1], variable="contact_fraction", **given)
+    assert area == pytest.approx(50.0, rel=1e-10)
+
+
 def test_heavy_tails() -> None:
     """Student's t with 5 degrees of freedom has the mean of z^(3/2), Cauchy's law has not."""
     exact = mp.quad(lambda z: z**1.5 * (1 + z * z / 5) ** -3, [0, 1, 10, mp.inf]) * 8 / (3 * mp.sqrt(5) * mp.pi)

@@ -106,10 +106,14 @@ class NayakAsperities(PatchSource):
     @cached_property
     def law(self) -> SummitLaw:
         """The law of the summits; OutOfRange where no surface has such moments, ArithmeticError where no float has."""
-        if given := self._given(_MOMENTS):
-            return SummitLaw(Moments.checked(**given))
-        of_waves = SelfAffine.of(**self._given(_WAVES + _AMPLITUDES))
-        return SummitLaw(Moments.checked(*of_waves.moments))
+        moments = Moments(**self._given(_MOMENTS)) if self.spectrum is None else self.spectrum.moments
+        return SummitLaw(Moments.checked(*moments))
+
+    @property
+    def spectrum(self) -> SelfAffine | None:
+        """The spectrum of the surface; None where only its moments are known."""
+        waves = self._given(_WAVES + _AMPLITUDES)
+        return SelfAffine.of(**waves) if waves else None
 
     @property
     def count(self) -> int:

@@ -8,6 +8,7 @@ from roughmdr.theory.maugis import dmt_maugis
 from roughmdr.theory.mildly_elliptic import greenwood_elliptic
 from roughmdr.theory.persson import persson_contact_fraction
 from roughmdr.theory.persson_gap import persson_separation
+from roughmdr.theory.persson_load import persson_pressure
 
 __all__ = [
     "RoughLine",
@@ -19,6 +20,7 @@ __all__ = [
     "greenwood_williamson",
     "line_heights",
     "persson_contact_fraction",
+    "persson_pressure",
     "persson_separation",
     "rough_line",
 ]

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
@@ -104,6 +105,13 @@ def _of_distribution(given: Distribution | None) -> Heights:
     above, below = above[above < highest], below[below > lowest]
     mass, force = density(below) * steps[: len(below)], density(above) * steps[: len(above)] ** 2.5
     far = (np.arange(len(above)) < _LIGHT) | (force > _NOTHING**2 * force[:1])
-    inner = [below[mass > _NOTHING], shares, above[(force > 0.0) & far]]
+    # A thin tail lies all within one panel; above, one more shows that nothing is left.
+    above = above[_further(_further((force > 0.0) & far))]
+    inner = [below[_further(mass > _NOTHING)], shares, above]
     ends = [end for end in (lowest, highest) if math.isfinite(end)]
     return Heights(density, np.unique(np.concatenate([*inner, ends])), highest == math.inf)
+
+
+def _further(counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The edges that count, the first among them, and the next one out."""
+    return np.append(True, counts)[:-1] | counts

@@ -1,0 +1,8 @@
+"""Which of the named laws apply to a scene, and what they say along the way of its flat."""
+
+from roughmdr.named import gaussian, summits
+from roughmdr.named.law import NamedLaw
+
+LAWS: dict[str, NamedLaw] = {**summits.LAWS, **gaussian.LAWS}
+
+__all__ = ["LAWS", "NamedLaw"]

@@ -1,0 +1,80 @@
+"""The laws of Gaussian surfaces: Bush, Gibson and Thomas, Greenwood's of mildly elliptic contacts, Persson."""
+
+import math
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats
+from roughmdr.ensemble import NayakAsperities
+from roughmdr.errors import RoughmdrError
+from roughmdr.named.law import NamedLaw, check_no_adhesion
+from roughmdr.plan import Cell
+from roughmdr.theory import (
+    bush_gibson_thomas,
+    bush_gibson_thomas_asymptote,
+    greenwood_elliptic,
+    persson_contact_fraction,
+    persson_pressure,
+)
+from roughmdr.theory.summits import Variable
+
+_DEFORMED = "its separation is the mean gap to the deformed surface, the scene's is from the undeformed mean plane"
+
+
+class _OfSummits(Protocol):
+    """A law of all summits of a surface."""
+
+    def __call__(
+        self, *, separation: ArrayLike, modulus: float, m0: float, m2: float, m4: float, variable: Variable
+    ) -> Floats: ...
+
+
+def _surface(cell: Cell) -> NayakAsperities:
+    """The surface of a scene; RoughmdrError where it is no Gaussian one without adhesion."""
+    section = cell.scene.asperities
+    if not isinstance(section, NayakAsperities):
+        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'nayak'")
+    check_no_adhesion(cell.scene)
+    return section
+
+
+def _of_summits(law: _OfSummits, cell: Cell, variable: Variable) -> Floats:
+    m0, m2, m4 = _surface(cell).law.moments
+    separation, modulus = cell.route.separation, cell.scene.modulus
+    return law(separation=separation, modulus=modulus, m0=m0, m2=m2, m4=m4, variable=variable)
+
+
+def _asymptote(cell: Cell, variable: Variable) -> Floats:
+    pressure = _of_summits(bush_gibson_thomas, cell, "pressure")
+    slope = math.sqrt(2.0 * _surface(cell).law.moments.m2)
+    return bush_gibson_thomas_asymptote(pressure=pressure, modulus=cell.scene.modulus, rms_slope=slope)
+
+
+def _persson(cell: Cell, variable: Variable) -> Floats:
+    spectrum, modulus = _surface(cell).spectrum, cell.scene.modulus
+    if spectrum is None:
+        raise RoughmdrError("it needs a self-affine spectrum, the scene gives m0, m2 and m4")
+    h = cell.route.separation
+    values = np.full_like(h, math.nan)
+    open_ = h > 0.0  # a surface in full contact has the mean gap 0
+    pressure = persson_pressure(separation=h[open_], modulus=modulus, spectrum=spectrum)
+    if variable == "contact_fraction":
+        values[open_] = persson_contact_fraction(pressure=pressure, modulus=modulus, rms_slope=spectrum.rms_slope)
+    else:
+        values[open_] = pressure
+    return values
+
+
+LAWS = {
+    "bush_gibson_thomas": NamedLaw(lambda cell, variable: _of_summits(bush_gibson_thomas, cell, variable)),
+    "bush_gibson_thomas_asymptote": NamedLaw(
+        _asymptote, ("contact_fraction",), "at the pressure of bush_gibson_thomas"
+    ),
+    "greenwood_elliptic": NamedLaw(lambda cell, variable: _of_summits(greenwood_elliptic, cell, variable)),
+    "persson_separation": NamedLaw(_persson, ("pressure",), _DEFORMED),
+    "persson_contact_fraction": NamedLaw(
+        _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}"
+    ),
+}

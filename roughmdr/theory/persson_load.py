@@ -1,0 +1,42 @@
+"""Persson's law the other way round: the pressure under which a mean gap is left."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.arguments import Floats, check_number, check_values
+from roughmdr.errors import OutOfRange
+from roughmdr.spectrum import SelfAffine
+from roughmdr.theory.persson_gap import persson_separation
+
+# Logarithms of the pressure over E* h' between which the root lies: of the squares of both a float holds what it must.
+_LEAST, _MOST = -350.0, math.log(25.0)
+
+
+def persson_pressure(*, separation: ArrayLike, modulus: float, spectrum: SelfAffine) -> Floats:
+    """Pressure [Pa] at mean gaps separation [m], to about 1e-12 of itself: the inverse of ``persson_separation``.
+
+    modulus E* [Pa]. The shape is that of separation. OutOfRange where a separation is not above 0, or is one whose
+    pressure over the modulus no float holds, and where another argument is.
+    """
+    from scipy.optimize.elementwise import find_root
+
+    given = check_values("separation", separation)
+    unit = check_number("modulus", modulus, "Pa") * spectrum.rms_slope
+
+    def gap(logarithm: Floats) -> Floats:
+        pressure = unit * np.exp(logarithm)
+        return persson_separation(pressure=pressure, modulus=modulus, spectrum=spectrum)
+
+    def too_wide(logarithm: Floats, h: Floats) -> Floats:
+        return gap(logarithm) - h
+
+    closest, furthest = gap(np.array([_MOST, _LEAST]))
+    if not ((given > closest) & (given < furthest)).all():
+        raise OutOfRange(
+            f"separation is from {np.min(given):g} to {np.max(given):g} m; "
+            f"it must be above {closest:g} and below {furthest:g} m"
+        )
+    found = find_root(too_wide, (_LEAST, _MOST), args=(given,))
+    return np.asarray(unit * np.exp(found.x))
