@@ -152,8 +152,8 @@ class NayakAsperities(PatchSource):
 
     def _heights(self, v: float) -> Heights:
         """The heights of the summits that have a product of curvatures v."""
-        end, spread = HEIGHT_END * math.sqrt(self.law.moments.m0), self.law.height_spread
-        return Heights(partial(self.law.height_density, v=v), -end, end, spread)
+        low, high = self.law.height_range(v, HEIGHT_END)
+        return Heights(partial(self.law.height_density, v=v), low, high, self.law.height_spread)
 
     def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of one realization."""

@@ -76,6 +76,11 @@ class SummitLaw(NamedTuple):
         """The least spread of the heights of summits that have all derivatives in common [m]."""
         return math.sqrt(self.moments.m0 * self._loose)
 
+    def height_range(self, v: float, deviations: float) -> tuple[float, float]:
+        """The heights [m] that bound those of summits with v: S is at least sqrt(v), and seldom much more."""
+        mean, spread = math.sqrt(self._tied * self.moments.m0), deviations * self.height_spread
+        return mean * math.sqrt(v) - spread, mean * (math.sqrt(v) + deviations) + spread
+
     def draw(self, height: Floats, mean: Floats, product: Floats) -> Summits:
         """Summits from independent uniform numbers for the height, the mean curvature and the product of curvatures.
 

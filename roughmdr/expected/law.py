@@ -52,7 +52,8 @@ def compute(
     count = source.expected_count
     total *= count
     largest = float(np.abs(total[FORCE]).max())
-    total[ERROR] += (doubt + _KERNEL_ERROR + max(node.heights.defect for node in nodes)) * largest
+    defect = sum(node.share * node.heights.defect for node in nodes)
+    total[ERROR] += (doubt + _KERNEL_ERROR + defect) * largest
     extremes = coarse.extremes(_reached(asked, count))
     return LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
 
