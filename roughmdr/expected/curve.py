@@ -22,6 +22,7 @@ from roughmdr.kernels.elementwise import apply, apply_all
 _TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10
 """Of the greatest value on a piece: about what the kernels themselves are right to away from a fold."""
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
+_GROWTH = 2.0  # from one piece to the next, where contacts that reach differently far share a curve
 _LAST_BITS = 2.0**-44
 _NEAREST = 1e-7  # of the width of the heights: what is less deep adds nothing
 
@@ -66,18 +67,21 @@ def curves_of(
     curves = {}
     for form in dict.fromkeys(forms):
         alike = [number for number, other in enumerate(forms) if other == form]
-        farthest, nearest = float(ranges[alike, 0].max()), float(ranges[alike, 1].min())
-        curves[form] = _curve(contacts[alike[0]], farthest, nearest, rows)
+        reaches, nearest = ranges[alike, 0], float(ranges[alike, 1].min())
+        curves[form] = _curve(contacts[alike[0]], float(reaches.min()), float(reaches.max()), nearest, rows)
     return [curves[form] for form in forms]
 
 
-def _curve(contact: Contact, farthest: float, nearest: float, rows: tuple[int, ...]) -> Curve:
-    """Up to the reduced distance ``farthest``, from as near the onset as ``nearest``."""
+def _curve(contact: Contact, least: float, farthest: float, nearest: float, rows: tuple[int, ...]) -> Curve:
+    """Up to the reduced distance ``farthest``, from as near the onset as ``nearest``.
+
+    Of the contacts that share the curve some reach no farther than ``least``.
+    """
     tolerance = np.array([_TOLERANCE_STIFFNESS if row == STIFFNESS else _TOLERANCE for row in rows])
-    least = _FOLD if contact.law.adhesive else math.sqrt(nearest)
+    finest = _FOLD if contact.law.adhesive else math.sqrt(nearest)
 
     def narrow(low: Floats, high: Floats) -> Floats:
-        return np.where(low <= least, least, _LAST_BITS * high)
+        return np.where(low <= finest, finest, _LAST_BITS * high)
 
     def weight(low: Floats, high: Floats) -> Floats:
         return (high - low) / high
@@ -88,10 +92,21 @@ def _curve(contact: Contact, farthest: float, nearest: float, rows: tuple[int, .
         def bears(s: Floats, rung: int = rung, foot: float = foot) -> Floats:
             return _quantities(contact, s, foot, rung, rows)
 
-        tables.append(Table.of(bears, np.array([0.0, math.sqrt(top - foot)]), tolerance, narrow, weight))
+        tables.append(Table.of(bears, _edges(math.sqrt(least), math.sqrt(top - foot)), tolerance, narrow, weight))
     first = np.cumsum([0, *(table.low.size for table in tables)])
     merged = Table(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
     return Curve(first, np.array([foot for foot, _ in branches]), merged)
+
+
+def _edges(least: float, top: float) -> Floats:
+    """From 0 to ``top``, in steps that grow from ``least``.
+
+    A piece is right to its greatest value: one that reaches far beyond ``least`` would be wrong below it.
+    """
+    edges = [top]
+    while edges[-1] > _GROWTH * least:
+        edges.append(edges[-1] / _GROWTH)
+    return np.array([0.0, *reversed(edges)])
 
 
 def _branches(contact: Contact, farthest: float) -> list[tuple[float, float]]:
