@@ -61,8 +61,8 @@ class Rough(NamedTuple):
         return mp.quad(bears, mp.linspace(begin, end, 7), method="gauss-legendre")
 
     def _top(self, digits: int) -> mpf:
-        """A height that one of 10^digits summits reaches."""
-        decades = digits * mp.log(10)
+        """A height that one of 10^(digits + 4) summits reaches: the force grows while they get fewer."""
+        decades = (digits + 4) * mp.log(10)
         return self.std * (decades if self.heights == "exponential" else mp.sqrt(2 * decades))
 
     def _density(self, z: mpf) -> mpf:
@@ -72,8 +72,8 @@ class Rough(NamedTuple):
 
 
 def _trapezoid(digits: int) -> tuple[mpf, int]:
-    """Step and number of steps to each side: exp(-2 pi^2/step^2) and exp(-end^2/2) are both 10^-digits."""
-    decades = digits * math.log(10.0)
+    """Step and number of steps to each side: exp(-2 pi^2/step^2) and exp(-end^2/2) are both 10^-(digits + 4)."""
+    decades = (digits + 4) * math.log(10.0)
     step = mp.pi * mp.sqrt(2 / mpf(decades))
     return step, math.ceil(math.sqrt(2.0 * decades) / step)
 
