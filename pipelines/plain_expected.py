@@ -86,6 +86,6 @@ def _contact_radius(indentation: mpf, R: mpf, stretch: mpf, fold: mpf) -> mpf:
     while True:
         root = mp.sqrt(a)
         change = (a * a / R - stretch * root - indentation) / (2 * a / R - stretch / (2 * root))
-        a -= change
-        if abs(change) <= mp.eps * 1000 * a:
+        if change <= mp.eps * 1000 * a:  # below 0 it is a rounding: near the fold there are such
             return a
+        a -= change
