@@ -32,6 +32,7 @@ ASKED = ("force", "default variables", "force, in and out")
 ORDERS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24)
 FINEST = 60  # the nodes that these are held against
 REALIZATIONS, REPEATS = 32, 5
+ROUNDS = 4  # so that what disturbs the clock for a while does not touch all realisations of one count
 
 
 def cell_of(rough: Rough, estimator: str, count: int = 1, *, unload: bool = False) -> Cell:
@@ -82,13 +83,14 @@ def by_draws(rough: Rough, force: np.ndarray, counts: np.ndarray) -> tuple[np.nd
     """[method, count]: the r.m.s. error of a realisation over the path, and its shortest time [s]."""
     cells = [[cell_of(rough, estimator, int(count)) for count in counts] for estimator in DRAWN]
     squares, seconds = np.zeros((len(DRAWN), counts.size)), np.full((len(DRAWN), counts.size), np.inf)
-    for number in range(REALIZATIONS):  # outermost: what disturbs the clock for a while does not touch one number alone
+    for numbers in np.array_split(np.arange(REALIZATIONS), ROUNDS):
         for place in np.ndindex(squares.shape):
             count, cell = int(counts[place[1]]), cells[place[0]][place[1]]
-            started = time.perf_counter()
-            law = law_of(*cell, count + number, ["force"])  # other draws for each number, else they begin alike
-            seconds[place] = min(seconds[place], time.perf_counter() - started)
-            squares[place] += np.mean((law.variables["force"] / count - force) ** 2)
+            for number in (numbers + count).tolist():  # other draws for each count, else they begin alike
+                started = time.perf_counter()
+                law = law_of(*cell, number, ["force"])
+                seconds[place] = min(seconds[place], time.perf_counter() - started)
+                squares[place] += np.mean((law.variables["force"] / count - force) ** 2)
     return np.sqrt(squares / REALIZATIONS) / np.abs(force).max(), seconds
 
 
