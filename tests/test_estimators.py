@@ -17,7 +17,7 @@ from roughmdr.runner import execute
 from roughmdr.scene import read
 
 UM, MODULUS = 1e-6, 4e6
-PATH = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 50}}
+PATH: dict[str, Any] = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 50}}
 AT_ZERO = {"separation": ["0 um"]}
 EXPONENTIAL = {"distribution": "expon", "loc": 0.0, "scale": UM}
 
@@ -133,7 +133,7 @@ def test_equal_heights_can_be_stratified() -> None:
 
 
 def test_sweeps_and_statistics_of_the_expected_law() -> None:
-    sweep = {"adhesion.work": [0.0, 0.05], "asperities.count": [50, 200]}
+    sweep: dict[str, Any] = {"adhesion.work": [0.0, 0.05], "asperities.count": [50, 200]}
     curves = run("expected", sweep=sweep)
     assert curves.force.dims == ("adhesion_work", "asperities_count", "realization", "step")
     assert "random draws: batch.estimator is 'expected'" in curves.attrs["left_out"]
