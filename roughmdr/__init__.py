@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from roughmdr import theory
+    from roughmdr import spectrum, theory
     from roughmdr.aggregate import load_separation
     from roughmdr.asperity import indent, pull_off, tabor
     from roughmdr.ensemble import generate
@@ -94,6 +94,7 @@ __all__ = [
     "pressure",
     "pull_off",
     "run",
+    "spectrum",
     "surface_displacement",
     "tabor",
     "theory",
@@ -103,8 +104,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module("importlib.metadata").version("roughmdr")
-    if name == "theory":
-        return import_module("roughmdr.theory")
+    if name in ("spectrum", "theory"):
+        return import_module(f"roughmdr.{name}")
     if name in _HOME:
         value = getattr(import_module(f"roughmdr.{_HOME[name]}"), name)
         globals()[name] = value

@@ -8,7 +8,7 @@ import numpy as np
 
 from roughmdr.analysis import PullOff, pull_off_force
 from roughmdr.labelled import Labelled
-from roughmdr.views import cell_label, cells_of, held_variables, realizations_of, swept_sizes
+from roughmdr.views import cell_label, cells_of, estimator_of, held_variables, realizations_of, swept_sizes
 from roughmdr.wording import printable
 
 if TYPE_CHECKING:
@@ -112,6 +112,8 @@ def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
     what = "largest tension of each realisation on the way back, or 0: mean ± standard error"
     if "force" not in result.variables:
         what = "largest tension of the mean curve on the way back ± its standard error there"
+    elif estimator_of(result) == "expected":
+        what = "lowest point of the expected law; realisations let go one by one, and each reaches a little deeper"
     elif realizations_of(result) == 1:
         what = "largest tension on the way back; one realisation has no standard error"
     yield "", f"({what}; in brackets its change there from step to step of the path)"

@@ -93,7 +93,8 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
         return Decimal(1)
     if dimension == DIMENSIONLESS:
         raise RoughmdrError(f"has the unit {unit!r}, but is a plain number")
-    spelled = unit.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")
+    spelled = unit.removeprefix("1").lstrip() if unit.startswith("1/") else unit
+    spelled = spelled.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")
     table = _table(dimension) if dimension in _BASES else {}
     if spelled in table:
         return table[spelled]

@@ -1,5 +1,6 @@
 """How a result is laid out: its variables, its cells, its realisations."""
 
+import tomllib
 from collections.abc import Iterable
 
 import numpy as np
@@ -16,6 +17,12 @@ def held_variables(result: Labelled) -> list[str]:
         for name, array in result.variables.items()
         if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW
     ]
+
+
+def estimator_of(result: Labelled) -> str:
+    """How the realisations were made."""
+    estimator = tomllib.loads(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled")
+    return str(estimator)
 
 
 def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:

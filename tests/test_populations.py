@@ -153,8 +153,8 @@ def test_places_that_do_not_fit_are_refused(distance: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"density": "5 /mm^2"}, "takes count, or a density"),
-        ({"count": None}, "takes count, or a density"),
+        ({"density": "5 /mm^2"}, "density = 5000000.0: does not go with count"),
+        ({"count": None}, "needs count, or a density"),
         ({"count": None, "density": "1e30 /m^2"}, "asperities.density = 1e"),
         ({"correlation": {}}, "names no parameter of the paraboloid; it takes radius"),
         ({"correlation": {"radius": 1.1}}, "correlation.radius = 1.1: must be at most 1"),

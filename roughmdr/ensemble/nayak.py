@@ -165,6 +165,7 @@ class NayakAsperities(PatchSource):
             "realization": realization,
             "density": self.law.density,
             "alpha": self.law.moments.alpha,
+            **self.law.moments._asdict(),
         }
         radii = {"radius": summits.radius}
         positions = self.positions(draws, self.count) if placed else {}

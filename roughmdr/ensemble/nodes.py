@@ -118,7 +118,7 @@ def _of_population(law: AsperityLaw, population: Population, rule: Rule) -> Node
     parameters = {
         name: entry.of_scores(own.get(name, np.zeros(share.size))) for name, entry in population.parameters.items()
     }
-    if law.correlated:
+    if law.correlated in own:
         known = {score: Heights.given(population.height, score, law.score_correlation) for score in rule.scores}
         return Nodes(share, parameters, tuple(known[score] for score in own[law.correlated]))
     return Nodes(share, parameters, (Heights.of(population.height),) * share.size)

@@ -48,8 +48,10 @@ class RandomAsperities(PatchSource):
     def _parameters_describe_the_shape(self) -> "RandomAsperities":
         if self.fixed is None:
             SHAPES[self.shape].spelling(set(self.distributions))
-        if (self.count is None) == (self.density is None):
-            raise RoughmdrError("takes count, or a density from which the number in each realisation is drawn")
+        if self.count is None and self.density is None:
+            raise RoughmdrError("needs count, or a density from which the number in each realisation is drawn")
+        if self.count is not None and self.density is not None:
+            raise EntryError("density", self.density, "does not go with count; leave one of them out")
         if self.density is not None and not self.expected_count <= _MOST:
             raise EntryError(
                 "density", self.density, f"puts {self.expected_count:.3g} asperities on the patch; at most {_MOST:g}"
@@ -68,9 +70,9 @@ class RandomAsperities(PatchSource):
             raise EntryError("correlation", None, f"names no parameter of the {self.shape}; it takes {self._spelled}")
         if len(_given(self.correlation, self.shape)) > 1:
             raise EntryError("correlation", None, "takes one parameter: it goes with the height")
-        for quantity_name in (name, "height") if name else ():
-            if any(self._entry(each, quantity_name).constant is not None for each in self.law.populations):
-                raise EntryError(f"correlation.{name}", None, f"needs a {quantity_name} that is not always the same")
+        for other in (name, "height") if name else ():
+            if all(self._entry(each, other).constant is not None for each in self.law.populations):
+                raise EntryError(f"correlation.{name}", None, f"needs a {other} that is not always the same")
         return self
 
     @property

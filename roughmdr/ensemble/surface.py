@@ -62,7 +62,9 @@ class SurfaceAsperities(Source):
         trend = self.detrend or ("mean" if surface.periodic else "quadratic")
         try:
             if surface.periodic and trend in ("plane", "quadratic"):
-                raise SceneError(f'a periodic map has no trend to take out; detrend is {trend!r}, not "mean" or "none"')
+                raise SceneError(
+                    f'a periodic map has no trend to take out: detrend is {trend!r}; it must be "mean" or "none"'
+                )
             surface = surface._replace(height=remove_trend(surface.height, trend))
             if self.cutoff is not None:
                 surface = remove_short_waves(surface, self.cutoff)
