@@ -220,3 +220,32 @@ def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> Non
     assert (off <= 20.0 * table.slack[piece, 0] + 4e-15 * np.abs(function(points))).all()
     assert off.max() <= worst * np.abs(function(points)).max()
     assert table.low.size < 200
+
+
+NARROW = {"shape": "paraboloid", "radius": LOGNORMAL, "height": {"distribution": "normal", "std": "3 nm"}}
+
+
+@pytest.mark.parametrize(
+    ("asperities", "path"),
+    [
+        (NARROW, {"separation": {"start": "1 um", "stop": "-1 um", "steps": 40}, "unload": True}),
+        ({"shape": "paraboloid", "radius": LOGNORMAL, "correlation": {"radius": 0.97}}, IN_AND_OUT),
+    ],
+)
+def test_an_error_that_is_large_is_stated_and_warned_of(asperities: dict[str, object], path: dict[str, object]) -> None:
+    """Heights narrow beside the depths of the folds, or nearly told by the radius: no rule over it is right to 1e-3."""
+    asked = {**scene(asperities, {"model": "jkr", "work": 0.05}), "path": path, "output": {"variables": ["force"]}}
+    law = rm.run({**asked, "batch": {"estimator": "expected"}}).isel(realization=0)
+    even = rm.run({**asked, "batch": {"estimator": "stratified", "realizations": 48}}).force
+    off = np.abs(even.mean("realization") - law.force) - 4.0 * even.std("realization") / np.sqrt(48)
+    stated = float(law.numerical_error)
+    assert float(off.max()) <= stated * float(np.abs(law.force).max())
+    assert stated > 1e-3
+    assert "an expected law that is right only to" in law.attrs["warnings"]
+
+
+def test_an_expected_law_that_is_no_law_is_refused() -> None:
+    narrow = {**NARROW, "height": {"distribution": "normal", "std": "1 pm"}}
+    path = {"separation": ["1 um", "-1 um", "315 nm", "317 nm", "319 nm", "321 nm", "323 nm"]}  # they let go at 319 nm
+    with pytest.raises(rm.OutOfRange, match="the expected law of these asperities is right only to"):
+        rm.run({**scene(narrow, {"model": "jkr", "work": 0.05}), "path": path, "batch": {"estimator": "expected"}})

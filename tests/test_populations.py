@@ -198,3 +198,11 @@ def test_an_ensemble_from_a_file_is_that_ensemble(tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("height")
     with pytest.raises(rm.SceneError, match="not a netCDF file"):
         rm.run({**asked, "asperities": {"source": "file", "file": str(tmp_path / "text.nc")}})
+
+
+@pytest.mark.parametrize("end", [{"max": -20 * UM}, {"min": 20 * UM}])
+def test_moments_far_out_in_a_tail(end: dict[str, float]) -> None:
+    """The excess over a cut far out is nearly exponential, with a mean of a twentieth of the std."""
+    law = Drawn("m", mean=0.0)({"distribution": "normal", "std": UM, **end})
+    assert abs(law.mean) - 20 * UM == pytest.approx(UM * (1 / 20 - 2 / 20**3), rel=1e-3)
+    assert law.std == pytest.approx(UM * (1 / 20 - 3 / 20**3), rel=1e-3)

@@ -117,6 +117,7 @@ class Distribution:
         values = self._between(ndtr(_SCORES), ndtr(-_SCORES))
         weights = np.exp(-0.5 * _SCORES**2) * (_SCORE_STEP / math.sqrt(2.0 * math.pi))
         middle = float(values[_SCORES.size // 2])
+        values = np.where(np.isfinite(values), values, middle)  # so far out that no fraction is left of the uncut one
         with np.errstate(all="ignore"):  # a cut at one end may leave no moments
             mean = middle + float(weights @ (values - middle))
             return mean, math.sqrt(float(weights @ (values - mean) ** 2))

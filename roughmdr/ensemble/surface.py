@@ -70,7 +70,11 @@ class SurfaceAsperities(Source):
                 surface = remove_short_waves(surface, self.cutoff)
             if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
                 raise SceneError(f"the map has no summit: with detrend {trend!r} it is flat, but for rounding")
-            found = find_summits(surface, noise)
+            with np.errstate(over="ignore", under="ignore"):  # refused below
+                found = find_summits(surface, noise)
+            radius, area = found.parameters["radius"], found.nominal_area or 0.0
+            if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
+                raise SceneError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
         except SceneError as error:
             raise SceneError(f"{self.file}: {error}") from None
         asked = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})

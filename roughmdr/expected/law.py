@@ -17,6 +17,7 @@ from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.errors import OutOfRange
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.parted import Parted
 
@@ -24,7 +25,9 @@ _ORDERS = (8, 12, 18, 27, 40, 60, 90, 135)
 _MOST_NODES = 6_000
 _AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
 _SLOW = 0.3  # a higher order that leaves so much of the difference does not help
-_PROBES = 5  # steps at which they are compared where all are alike
+_SLOWEST = 0.9  # as if each difference were at most so much of the one before
+_PROBES = 5  # steps at which they are compared where all are alike: where nothing lets go
+_DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
 
 
@@ -55,7 +58,23 @@ def compute(
     defect = sum(node.share * node.heights.defect for node in nodes)
     total[ERROR] += (doubt + _KERNEL_ERROR + defect) * largest
     extremes = coarse.extremes(_reached(asked, count))
-    return LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
+    law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
+    return law._replace(doubts=_doubts(law.numerical_error))
+
+
+def _doubts(error: float) -> tuple[str, ...]:
+    """What to say of an error over the largest force; OutOfRange where it leaves nothing."""
+    if error > _WORTHLESS:
+        raise OutOfRange(
+            f"the expected law of these asperities is right only to {error:.1g} of its largest force: the integral "
+            "over the shape parameters does not converge; estimator 'stratified' or 'sampled' has no such limit"
+        )
+    if error > _DOUBTFUL:
+        return (
+            f"an expected law that is right only to {error:.1g} of its largest force, other variables perhaps to less: "
+            "estimator 'stratified' or 'sampled' has no such limit",
+        )
+    return ()
 
 
 def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
@@ -66,15 +85,14 @@ def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
 def _enough(asked: Asked, parted: Parted | None) -> tuple[list[Node], float]:
     """So many nodes that more of them do not change the force, and by how much of the largest force they do."""
     separation = asked.route.separation
-    steps = list(range(separation.size))
-    if parted is not None or not asked.hysteretic:
-        plain = [step for step in steps if parted is None or step not in parted.cuts]
-        steps = [plain[i] for i in np.unique(np.linspace(0, len(plain) - 1, _PROBES).astype(int))]
+    steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
+    if not asked.hysteretic:
+        steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
 
     def force(nodes: list[Node]) -> Floats:
         return np.asarray(totals_of(nodes, separation, (FORCE,), steps)[0][FORCE])
 
-    nodes, doubt = set_up(asked, Rule.smooth(_ORDERS[0])), math.inf
+    nodes, doubt, before = set_up(asked, Rule.smooth(_ORDERS[0])), math.inf, math.inf
     found = force(nodes)
     for order in _ORDERS[1:]:
         rule = Rule.smooth(order)
@@ -92,7 +110,9 @@ def _enough(asked: Asked, parted: Parted | None) -> tuple[list[Node], float]:
         nodes, found = finer, again
         if doubt > _SLOW * before:
             break
-    return nodes, doubt
+    # What is left is the sum of all differences to come: they fall as the last two did, or more slowly.
+    rate = min(doubt / before, _SLOWEST) if doubt > _AGREE and before < math.inf else 0.0
+    return nodes, doubt * max(rate / (1.0 - rate), 1.0)
 
 
 def _reached(asked: Asked, count: float) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats, check_number, check_values
-from roughmdr.errors import OutOfRange
+from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.spectrum import SelfAffine
 from roughmdr.theory.persson_gap import persson_separation
 
@@ -23,6 +23,8 @@ def persson_pressure(*, separation: ArrayLike, modulus: float, spectrum: SelfAff
     from scipy.optimize.elementwise import find_root
 
     given = check_values("separation", separation)
+    if not isinstance(spectrum, SelfAffine):
+        raise RoughmdrError(f"spectrum is {spectrum!r}; it must be a SelfAffine")
     unit = check_number("modulus", modulus, "Pa") * spectrum.rms_slope
 
     def gap(logarithm: Floats) -> Floats:
