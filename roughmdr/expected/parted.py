@@ -1,7 +1,7 @@
 """Steps at which some asperities have let go of their lowest summits and others not yet.
 
-On the way back a contact holds on to z = max(bottom, top - depth): over the shape parameters that has a kink where
-depth = top - bottom, and Gauss's rule must be parted there.
+On the way back contacts hold on to z = max(bottom, top - depth): over the shape parameters that has a kink where
+depth = top - bottom, and Gauss's rule must be parted there. So it must where top - depth is the end of all heights.
 """
 
 from typing import NamedTuple
@@ -33,7 +33,9 @@ class Parted(NamedTuple):
             return None
         scan = Rule.between([], _SCAN)
         depths = _depths(asked, scan.scores)
-        kinks = _kinks(asked.route, float(depths.min()), float(depths.max()))
+        heights = dict.fromkeys(asked.source.nodes(scan).heights)
+        ends = [end for own in heights for end in (own.low, own.high)] if len(heights) == 1 else []
+        kinks = _kinks(asked.route, ends, float(depths.min()), float(depths.max()))
         if len(kinks) > _MOST:
             return None
         cuts = {
@@ -63,13 +65,13 @@ def _depths(asked: Asked, scores: Floats) -> Floats:
     return np.array([contact.depth[0] for contact in contacts_of(asked, nodes)])
 
 
-def _kinks(route: Route, least: float, most: float) -> dict[int, list[float]]:
+def _kinks(route: Route, ends: list[float], least: float, most: float) -> dict[int, list[float]]:
     """The depths between ``least`` and ``most`` at which contacts part in what they remember, for each such step."""
     first, bottom, top = route.memory
     found = {}
     for step in range(route.separation.size):
         pairs = slice(first[step], first[step + 1])
-        gaps = np.unique(top[pairs, None] - bottom[None, pairs])
+        gaps = np.unique(top[pairs, None] - np.concatenate([bottom[pairs], ends]))
         if (kinks := gaps[(gaps > least) & (gaps < most)]).size:
             found[step] = kinks.tolist()
     return found
