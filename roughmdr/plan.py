@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadSeparation, Route, compute, prepare
 from roughmdr.aggregate.route import branches
-from roughmdr.errors import SceneError
+from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.labelled import Array
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
@@ -141,15 +142,18 @@ def _seconds(cell: Cell) -> float:
 
 
 def prepare_all(plan: Plan) -> None:
-    """Compile the sums that a plan needs, once, before several threads or a clock need them."""
-    needed = {}
+    """Compile what a plan needs, once, before several threads or a clock need it."""
+    needed: dict[tuple[object, ...], Cell] = {}
     for cell in plan.cells:
         law = cell.scene.law
-        if cell.scene.batch.estimator == "expected":
-            continue  # its tables are made by kernels of one asperity, which compile when they are first used
-        needed[cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known] = law
-    for (shape, *_), law in needed.items():
-        prepare(shape, law)
+        needed.setdefault((cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known), cell)
+    for scene, route in needed.values():
+        if scene.batch.estimator == "expected":
+            one = Route.along(route.separation[:1], unload=False, adhesive=scene.work > 0.0)
+            with suppress(RoughmdrError):  # that is said of the whole path
+                law_of(scene, one, 0, plan.scene.output.variables)
+        else:
+            prepare(scene.asperities.shape_name, scene.law)
 
 
 def law_of(scene: Scene, route: Route, realization: int, variables: list[str]) -> LoadSeparation:
