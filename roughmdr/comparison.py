@@ -80,7 +80,7 @@ def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Fl
 
 
 def _expected(cell: Cell, names: list[str]) -> dict[str, Floats]:
-    if reason := cell.scene.asperities.not_integrable("expected"):
+    if reason := cell.scene.asperities.unfit_for("expected"):
         raise RoughmdrError(reason)
     scene = cell.scene.model_copy(update={"batch": Batch(estimator="expected")})
     return law_of(scene, cell.route, 0, names).variables

@@ -19,6 +19,7 @@ from roughmdr.units import quantity
         ("1 mm^2", "m2", 1e-6),
         ("2 um^2", "m2", 2e-12),
         ("5 /mm^2", "m-2", 5e6),
+        ("5 1/mm^2", "m-2", 5e6),
         ("3 MPa", "Pa", 3e6),
         ("70 GPa", "Pa", 7e10),
         ("50 mJ/m^2", "J/m^2", 0.05),

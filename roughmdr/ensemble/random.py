@@ -130,7 +130,7 @@ class RandomAsperities(PatchSource):
         """Standard deviation of the heights [m]."""
         return self.law.sigma
 
-    def not_integrable(self, estimator: str) -> str:
+    def unfit_for(self, estimator: str) -> str:
         """The expected law needs heights that are spread, and parameters that do not follow from them."""
         if estimator != "expected":
             return ""

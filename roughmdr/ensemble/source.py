@@ -48,7 +48,7 @@ class Source(Section):
         """[m2]; None where it is not known."""
         raise NotImplementedError
 
-    def not_integrable(self, estimator: str) -> str:
+    def unfit_for(self, estimator: str) -> str:
         """Why the asperities cannot be "stratified" or their "expected" law be taken; empty where they can."""
         return "" if self.drawn else f"nothing of source {self.source!r} is drawn"
 

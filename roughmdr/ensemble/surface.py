@@ -3,17 +3,16 @@
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, StrictBool, field_validator
+from pydantic import BeforeValidator, StrictBool, field_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.file import check_is_file
+from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps import Sides, read_map
 from roughmdr.ensemble.relief import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.resolution import few_points, measures
-from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.summits import find_summits
 from roughmdr.errors import SceneError
 from roughmdr.quantities import Length
@@ -22,7 +21,7 @@ from roughmdr.units import unit_factor
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a trend may leave of nothing
 
 
-class SurfaceAsperities(Source):
+class SurfaceAsperities(FromFile):
     """[asperities] with source = "surface": the summits of the map in ``file``.
 
     ``size`` and ``unit``, of the heights, describe a map whose file does not; ``channel`` chooses among the maps of a
@@ -30,10 +29,7 @@ class SurfaceAsperities(Source):
     ``periodic`` overrules the file. ``cutoff`` takes out shorter waves.
     """
 
-    drawn: ClassVar[bool] = False
-
     source: Literal["surface"]
-    file: Annotated[str, AfterValidator(check_is_file)]
     shape: Literal["paraboloid"] = "paraboloid"
     size: Annotated[float | tuple[float, float] | None, BeforeValidator(Sides())] = None
     unit: str | None = None
@@ -42,11 +38,6 @@ class SurfaceAsperities(Source):
     periodic: StrictBool | None = None
     cutoff: Length | None = None
 
-    @property
-    def shape_name(self) -> str:
-        """The shape of the asperities."""
-        return self.shape
-
     @field_validator("unit")
     @classmethod
     def _is_a_length(cls, value: str | None) -> str | None:
@@ -54,7 +45,7 @@ class SurfaceAsperities(Source):
         return value
 
     @cached_property
-    def summits(self) -> Ensemble:
+    def held(self) -> Ensemble:
         """The asperities of the map; SceneError where it cannot be read or has none."""
         path = Path(self.file)
         surface = read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
@@ -80,22 +71,3 @@ class SurfaceAsperities(Source):
         asked = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
         warnings = tuple(f"{path.name}: {text}" for text in few_points(float(found.attrs["points_per_summit"])))
         return replace(found, attrs={**found.attrs, **measures(surface), **asked}, warnings=warnings)
-
-    @property
-    def expected_count(self) -> float:
-        """How many summits there are."""
-        return float(self.summits.height.size)
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """The files that the asperities are read from."""
-        return (Path(self.file),)
-
-    @property
-    def sigma(self) -> float:
-        """Standard deviation of the summit heights [m]."""
-        return float(np.std(self.summits.height))
-
-    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
-        """The asperities of the map: always the same ones."""
-        return replace(self.summits, attrs={**self.summits.attrs, "seed": seed})

@@ -23,9 +23,9 @@ _TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10
 """Of the greatest value on a piece: about what the kernels themselves are right to away from a fold."""
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
 _LAST_BITS = 2.0**-44
-_NEAREST = 1e-7  # of the width of the heights: what is less deep adds nothing
-_SHALLOW = 1e-2  # likewise: the first piece, and how much wider than the one before each other piece may be
-_WIDER, _MOST_EDGES = 4.0, 100
+# Of the width of the heights: where what is less deep adds nothing, and where without adhesion the first piece ends.
+_NEAREST, _SHALLOW = 1e-7, 1e-2
+_WIDER, _MOST_EDGES = 4.0, 100  # how much wider than the one before it a piece may be at first
 
 
 class Curve(NamedTuple):

@@ -65,10 +65,11 @@ def integrate(
     total: Floats,
     error: Floats,
 ) -> int:
-    """Add to total[row, step] what summits between ``begin`` and ``end`` [m] bear on a branch, for each such interval.
+    """Add to total[row, step] what summits from ``begin`` to ``end`` [m] bear on branch ``rung``, for each interval.
 
-    Rows are over their natural scales; ``error`` [step] takes up how far the first row may be off. Returns how often
-    the tables were evaluated.
+    x = (z - separation)/depth + lift, in [m] but x and lift. ``first``, ``foot`` and the four after them are a
+    ``Curve``, the four from ``z_low`` on the table of the density of heights [1/m]. Rows are over their natural scales;
+    ``error`` [step] takes up how far the first row may be off. Returns how often the tables were evaluated.
     """
     n = _NODES.size
     s, u, phi, value = np.empty(n), np.empty(n), np.empty(n), np.empty(n)

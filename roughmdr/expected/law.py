@@ -40,24 +40,25 @@ def compute(
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
     """
     names, steps = list(variables), route.separation.size
-    rows = tuple(dict.fromkeys([FORCE, *(ROW[name] for name in names if ROW[name] != DISSIPATED)]))
+    wanted = dict.fromkeys([FORCE, *(ROW[name] for name in names)])
+    rows, dissipating = tuple(row for row in wanted if row != DISSIPATED), DISSIPATED in wanted
     coarse = _stand_ins(source, source.nodes(Rule.smooth(_ORDERS[0])))
     reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
     asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
     parted = Parted.of(asked)
-    nodes, doubt = _enough(asked, parted)
+    rule, nodes, doubt = _enough(asked, parted)
     total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
-    if DISSIPATED in (ROW[name] for name in names):
+    if dissipating:
         total[DISSIPATED] = dissipated_of(nodes, steps)
     if parted is not None:
         for step in parted.cuts:
-            total[:, step] = parted.total(step, dissipating=bool(total[DISSIPATED].any()))
+            total[:, step] = parted.total(step, dissipating=dissipating)
     count = source.expected_count
     total *= count
     largest = float(np.abs(total[FORCE]).max())
     defect = sum(node.share * node.heights.defect for node in nodes)
     total[ERROR] += (doubt + _KERNEL_ERROR + defect) * largest
-    extremes = coarse.extremes(_reached(asked, count))
+    extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, float(route.separation.min()), count))
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
     return law._replace(doubts=_doubts(law.numerical_error))
 
@@ -82,8 +83,11 @@ def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
     return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
 
 
-def _enough(asked: Asked, parted: Parted | None) -> tuple[list[Node], float]:
-    """So many nodes that more of them do not change the force, and by how much of the largest force they do."""
+def _enough(asked: Asked, parted: Parted | None) -> tuple[Rule, list[Node], float]:
+    """A rule with so many nodes that more do not change the force, they, and how far the force over its largest is off.
+
+    Steps at which the rule is parted do not count.
+    """
     separation = asked.route.separation
     steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
     if not asked.hysteretic:
@@ -92,34 +96,32 @@ def _enough(asked: Asked, parted: Parted | None) -> tuple[list[Node], float]:
     def force(nodes: list[Node]) -> Floats:
         return np.asarray(totals_of(nodes, separation, (FORCE,), steps)[0][FORCE])
 
-    nodes, doubt, before = set_up(asked, Rule.smooth(_ORDERS[0])), math.inf, math.inf
+    rule, doubt, before = Rule.smooth(_ORDERS[0]), math.inf, math.inf
+    nodes = set_up(asked, rule)
     found = force(nodes)
     for order in _ORDERS[1:]:
-        rule = Rule.smooth(order)
-        count = asked.source.nodes(rule).share.size
+        finer_rule = Rule.smooth(order)
+        count = asked.source.nodes(finer_rule).share.size
         if count == len(nodes):  # no parameter is drawn
-            return nodes, 0.0
+            return rule, nodes, 0.0
         if count > _MOST_NODES:
             break
-        finer = set_up(asked, rule)
+        finer = set_up(asked, finer_rule)
         again = force(finer)
         largest = float(np.abs(again).max())
         before, doubt = doubt, float(np.abs(again - found).max()) / largest if largest > 0.0 else 0.0
         if doubt <= _AGREE:
             break
-        nodes, found = finer, again
+        rule, nodes, found = finer_rule, finer, again
         if doubt > _SLOW * before:
             break
     # What is left is the sum of all differences to come: they fall as the last two did, or more slowly.
-    rate = min(doubt / before, _SLOWEST) if doubt > _AGREE and before < math.inf else 0.0
-    return nodes, doubt * max(rate / (1.0 - rate), 1.0)
+    fall = min(doubt / before, _SLOWEST) if doubt > _AGREE and before < math.inf else 0.0
+    return rule, nodes, doubt * max(fall / (1.0 - fall), 1.0)
 
 
-def _reached(asked: Asked, count: float) -> Floats:
-    """The contact radius [m] of the highest of ``count`` summits where the flat is closest, for each coarse node."""
-    deepest = float(asked.route.separation.min())
-    radii = []
-    for node in set_up(asked, Rule.smooth(_ORDERS[0])):
-        indentation = np.array([node.heights.highest(count * node.share) - deepest])
-        radii.append(node.contact.at_indentation(indentation)["contact_radius"][0])
-    return np.array(radii)
+def _reached(nodes: list[Node], closest: float, count: float) -> Floats:
+    """The contact radius [m] of the highest summit of each node, of ``count`` in all, under the flat at ``closest``."""
+    depths = [node.heights.highest(count * node.share) - closest for node in nodes]
+    pairs = zip(nodes, depths, strict=True)
+    return np.array([node.contact.at_indentation(np.array([depth]))["contact_radius"][0] for node, depth in pairs])

@@ -175,7 +175,7 @@ class Scene(Section):
         if not self.asperities.drawn and self.batch.realizations > 1:
             source = self.asperities.source
             raise _misfit("batch.realizations", f"must be 1 with source {source!r}: nothing of it is drawn")
-        if self.batch.estimator != "sampled" and (reason := self.asperities.not_integrable(self.batch.estimator)):
+        if self.batch.estimator != "sampled" and (reason := self.asperities.unfit_for(self.batch.estimator)):
             raise _misfit("batch.estimator", f"cannot be {self.batch.estimator!r}: {reason}")
         if self.batch.estimator == "expected" and self.batch.realizations > 1:
             raise _misfit("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")

@@ -1,0 +1,65 @@
+"""What the sources that read their asperities from a file have in common."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import AfterValidator
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.source import Source
+from roughmdr.errors import RoughmdrError
+
+
+def _is_file(value: str) -> str:
+    """The name of a file that is there; RoughmdrError where it is not."""
+    try:
+        there, folder = Path(value).is_file(), Path(value).is_dir()
+    except OSError as error:
+        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
+    if not there:
+        raise RoughmdrError("is a folder; expected a file" if folder else "no such file")
+    return value
+
+
+class FromFile(Source):
+    """A source whose asperities are those of a ``file``: always the same ones."""
+
+    drawn: ClassVar[bool] = False
+
+    file: Annotated[str, AfterValidator(_is_file)]
+
+    @property
+    def held(self) -> Ensemble:
+        """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
+        raise NotImplementedError
+
+    @property
+    def shape_name(self) -> str:
+        """The shape of the asperities."""
+        return self.held.shape
+
+    @property
+    def expected_count(self) -> float:
+        """How many asperities there are."""
+        return float(self.held.height.size)
+
+    @property
+    def nominal_area(self) -> float | None:
+        """[m2]; None where the file does not tell."""
+        return self.held.nominal_area
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the asperities are read from."""
+        return (Path(self.file),)
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the heights [m]."""
+        return float(np.std(self.held.height))
+
+    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
+        """The asperities of the file."""
+        return replace(self.held, attrs={**self.held.attrs, "seed": seed})
