@@ -134,9 +134,9 @@ class SelfAffine(NamedTuple):
 
     def _power(self, k: int) -> float:
         """∫ q^k C dq."""
-        q0, octaves = 2.0 * math.pi / self.long_wave, math.log(self.long_wave / self.short_wave)
-        p = (k - 1.0 - 2.0 * self.hurst) * octaves
-        return self.level * q0 ** (k + 1) * octaves * (math.expm1(p) / p if p else 1.0)
+        q0, log_range = 2.0 * math.pi / self.long_wave, math.log(self.long_wave / self.short_wave)
+        p = (k - 1.0 - 2.0 * self.hurst) * log_range
+        return self.level * q0 ** (k + 1) * log_range * (math.expm1(p) / p if p else 1.0)
 
     @property
     def moments(self) -> Moments:
