@@ -3,6 +3,7 @@
 import math
 import re
 from decimal import Decimal
+from functools import cache
 
 from roughmdr.arguments import check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
@@ -33,6 +34,7 @@ _BASES: dict[str, tuple[tuple[str, int], ...]] = {
 DIMENSIONLESS = "1"
 
 
+@cache
 def _table(dimension: str) -> dict[str, Decimal]:
     """Units of a dimension in SI, as decimals, so that "10 um" is the float 1e-5 and not its neighbour."""
     table = dict(_ALONE.get(dimension, {}))

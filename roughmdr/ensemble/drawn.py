@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.families import Family, find_family, known_families
@@ -37,10 +38,18 @@ class Drawn:
 
     def __call__(self, value: object) -> Distribution:
         """The distribution in SI."""
-        if isinstance(value, dict):
-            distribution = self._from_table(value)
-        else:
-            distribution = Distribution("", (), quantity(value, self.dimension), 0.0)
+        if not isinstance(value, dict):
+            return self._allowed(Distribution("", (), quantity(value, self.dimension), 0.0))
+        try:
+            return self._known(tuple((key, type(entry), entry) for key, entry in value.items()))
+        except TypeError:  # an entry that is no number
+            return self._allowed(self._from_table(value))
+
+    @lru_cache(maxsize=256)  # noqa: B019 - the cells of a sweep read the same ones over and over
+    def _known(self, entries: tuple[tuple[str, type, object], ...]) -> Distribution:
+        return self._allowed(self._from_table({key: entry for key, _, entry in entries}))
+
+    def _allowed(self, distribution: Distribution) -> Distribution:
         if self.positive and not distribution.least > 0.0:
             raise RoughmdrError(
                 f"can be as low as {distribution.least:.3g}; it must be above 0 (lognormal, for one, always is)"

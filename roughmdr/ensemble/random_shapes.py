@@ -1,7 +1,7 @@
 """The sections of source = "random", one a shape, with a key for each of its parameters."""
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator
 
@@ -9,9 +9,11 @@ from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.random import Correlation, RandomAsperities, Second
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, Quantity
+from roughmdr.quantities import EntryError, Quantity, Section
 from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
 from roughmdr.units import DIMENSIONLESS, quantity
+
+_Section = TypeVar("_Section", bound=Section)
 
 
 def _terms(value: object) -> dict[str, float]:
@@ -84,10 +86,19 @@ def _section(shape: type[Shape]) -> type[RandomAsperities]:
         keys[name] = (kind, ...) if name in always else (kind | None, None)
         others[name] = (kind | None, None)
         together[name] = (rank | None, None)
+    second = _kept(create_model(f"Second{shape.__name__}", __base__=Second, **others))
+    correlation = _kept(create_model(f"Correlation{shape.__name__}", __base__=Correlation, **together))
     keys["shape"] = (Literal[shape.name], ...)
-    keys["second"] = (create_model(f"Second{shape.__name__}", __base__=Second, **others) | None, None)
-    keys["correlation"] = (create_model(f"Correlation{shape.__name__}", __base__=Correlation, **together) | None, None)
-    return create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys)
+    keys["second"] = (second | None, None)
+    keys["correlation"] = (correlation | None, None)
+    return _kept(create_model(f"Random{shape.__name__}", __base__=RandomAsperities, **keys))
+
+
+def _kept(section: type[_Section]) -> type[_Section]:
+    """A section under its name in this module, where another process finds it."""
+    section.__module__ = __name__
+    globals()[section.__name__] = section
+    return section
 
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
         base, faults = _read_cell(plain, first, path, {})
     if base is None or sweep is None or faults:
         return None, faults
-    parts = {name: getattr(base, name) for name in base.model_fields_set}
+    parts = {name: getattr(base, name) for name in Scene.model_fields if name != "sweep"}
     cells, faults_of_cells, where = [], Counter[Fault](), dict[Fault, str]()
     for values in sweep.cells():
         cell, found = _read_cell(plain, values, path, parts)
@@ -42,7 +42,8 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
             cells.append(cell)
     if faults_of_cells:
         return None, [_counted(fault, count, where[fault]) for fault, count in faults_of_cells.items()]
-    return Scene.of(table, path, {"sweep": sweep, **parts}, tuple(cells)), []
+    given = {name: parts[name] for name in base.model_fields_set}
+    return Scene.of(table, path, {"sweep": sweep, **given}, tuple(cells)), []
 
 
 def _known(plain: dict[str, Any], sweep: object) -> dict[str, Reader]:
@@ -88,15 +89,20 @@ def _read_cell(
     plain: dict[str, Any], values: dict[str, object], path: Path | None, parts: dict[str, Any]
 ) -> tuple[Scene | None, list[Fault]]:
     """One cell of a sweep; those of the read ``parts`` that no swept key belongs to are taken as they are."""
-    table = copy.deepcopy(plain)
+    swept = {key.split(".")[0] for key in values}
+    table = {name: _copied(part) if name in swept else part for name, part in plain.items()}
     for key, value in values.items():
         try:
             put(table, key, value)
         except RoughmdrError as error:
             return None, [Fault(f"sweep.{key}", "", str(error))]
-    swept = {key.split(".")[0] for key in values}
     cell, faults = _read(table, path, {name: part for name, part in parts.items() if name not in swept})
     return cell, [_at_swept_key(fault, values) for fault in faults]
+
+
+def _copied(table: Any) -> Any:
+    """Tables within tables anew; what stands in them is the same."""
+    return {key: _copied(value) for key, value in table.items()} if isinstance(table, dict) else table
 
 
 def _at_swept_key(fault: Fault, values: dict[str, object]) -> Fault:
