@@ -8,7 +8,7 @@ READY  := $(VENV)/ready
 
 demo: setup
 	@mkdir -p results
-	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc
+	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
 test: setup lint

@@ -3,7 +3,6 @@
 Kernels are compiled with ``njit`` from here. A loop that is to be handed its kernels is compiled with ``specialise``.
 """
 
-import hashlib
 import os
 from collections.abc import Callable
 from contextlib import suppress
@@ -15,6 +14,7 @@ from typing import Any, TypeVar, cast
 import numba
 
 from roughmdr._rebuilt import rebuilt
+from roughmdr._sources import fingerprint
 
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -29,12 +29,8 @@ def _cache_folder() -> str | None:
     """
     import platformdirs
 
-    package = Path(__file__).parent
-    digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(package.rglob("*.py")):
-        digest.update(source.read_bytes())
     for base in (platformdirs.user_cache_dir("roughmdr"), _config.CACHE_DIR):  # the second is NUMBA_CACHE_DIR
-        folder = Path(base) / digest.hexdigest()[:16]
+        folder = Path(base) / f"{fingerprint()}-{numba.__version__}"
         with suppress(OSError):
             if base:
                 folder.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.arguments import Floats
+from roughmdr.batch.shard import DONE
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.statistics import mean_and_error
@@ -25,8 +26,8 @@ class PullOff(NamedTuple):
     """By how much, on average, the force changes there from step to step of the path: how well the path resolves it."""
     tensile: NDArray[np.int64]
     """How many of the curves are tensile at all."""
-    curves: int
-    """How many curves there are: the realisations, or one."""
+    curves: NDArray[np.int64]
+    """How many curves there are: the realisations that were computed, or one."""
 
 
 def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
@@ -48,10 +49,13 @@ def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
     force = whole[..., retracting]
     where = np.argmin(force, axis=-1)[..., None]
     lowest = np.take_along_axis(force, where, axis=-1)[..., 0]
-    mean, error = mean_and_error(np.minimum(lowest, 0.0), axis=-1)
+    done = held["status"].values == DONE
+    done = done if "force" in held else done[..., None]
+    mean, error = mean_and_error(np.minimum(lowest, 0.0), done)
     if "force" not in held:
         at_lowest = np.take_along_axis(held["force_sem"].values[..., None, retracting], where, axis=-1)
-        error = np.where(mean < 0.0, at_lowest[..., 0, 0], 0.0)
+        error = np.where(mean < 0.0, at_lowest[..., 0, 0], np.where(np.isnan(mean), np.nan, 0.0))
     steps = np.abs(np.diff(whole, axis=-1, append=whole[..., -1:], prepend=whole[..., :1]))
     beside = np.maximum(*(np.take_along_axis(steps, retracting[where] + i, axis=-1)[..., 0] for i in (0, 1)))
-    return PullOff(mean, error, beside.mean(axis=-1), (lowest < 0.0).sum(axis=-1), force.shape[-2])
+    change, _ = mean_and_error(beside, done)
+    return PullOff(mean, error, change, (lowest < 0.0).sum(axis=-1), done.sum(axis=-1))

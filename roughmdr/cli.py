@@ -1,4 +1,7 @@
-"""The command line, thin over the library. Exit status: 0 done, 2 wrong input, 130 interrupted, 1 anything else."""
+"""The command line, thin over the library.
+
+Exit status: 0 done, 2 wrong input, 130 interrupted; 1 anything else: runs failed, or what was begun could not go on.
+"""
 
 import gc
 import os
@@ -8,13 +11,16 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
 
-_WRONG_INPUT, _INTERRUPTED = 2, 130
+if TYPE_CHECKING:
+    from roughmdr.runner import Tls
+
+_NOT_ALL, _WRONG_INPUT, _INTERRUPTED = 1, 2, 130
 
 
 class _Group(click.Group):
@@ -25,9 +31,9 @@ class _Group(click.Group):
             return super().invoke(ctx)
         except RoughmdrError as error:
             _stop(error)
-        except (KeyboardInterrupt, click.Abort):
-            click.echo("roughmdr: interrupted; nothing was written", err=True)
-            # Threads may still compute, and none of them has anything on disk: leave without waiting for them.
+        except (KeyboardInterrupt, click.Abort) as interrupt:
+            click.echo(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
+            # Threads may still compute, and what they finish is not waited for.
             os._exit(_INTERRUPTED)
 
 
@@ -36,7 +42,7 @@ def _stop(error: RoughmdrError) -> NoReturn:
     faults = error.faults if isinstance(error, SceneError) else ()
     for line in map(_coloured, faults) if faults else str(error).splitlines():
         click.echo(f"roughmdr: {line}", err=True, color=False if os.environ.get("NO_COLOR") else None)
-    sys.exit(_WRONG_INPUT)
+    sys.exit(_NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
 
 
 def _coloured(fault: Fault) -> str:
@@ -79,7 +85,7 @@ _changes = click.option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable."
 )
 _workers = click.option(
-    "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads."
+    "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads or processes."
 )
 
 
@@ -89,14 +95,42 @@ _workers = click.option(
 @_changes
 @_workers
 @click.option(
-    "--scheduler", type=click.Choice(["threads"]), default="threads", expose_value=False, help="What runs the workers."
+    "--scheduler",
+    default="threads",
+    show_default=True,
+    metavar="threads|processes|tcp://HOST:PORT|tls://HOST:PORT",
+    help="What computes: this machine, or the dask cluster whose scheduler is there.",
+)
+@click.option("--tls-ca", type=_FILE, help="For tls://: the certificate of the authority (PEM).")
+@click.option("--tls-cert", type=_FILE, help="For tls://: the certificate of this client (PEM).")
+@click.option("--tls-key", type=_FILE, help="For tls://: its key (PEM).")
+@click.option(
+    "--resume/--fresh",
+    default=True,
+    show_default=True,
+    help="Use again what the output holds already or an interrupted run kept, or start anew.",
 )
 @click.option("--quiet", is_flag=True, help="Say nothing but errors.")
-def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet: bool) -> None:
-    """Compute SCENE, a TOML file or a result that holds one, and write its load-separation law."""
+def run(
+    scene: Path,
+    output: Path,
+    changes: tuple[str, ...],
+    workers: int,
+    scheduler: str,
+    tls_ca: Path | None,
+    tls_cert: Path | None,
+    tls_key: Path | None,
+    resume: bool,
+    quiet: bool,
+) -> None:
+    """Compute SCENE, a TOML file or a result that holds one, and write its load-separation law.
+
+    Finished runs are kept beside the output until all are done: interrupted, killed or out of room, the same command
+    goes on from there. Ctrl-C finishes what is under way; twice, it does not.
+    """
     started = time.perf_counter()
     with _loading():
-        from roughmdr.describe import describe_result
+        from roughmdr.describe import describe_failed, describe_result
         from roughmdr.scene import read
 
         asked = read(scene, changes)  # before anything heavy is loaded
@@ -104,11 +138,36 @@ def run(scene: Path, output: Path, changes: tuple[str, ...], workers: int, quiet
         from roughmdr.runner import execute
 
         planned = make_plan(asked)
-        prepare_all(planned)
-    result = execute(planned, output, workers=workers, quiet=quiet, command=_command())
+        if "://" not in scheduler:
+            prepare_all(planned)
+    result = execute(
+        planned,
+        output,
+        workers=workers,
+        scheduler=scheduler,
+        resume=resume,
+        quiet=quiet,
+        command=_command(),
+        tls=_tls(tls_ca, tls_cert, tls_key),
+    )
     if not quiet:
         click.echo(describe_result(result, time.perf_counter() - started))
         click.echo(f"result       {click.format_filename(output)}")
+    if failed := describe_failed(result):
+        if quiet:
+            click.echo(f"roughmdr: {failed}", err=True)
+        sys.exit(_NOT_ALL)
+
+
+def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":
+    """What --tls-ca, --tls-cert and --tls-key say; None where they say nothing."""
+    if ca is None and cert is None and key is None:
+        return None
+    if ca is None or cert is None or key is None:
+        raise RoughmdrError("--tls-ca, --tls-cert and --tls-key go together")
+    from roughmdr.runner import Tls
+
+    return Tls(str(ca), str(cert), str(key))
 
 
 @main.command()
@@ -162,12 +221,19 @@ def plot(result: Path, output: Path, variables: tuple[str, ...], with_expected: 
 
 @main.command()
 @click.argument("result", type=_FILE)
-def info(result: Path) -> None:
+@click.option("--cells", is_flag=True, help="List the cells: what became of each, time, errors, remarks.")
+def info(result: Path, cells: bool) -> None:
     """Say what RESULT holds: sizes, pull-off force with its error, seed, versions, time, and the scene."""
-    from roughmdr.describe import describe_origin, describe_result
     from roughmdr.store import read
 
     data = read(result)
+    if cells:
+        from roughmdr.cell_table import describe_cells
+
+        click.echo(describe_cells(data))
+        return
+    from roughmdr.describe import describe_origin, describe_result
+
     click.echo(describe_result(data))
     click.echo(describe_origin(data, result.stat().st_size))
 

@@ -13,7 +13,6 @@ from roughmdr.labelled import Labelled
 from roughmdr.named import LAWS, NamedLaw
 from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
-from roughmdr.scene.sections import Batch
 from roughmdr.theory.summits import Variable
 from roughmdr.wording import in_cells
 
@@ -82,8 +81,7 @@ def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Fl
 def _expected(cell: Cell, names: list[str]) -> dict[str, Floats]:
     if reason := cell.scene.asperities.unfit_for("expected"):
         raise RoughmdrError(reason)
-    scene = cell.scene.model_copy(update={"batch": Batch(estimator="expected")})
-    return law_of(scene, cell.route, 0, names).variables
+    return law_of(cell.scene, cell.route, 0, names, "expected").variables
 
 
 def _saying(law: NamedLaw, names: list[str]) -> Callable[[Cell], dict[str, Floats]]:

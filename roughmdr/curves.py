@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.arguments import Floats
 from roughmdr.labelled import Labelled
 from roughmdr.statistics import mean_and_error
-from roughmdr.views import swept_sizes
+from roughmdr.views import done_of, swept_sizes
 
 
 class Curve(NamedTuple):
@@ -22,7 +22,7 @@ class Curve(NamedTuple):
     error: Floats
     """Standard error of the mean; NaN where there is none."""
     runs: Floats
-    """[realization, step]; no realisations where they were not kept."""
+    """[realization, step]; those that were computed, none where they were not kept."""
 
 
 EXPECTED = "expected"
@@ -46,14 +46,16 @@ def curves(result: Labelled, name: str) -> Iterator[Curve]:
     ways = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
     if name in result.variables:
         runs = result.variables[name].values
-        mean, error = mean_and_error(runs, axis=-2)
+        done = done_of(result)
+        mean, error = mean_and_error(runs, done)
     else:
         mean, error = (result.variables[f"{name}_{what}"].values for what in ("mean", "sem"))
-        runs = np.empty((*mean.shape[:-1], 0, branches.size))
+        runs, done = np.empty((*mean.shape[:-1], 0, branches.size)), np.empty((*mean.shape[:-1], 0), dtype=bool)
     separation = separations(result)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         for way, steps in enumerate(ways):
-            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], runs[cell][:, steps]
+            own = runs[cell][done[cell]][:, steps]
+            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], own
             yield Curve(number, way, str(branches[steps[0]]), *columns)
 
 

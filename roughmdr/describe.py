@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.analysis import PullOff, pull_off_force
+from roughmdr.batch.shard import FAILED
 from roughmdr.labelled import Labelled
-from roughmdr.views import cell_label, cells_of, estimator_of, held_variables, realizations_of, swept_sizes
-from roughmdr.wording import printable
+from roughmdr.views import cell_label, cells_of, done_of, estimator_of, held_variables, realizations_of, swept_sizes
+from roughmdr.wording import printable, seconds_in_words
 
 if TYPE_CHECKING:
     from roughmdr.estimate import Estimate
@@ -23,13 +24,26 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
     steps = plan.cells[0].route.separation.size
     lines = [
         ("scene", printable(plan.scene.title)),
-        ("runs", f"{_sizes(plan.sizes, plan.scene.batch.realizations, steps)}: {plan.runs} in all"),
+        ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in all"),
+        *_until(plan),
         ("output", f"{', '.join(plan.scene.output.variables)}; {plan.scene.output.keep}; {_bytes(estimate.file)}"),
-        ("tasks", f"{len(plan.tasks)} on {workers} worker{'s' * (workers > 1)}"),
-        ("time", f"about {_seconds(estimate.seconds)}, of them {_seconds(estimate.start_up)} to start"),
+        ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
+        ("time", f"about {seconds_in_words(estimate.seconds)}, of them {seconds_in_words(estimate.start_up)} to start"),
         ("memory", f"about {_bytes(estimate.memory)}, of them {_bytes(estimate.resident)} for Python and its packages"),
     ]
-    return _table([*lines, *_several("left out", plan.left_out)])
+    return _table([*lines, *_several("cannot run", estimate.failures), *_several("left out", plan.left_out)])
+
+
+def _until(plan: "Plan") -> Iterator[tuple[str, str]]:
+    """What is asked for with [accuracy]."""
+    accuracy = plan.scene.accuracy
+    if accuracy is not None:
+        yield (
+            "accuracy",
+            f"standard error of {accuracy.relative:g} of the largest mean force, method {accuracy.method!r}",
+        )
+        yield "", f"these runs first, then more, cell by cell, up to {accuracy.max_realizations} realisations each;"
+        yield "", "time, memory and tasks are those of the first"
 
 
 def describe_result(result: Labelled, elapsed: float | None = None) -> str:
@@ -42,9 +56,11 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         *_pull_off(result),
         *_open_ends(result),
         *_adhesion(result),
+        *_several("accuracy", tuple(attrs.get("accuracy", "").splitlines())),
+        *_several("failed", tuple(describe_failed(result).splitlines())),
         *_several("warning", tuple(attrs.get("warnings", "").splitlines())),
         ("run time", _run_time(result, elapsed)),
-        ("error", f"numerical error at most {_array(result, 'numerical_error').max():.1e} of the largest force"),
+        ("error", f"numerical error at most {np.nanmax(_array(result, 'numerical_error')):.1e} of the largest force"),
     ]
     return _table([*lines, *_several("left out", tuple(attrs["left_out"].splitlines()))])
 
@@ -68,15 +84,12 @@ def describe_ensemble(ensemble: Labelled) -> str:
 def describe_origin(result: Labelled, size: float) -> str:
     """Which scene made a result, of ``size`` bytes, with which seed and versions, and when."""
     attrs = result.attrs
-    failed = int((_array(result, "status") != 0).sum())
     lines = [
         ("size", _bytes(size)),
         ("seed", str(attrs["seed"])),
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),
     ]
-    if failed:
-        lines.append(("status", f"{failed} not computed"))
     return _table([*lines, *_several("scene", tuple(attrs["scene"].strip().splitlines()))])
 
 
@@ -90,8 +103,8 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
 
 
 def _run_time(result: Labelled, elapsed: float | None) -> str:
-    inside = f"{_seconds(float(_array(result, 'run_time').sum()))} of work in the realisations"
-    return inside if elapsed is None else f"{_seconds(elapsed)}; {inside}, over all workers"
+    inside = f"{seconds_in_words(float(np.nansum(_array(result, 'run_time'))))} of work in the realisations"
+    return inside if elapsed is None else f"{seconds_in_words(elapsed)}; {inside}, over all workers"
 
 
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
@@ -123,8 +136,8 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
     mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
     tensile = int(pull_off.tensile[cell])
     if tensile == 0:
-        return "none: never tensile"
-    some = "" if tensile == pull_off.curves else f", {tensile} of {pull_off.curves} tensile"
+        return "none: never tensile" if pull_off.curves[cell] else "not known: no run was computed"
+    some = "" if tensile == pull_off.curves[cell] else f", {tensile} of {pull_off.curves[cell]} tensile"
     return f"{mean:.4g} N{'' if math.isnan(error) else f' ± {error:.2g} N'} [{pull_off.change[cell]:.1g} N]{some}"
 
 
@@ -133,10 +146,22 @@ def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
     if "tabor_number" in result.variables:
         law = result.variables["adhesion_law"]
         names = law.attrs["flag_meanings"].split()
-        taken = ", ".join(f"{names[i]} in {int((law.values == i).sum())}" for i in np.unique(law.values))
+        values = law.values[done_of(result)]
+        taken = ", ".join(f"{names[i]} in {int((values == i).sum())}" for i in np.unique(values))
         tabor = _array(result, "tabor_number")
         if np.isfinite(tabor).any():
-            yield "adhesion", f"{taken} of {law.values.size}; least Tabor number {np.nanmin(tabor):.3g}"
+            yield "adhesion", f"{taken} of {values.size}; least Tabor number {np.nanmin(tabor):.3g}"
+
+
+def describe_failed(result: Labelled) -> str:
+    """How much failed, and why the first of it did; empty where nothing did."""
+    status = _array(result, "status")
+    failed = status == FAILED
+    if not failed.any():
+        return ""
+    what = "runs" if "realization" in result.sizes else "cells"
+    first = printable(str(result.coordinates["remark"].values[failed][0]).split("\n")[0])
+    return f"{int(failed.sum())} of {status.size} {what} failed ({first}); the same command computes them again"
 
 
 def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:
@@ -147,7 +172,7 @@ def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:
     count = result.variables[name].values
     first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))
     if first or last:
-        what = f"{count[..., 0].size} {'runs' if name == 'contact_count' else 'cells'}"
+        what = f"{int(done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
         yield "note", f"in contact at the first step in {first}, at the last in {last} of {what}"
 
 
@@ -157,12 +182,6 @@ def _several(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:
 
 def _table(lines: list[tuple[str, str]]) -> str:
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
-
-
-def _seconds(seconds: float) -> str:
-    if seconds < 100.0:
-        return f"{seconds:.2g} s"
-    return f"{seconds / 60.0:.3g} min" if seconds < 6000.0 else f"{seconds / 3600.0:.3g} h"
 
 
 def _bytes(size: float) -> str:

@@ -52,3 +52,11 @@ class LimitWarning(UserWarning):
 
 class StoreError(RoughmdrError):
     """A file cannot be read or written."""
+
+
+class Unfinished(StoreError):  # noqa: N818 - it is no error of whoever asked
+    """A batch could not go on; what it finished is kept."""
+
+
+class FailedRuns(UserWarning):
+    """Some runs of a batch could not be computed."""

@@ -15,6 +15,8 @@ import numpy as np
 import tomli_w
 
 from roughmdr.aggregate import Route, compute
+from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
 from roughmdr.plan import Cell, Plan, law_of, prepare_all
 from roughmdr.shapes import SHAPES
@@ -30,8 +32,10 @@ _STEP, _STEP_SECONDS = 70, 3e-6  # bytes, seconds
 
 
 class Estimate(NamedTuple):
-    """What a run costs, in seconds and bytes."""
+    """What a run costs, in seconds and bytes; with [accuracy], what its first round does."""
 
+    runs: int
+    tasks: int
     seconds: float
     """In all."""
     start_up: float
@@ -42,6 +46,8 @@ class Estimate(NamedTuple):
     """What Python and its packages take; 0 where the system does not tell."""
     file: float
     """The result on disk."""
+    failures: tuple[str, ...]
+    """Which of the cells that were tried cannot be computed, and why."""
 
 
 class _Cost(NamedTuple):
@@ -54,29 +60,45 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     prepare_all(plan)
     start_up, resident = _start_up(plan.cells[0]), _resident()
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
-    costs = [_cost(plan, plan.cells[i]) for i in sorted(chosen.tolist())]
-    busy = min(workers, len(plan.tasks), _cores())
-    variables = plan.scene.output.variables
-    one = _NUMBER * plan.cells[0].route.separation.size  # curve
-    curves = one * len(variables) * plan.runs
-    kept = curves if plan.scene.output.keep == "curves" else 4 * one * len(variables) * len(plan.cells)
-    steps = plan.cells[0].route.separation.size
-    kept += _STEP * steps
-    beside = one * plan.runs  # the parts of a variable are put together beside all
+    costs, failures = _costs(plan, sorted(chosen.tolist()))
+    variables, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
+    first = Rounds(plan).begin()
+    runs = sum(stretch.last - stretch.first for stretch in first)
+    tasks = len(cut(plan, first, variables, workers))
+    busy = min(workers, tasks, _cores())
+    run = _NUMBER * steps * len(variables)
+    if plan.scene.output.keep == "curves":
+        kept = run * runs
+        held = 2 * kept + run * runs // len(variables)  # as they came, put together, and one variable to be written
+    else:
+        kept = 4 * run * len(plan.cells)
+        held = 2 * kept + busy * min(TOGETHER, math.ceil(runs / tasks)) * run
     return Estimate(
+        runs=runs,
+        tasks=tasks,
         seconds=start_up
-        + float(np.mean([cost.seconds for cost in costs])) * plan.runs / busy
+        + float(np.mean([cost.seconds for cost in costs])) * runs / busy
         + kept / _DISK
         + _STEP_SECONDS * steps,
         start_up=start_up,
-        memory=resident
-        + curves
-        + beside
-        + _STEP * steps
-        + min(workers, len(plan.tasks)) * max(cost.memory for cost in costs),
+        memory=resident + held + _STEP * steps + busy * max(cost.memory for cost in costs),
         resident=resident,
-        file=kept,
+        file=kept + _STEP * steps,
+        failures=tuple(failures),
     )
+
+
+def _costs(plan: Plan, cells: list[int]) -> tuple[list[_Cost], list[str]]:
+    """The costs of those cells that can be run, and why the others cannot; RoughmdrError where none can."""
+    costs, failures = [], []
+    for cell in cells:
+        try:
+            costs.append(_cost(plan, plan.cells[cell]))
+        except RoughmdrError as error:
+            failures.append(f"{plan.name_of(cell, 0)}: {error}")
+    if not costs:
+        raise RoughmdrError(failures[0])
+    return costs, failures
 
 
 def _cost(plan: Plan, cell: Cell) -> _Cost:
@@ -90,8 +112,8 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
 
     def run() -> tuple[float, float]:
         started = time.perf_counter()
-        if scene.batch.estimator == "expected":
-            law_of(scene, route, 0, plan.scene.output.variables)
+        if scene.estimator == "expected":
+            law_of(scene, route, 0, plan.scene.output.variables, "expected")
             return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0)
         made = time.perf_counter()
@@ -103,7 +125,7 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
-    sampled = scene.batch.estimator != "expected"
+    sampled = scene.estimator != "expected"
     part = scene.asperities.expected_count / section.expected_count if sampled else 1.0
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 

@@ -1,5 +1,6 @@
 """Arrays with dimensions, units and attributes: what becomes an xarray Dataset, or a file without importing xarray."""
 
+import hashlib
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -43,6 +44,16 @@ class Labelled(NamedTuple):
             }
 
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
+
+    def checksum(self) -> str:
+        """A hash of the scene and of all arrays but the one that depends on the clock."""
+        digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
+        for name, array in sorted((self.variables | self.coordinates).items()):
+            if name != "run_time":
+                texts = array.values.dtype.kind in "OU"
+                content = "\0".join(map(str, array.values.ravel())).encode() if texts else array.values.tobytes()
+                digest.update(name.encode() + str(array.dims).encode() + content)
+        return digest.hexdigest()
 
     def to_xarray(self) -> "xr.Dataset":
         """The same as a Dataset."""

@@ -1,6 +1,5 @@
-"""From a scene to tasks: which runs go together, and what is left out and why."""
+"""From a scene to its cells: where the flat of each goes, how each is computed, what is left out and why."""
 
-import math
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import islice
@@ -18,13 +17,6 @@ from roughmdr.scene.sweep import in_words
 from roughmdr.variables import COORDINATES, LAW
 from roughmdr.wording import in_cells
 
-# One asperity drawn and sorted, and one visited at one step, in seconds on one core of a small server: only to cut the
-# batch into tasks that are long beside dask's own 0.4 ms.
-_DRAW, _VISIT, _VISIT_COHESIVE = 2e-7, 5e-9, 3e-7
-_NODES = 10_000  # what an expected law takes, in visits a step
-_TASK_SECONDS = 0.1  # a batch that takes less is one task: to load dask takes as long
-_TASKS_AT_LEAST = 8  # so that two or three workers finish together
-
 
 class Cell(NamedTuple):
     """A scene without a sweep, and the way of its flat."""
@@ -34,33 +26,22 @@ class Cell(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """What a run of a scene will do: all realisations of the first cell, then all of the second, and so on."""
+    """What a run of a scene will do."""
 
     scene: Scene
     cells: tuple[Cell, ...]
-    tasks: tuple[range, ...]
-    """The runs of each task; run number c * realizations + r is realisation r of cell c."""
     left_out: tuple[str, ...]
     """Lines "part: reason"."""
-
-    @property
-    def runs(self) -> int:
-        """How many runs there are, over all cells."""
-        return len(self.cells) * self.scene.batch.realizations
+    chunk: int | None = None
+    """How many runs make a task; None for as many as make it worth its overhead."""
 
     @property
     def sizes(self) -> dict[str, int]:
         """The swept dimensions, in their order."""
         return self.scene.sweep.sizes
 
-    def run(self, number: int) -> tuple[Cell, int]:
-        """The cell and the realisation of a run."""
-        cell, realization = divmod(number, self.scene.batch.realizations)
-        return self.cells[cell], realization
-
-    def name_of(self, number: int) -> str:
+    def name_of(self, cell: int, realization: int) -> str:
         """A run in words."""
-        cell, realization = divmod(number, self.scene.batch.realizations)
         values = next(islice(self.scene.sweep.cells(), cell, None))
         return ", ".join([*([in_words(values)] if values else []), f"realisation {realization}"])
 
@@ -88,15 +69,13 @@ class Plan(NamedTuple):
 
 
 def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
-    """The plan of a scene; ``chunk`` runs a task, by default as many as make a task worth its overhead.
+    """The plan of a scene; ``chunk`` as in Plan.
 
     SceneError where a map cannot be read, the way of the flat cannot be laid out, or two cells go different ways, in
     and out.
     """
     cells = tuple(_cells(scene))
-    runs = len(cells) * scene.batch.realizations
-    tasks = _tasks(scene, cells) if chunk is None else [range(i, min(i + chunk, runs)) for i in range(0, runs, chunk)]
-    return Plan(scene, cells, tuple(tasks), tuple(left_out(scene)))
+    return Plan(scene, cells, tuple(left_out(scene)), chunk)
 
 
 def _cells(scene: Scene) -> Iterator[Cell]:
@@ -115,32 +94,6 @@ def _cells(scene: Scene) -> Iterator[Cell]:
         yield Cell(cell, known[key])
 
 
-def _tasks(scene: Scene, cells: tuple[Cell, ...]) -> Iterator[range]:
-    """Runs in their order, as many a task as take about as long as a task should."""
-    seconds = [_seconds(cell) for cell in cells]
-    realizations = scene.batch.realizations
-    runs, in_all = len(cells) * realizations, sum(seconds) * realizations
-    if in_all <= _TASK_SECONDS:
-        yield range(runs)
-        return
-    enough = min(_TASK_SECONDS, in_all / _TASKS_AT_LEAST)
-    begin, number, filled = 0, 0, 0.0
-    for cell, each in enumerate(seconds, start=1):
-        while number < cell * realizations:
-            taken = min(max(math.ceil((enough - filled) / each), 1), cell * realizations - number)
-            number, filled = number + taken, filled + taken * each
-            if filled >= enough or number == runs:
-                yield range(begin, number)
-                begin, filled = number, 0.0
-
-
-def _seconds(cell: Cell) -> float:
-    visit = _VISIT_COHESIVE if "dugdale" in cell.scene.law.candidates else _VISIT
-    if cell.scene.batch.estimator == "expected":
-        return _NODES * visit * cell.route.separation.size
-    return cell.scene.asperities.expected_count * (_DRAW + visit * cell.route.separation.size)
-
-
 def prepare_all(plan: Plan) -> None:
     """Compile what a plan needs, once, before several threads or a clock need it."""
     needed: dict[tuple[object, ...], Cell] = {}
@@ -148,22 +101,22 @@ def prepare_all(plan: Plan) -> None:
         law = cell.scene.law
         needed.setdefault((cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known), cell)
     for scene, route in needed.values():
-        if scene.batch.estimator == "expected":
+        if scene.estimator == "expected":
             one = Route.along(route.separation[:1], unload=False, adhesive=scene.work > 0.0)
             with suppress(RoughmdrError):  # that is said of the whole path
-                law_of(scene, one, 0, plan.scene.output.variables)
+                law_of(scene, one, 0, plan.scene.output.variables, scene.estimator)
         else:
             prepare(scene.asperities.shape_name, scene.law)
 
 
-def law_of(scene: Scene, route: Route, realization: int, variables: list[str]) -> LoadSeparation:
-    """The law of one realisation of a scene without a sweep, by its estimator."""
+def law_of(scene: Scene, route: Route, realization: int, variables: list[str], estimator: str) -> LoadSeparation:
+    """The law of one realisation of a scene without a sweep, by an estimator."""
     modulus, adhesion, section = scene.modulus, scene.law, scene.asperities
-    if scene.batch.estimator == "expected":
+    if estimator == "expected":
         from roughmdr import expected
 
         return expected.compute(section, route, modulus=modulus, adhesion=adhesion, variables=variables)
-    ensemble = section.ensemble(scene.seed, realization, stratified=scene.batch.estimator == "stratified")
+    ensemble = section.ensemble(scene.seed, realization, stratified=estimator == "stratified")
     return compute(ensemble, route, modulus=modulus, adhesion=adhesion, variables=variables)
 
 
@@ -185,6 +138,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "hysteresis: without adhesion a contact has no memory"
     if scene.batch.estimator == "expected":
         yield "random draws: batch.estimator is 'expected'"
+    if scene.accuracy is not None and scene.accuracy.method == "expected":
+        yield "random draws: accuracy.method is 'expected'"
     if scene.asperities.drawn:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"

@@ -12,7 +12,7 @@ from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.store import replacing
 from roughmdr.variables import LAW
-from roughmdr.views import cell_label, cells_of, realizations_of
+from roughmdr.views import cell_label, cells_of, realizations_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,12 +54,11 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
         figure.legend(handles=handles, loc="outside lower left", frameon=False, fontsize=8)
     else:
         axes.flat[0].legend(handles=handles, frameon=False)
-    count = realizations_of(result)
-    note = f"{count} realisations, mean ± 2 standard errors" if count > 1 else "one realisation"
+    note = realizations_in_words(result)
     if len(cells) > 1:
         note += ", unloading dashed"
         note += f", {len(shown)} of {len(cells)} cells named" if len(shown) < len(cells) else ""
-    figure.suptitle(f"{result.attrs['title']}  ({note})", fontsize=11, parse_math=False)
+    figure.suptitle(f"{result.attrs['title']}\n{note}", fontsize=11, parse_math=False)
     suffix = path.suffix.lstrip(".").lower() or "png"
     if suffix not in ("png", "pdf", "svg"):
         raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")
@@ -150,7 +149,7 @@ def _zoom_on_tension(
 
 def _shown(name: str, drawn: list[Curve]) -> Floats:
     """What the axis must show: of stiffness, which runs off to minus infinity where a contact snaps, the mean curve."""
-    means = np.concatenate([curve.mean for curve in drawn])
+    means = np.concatenate([curve.mean for curve in drawn if np.isfinite(curve.mean).all()])
     if name == "stiffness":
         return means.clip(*np.quantile(means, [0.01, 1.0]))
     return np.concatenate([means, *(curve.runs.ravel() for curve in drawn)])

@@ -9,46 +9,87 @@ from typing import Protocol
 _SECONDS_BETWEEN_LINES = 10.0
 
 
-class Advance(Protocol):
-    """Tells that ``count`` more runs are done."""
+class Progress(Protocol):
+    """A display of runs."""
 
-    def __call__(self, count: int) -> None:
-        """Count on."""
+    def expect(self, count: int) -> None:
+        """There are so many more runs to do."""
+
+    def advance(self, count: int) -> None:
+        """So many more are done."""
+
+    def use_again(self, count: int) -> None:
+        """So many were there already."""
 
 
 @contextmanager
-def progress(title: str, total: int, *, quiet: bool) -> Iterator[Advance]:
-    """A display on the standard error stream for ``total`` runs."""
+def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
+    """A display on the standard error stream."""
     if quiet or sys.stderr is None:
-        yield lambda count: None
+        yield _Nothing()
     elif sys.stderr.isatty():
-        with _bar(title, total) as advance:
-            yield advance
+        with _bar(title) as display:
+            yield display
     else:
-        yield _lines(title, total)
+        lines = _Lines(title)
+        yield lines
+        lines.say()
+
+
+class _Nothing:
+    def expect(self, count: int) -> None:
+        pass
+
+    def advance(self, count: int) -> None:
+        pass
+
+    def use_again(self, count: int) -> None:
+        pass
+
+
+class _Lines:
+    def __init__(self, title: str) -> None:
+        self._title, self._said = title, time.monotonic()
+        self._total = self._done = self._again = 0
+
+    def expect(self, count: int) -> None:
+        self._total += count
+
+    def advance(self, count: int) -> None:
+        self._done += count
+        if time.monotonic() - self._said >= _SECONDS_BETWEEN_LINES:
+            self.say()
+
+    def use_again(self, count: int) -> None:
+        self._again += count
+
+    def say(self) -> None:
+        more = f", {self._again} used again" if self._again else ""
+        self._said = time.monotonic()
+        with suppress(OSError):  # nobody listens
+            print(f"{self._title}: {self._done} of {self._total} runs{more}", file=sys.stderr, flush=True)
 
 
 @contextmanager
-def _bar(title: str, total: int) -> Iterator[Advance]:
+def _bar(title: str) -> Iterator[Progress]:
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
 
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as display:
-        task = display.add_task(title, total=total)
-        yield lambda count: display.advance(task, count)
+    with Bar(*columns, console=Console(stderr=True)) as bar:
+        task, again = bar.add_task(title, total=0), 0
 
+        class Display:
+            def expect(self, count: int) -> None:
+                bar.update(task, total=(bar.tasks[task].total or 0) + count)
 
-def _lines(title: str, total: int) -> Advance:
-    done, said = 0, time.monotonic()
+            def advance(self, count: int) -> None:
+                bar.advance(task, count)
 
-    def advance(count: int) -> None:
-        nonlocal done, said
-        done += count
-        now = time.monotonic()
-        if done == total or now - said >= _SECONDS_BETWEEN_LINES:
-            said = now
-            with suppress(OSError):  # nobody listens
-                print(f"{title}: {done} of {total} runs", file=sys.stderr, flush=True)
+            def use_again(self, count: int) -> None:
+                nonlocal again
+                again += count
+                bar.update(task, description=f"{title} ({again} used again)")
 
-    return advance
+        yield Display()

@@ -1,10 +1,20 @@
-"""What a run found out, put together: variables, coordinates and the attributes that say where it comes from."""
+"""What a batch found out, put together: variables, coordinates and the attributes that say where it comes from."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
+from roughmdr.batch.gathered import Found
+from roughmdr.batch.identity import versions
+from roughmdr.batch.rounds import Choice
+from roughmdr.batch.shard import DONE, FAILED, LAWS
 from roughmdr.labelled import Array, Labelled
+from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
+from roughmdr.scene.sections import Accuracy
 from roughmdr.statistics import summarise
 from roughmdr.store import provenance
 from roughmdr.variables import LAW, RUN
@@ -13,55 +23,127 @@ _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
-DONE, FAILED, NOT_RUN = 0, 1, 2
+_ESTIMATORS = ("sampled", "stratified", "expected")
+_ALWAYS = ("run_time", "numerical_error", "edge_slope", "profile_extent")
 
 
-LAWS = ("none", "jkr", "dugdale")
-
-
-def assemble(
-    plan: Plan,
-    variables: dict[str, Floats],
-    warnings: list[str],
-    command: str,
-    *,
-    run_time: Floats,
-    numerical_error: Floats,
-    tabor: Floats,
-    adhesion_law: Floats,
-) -> Labelled:
-    """The result, from ``variables`` [run, step] in SI, and over the runs: run times [s], numerical errors, the least
-    Tabor numbers and the laws of adhesion that were taken. ``warnings`` are for the user.
-    """
+def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Sequence[str], command: str) -> Labelled:
+    """The result, from all that was found in ``variables``; ``choices`` tell how each cell was computed."""
     scene = plan.scene
-    swept, realization = tuple(plan.sizes), ("realization",)
-    shape = (*plan.sizes.values(), scene.batch.realizations)
-    curves = {name: values.reshape(*shape, -1) for name, values in variables.items()}
-    run_time, error = run_time.reshape(shape), numerical_error.reshape(shape)
-    tabor, laws = np.where(np.isfinite(tabor), tabor, np.nan).reshape(shape), adhesion_law.reshape(shape)
-    coordinates = plan.coordinates()
-    data = {}
-    if scene.output.keep == "curves":
-        dims = (*swept, *realization)
-        data = {name: Array((*dims, "step"), values, LAW[name].attrs) for name, values in curves.items()}
-    else:
-        dims, count = swept, float(scene.batch.realizations)
-        snaps = np.array([cell.route.snaps() for cell in plan.cells]).reshape(*shape[:-1], -1)
-        for name in list(curves):
-            data |= summarise(name, (*dims, "step"), curves.pop(name), snaps)
-        data["realization_count"] = Array(dims, np.full(shape[:-1], count), RUN["realization_count"].attrs)
-        run_time, error = run_time.sum(axis=-1), error.max(axis=-1)
-        tabor, laws = tabor.min(axis=-1), laws.max(axis=-1)
-    status = np.full(run_time.shape, DONE, dtype=np.int8)
-    flags = {"flag_values": np.array([DONE, FAILED, NOT_RUN], dtype=np.int8), "flag_meanings": "done failed not_run"}
-    data["run_time"] = Array(dims, run_time, RUN["run_time"].attrs)
-    data["numerical_error"] = Array(dims, error, RUN["numerical_error"].attrs)
-    data["status"] = Array(dims, status, {"long_name": RUN["status"].long_name, **flags})
+    swept = tuple(plan.sizes)
+    statistics = scene.output.keep == "statistics"
+    cells = tuple(plan.sizes.values())
+    dims = swept if statistics else (*swept, "realization")
+    shape = cells if statistics else (*cells, found.values.shape[1])
+    snaps = np.array([cell.route.snaps() for cell in plan.cells])
+    data: dict[str, Array] = {}
+    for name in scene.output.variables:
+        row = list(variables).index(name)
+        if statistics:
+            of_variable, sem = found.tally.picked(np.s_[:, row]), found.sem[:, row]
+            over = summarise(name, (*dims, "step"), of_variable, sem, snaps)
+            data |= {key: array._replace(values=array.values.reshape(*cells, -1)) for key, array in over.items()}
+        else:
+            data[name] = Array((*dims, "step"), found.values[:, :, row].reshape(*shape, -1), LAW[name].attrs)
+    if statistics or scene.accuracy is not None:
+        count = np.array([choice.realizations for choice in choices], dtype=float).reshape(cells)
+        data["realization_count"] = Array(swept, count, RUN["realization_count"].attrs)
+    done = found.beside["status"] == DONE
+    extremes = {"edge_slope": found.beside["slope"], "profile_extent": found.beside["extent"]}
+    beside = found.beside | {name: np.where(done, values, np.nan) for name, values in extremes.items()}
+    for name in _ALWAYS:
+        data[name] = Array(dims, beside[name].reshape(shape), RUN[name].attrs)
+    data["status"] = _flags("status", dims, beside["status"].reshape(shape), ("done", "failed", "not_run"))
     if any(cell.scene.law.known for cell in plan.cells):
-        flags = {"flag_values": np.arange(len(LAWS), dtype=np.int8), "flag_meanings": " ".join(LAWS)}
-        data["tabor_number"] = Array(dims, tabor, RUN["tabor_number"].attrs)
-        data["adhesion_law"] = Array(dims, laws.astype(np.int8), {"long_name": RUN["adhesion_law"].long_name, **flags})
-    attrs = {"references": _REFERENCES, "seed": scene.seed, "scene": scene.toml, "left_out": "\n".join(plan.left_out)}
+        tabor = np.where(np.isfinite(beside["tabor"]), beside["tabor"], np.nan)
+        data["tabor_number"] = Array(dims, tabor.reshape(shape), RUN["tabor_number"].attrs)
+        data["adhesion_law"] = _flags("adhesion_law", dims, beside["law"].reshape(shape), LAWS)
+    # Texts are coordinates, so that one can reckon with the rest.
+    keys = np.array([choice.key for choice in choices], dtype=object).reshape(cells)
+    coordinates = {**plan.coordinates(), "cell_key": Array(swept, keys, {"long_name": RUN["cell_key"].long_name})}
+    if (beside["remark"] != "").any():
+        remarks = beside["remark"].reshape(shape)
+        coordinates["remark"] = Array(dims, remarks, {"long_name": RUN["remark"].long_name})
+    attrs: dict[str, Any] = {
+        "references": _REFERENCES,
+        "seed": scene.seed,
+        "scene": scene.toml,
+        "left_out": "\n".join(plan.left_out),
+        "versions": versions(),
+    }
+    warnings = _warnings(plan, found)
+    if scene.accuracy is not None:
+        data |= _reached(swept, cells, choices)
+        attrs["accuracy"] = _in_words(scene.accuracy, choices)
+        failed = (beside["status"].reshape(len(choices), -1) == FAILED).any(axis=1)
+        warnings += _missed(scene.accuracy, choices, failed)
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
-    return Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})
+    result = Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})
+    return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
+
+
+def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tuple[str, ...]) -> Array:
+    flags = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
+    return Array(dims, values.astype(np.int8), {"long_name": RUN[name].long_name, **flags})
+
+
+def _warnings(plan: Plan, found: Found) -> list[str]:
+    """What makes the numbers doubtful: said of the ensembles, and of the most that any contact comes to."""
+    beside = found.beside
+    done = beside["status"] == DONE
+    doubts = dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)
+    if not done.any():
+        return list(doubts)
+    jkr = done & (beside["law"] == LAWS.index("jkr"))
+    tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
+    return [*doubts, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
+
+
+def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[Choice]) -> dict[str, Array]:
+    """Which error each cell came to, and by which method."""
+    error = np.array([choice.error for choice in choices]).reshape(cells)
+    method = np.array([_ESTIMATORS.index(choice.estimator) for choice in choices]).reshape(cells)
+    return {
+        "accuracy_reached": Array(swept, error, RUN["accuracy_reached"].attrs),
+        "accuracy_method": _flags("accuracy_method", swept, method, _ESTIMATORS),
+    }
+
+
+def _in_words(accuracy: Accuracy, choices: Sequence[Choice]) -> str:
+    """The error asked for, what it took, and where the expected law was used."""
+    known = [choice for choice in choices if not math.isnan(choice.error)]
+    drawn = [choice.realizations for choice in known if choice.estimator != "expected"]
+    parts = [f"asked {accuracy.relative:g} of the largest mean force"]
+    if known:
+        parts.append(f"reached {max(choice.error for choice in known):.2g} in {len(known)} of {len(choices)} cells")
+    if drawn:
+        few, many = min(drawn), max(drawn)
+        parts.append(f"{few if few == many else f'{few} to {many}'} realisations in {len(drawn)} of them")
+    if len(drawn) < len(known):
+        parts.append(f"the expected law, which has no noise, in {len(known) - len(drawn)} of them")
+    return "; ".join(parts)
+
+
+def _missed(accuracy: Accuracy, choices: Sequence[Choice], failed: NDArray[np.bool_]) -> list[str]:
+    """What to say of cells that did not reach the error; those that failed say so themselves."""
+    said = []
+    missed = [choice for choice in choices if choice.error > accuracy.relative]
+    if missed:
+        expected = missed[0].estimator == "expected"  # only where no other method is allowed
+        why = (
+            "the expected law is not right enough, with accuracy.method 'auto' or 'sampled' more is drawn instead"
+            if expected
+            else f"accuracy.max_realizations, {accuracy.max_realizations}, is too low"
+        )
+        said.append(
+            f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {len(choices)} cells "
+            f"(up to {max(choice.error for choice in missed):.2g}): {why}"
+        )
+    without = [choice for choice, fails in zip(choices, failed, strict=True) if math.isnan(choice.error) and not fails]
+    if without:
+        said.append(
+            f"in {len(without)} of {len(choices)} cells none of {without[0].realizations} realisations had any force: "
+            "the error of the mean is not known"
+        )
+    return said

@@ -1,4 +1,4 @@
-"""What is kept of many realisations instead of their curves: mean, standard error, least and greatest."""
+"""What a result holds of many realisations instead of their curves: mean, standard error, least and greatest."""
 
 import math
 
@@ -6,31 +6,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.arguments import Floats
+from roughmdr.batch.tally import Tallies, Tally
 from roughmdr.labelled import Array
 from roughmdr.variables import LAW
 
 _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"
 
 
-def mean_and_error(values: Floats, axis: int) -> tuple[Floats, Floats]:
-    """Mean and its standard error over the realisations on an axis; the error of a single one is NaN."""
-    count = values.shape[axis]
-    _, powers = np.frexp(np.max(np.abs(values), axis=axis, keepdims=True))  # no square may leave the range of a float
-    scaled, power = np.ldexp(values, -powers), powers.squeeze(axis)
-    mean = np.asarray(np.ldexp(scaled.mean(axis=axis), power))
-    if count < 2:
-        return mean, np.full_like(mean, math.nan)
-    return mean, np.asarray(np.ldexp(scaled.std(axis=axis, ddof=1) / math.sqrt(count), power))
+def tally_of(values: Floats) -> Tally:
+    """Of the realisations along the first axis."""
+    tallies = Tallies()
+    tallies.add_all(0, values)
+    whole = tallies.total(len(values))
+    if whole is None:
+        raise AssertionError("there is at least one realisation")
+    return whole
 
 
-def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[np.bool_]) -> dict[str, Array]:
-    """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable [..., realization, step] over dims without realization.
+def summarise(
+    name: str, dims: tuple[str, ...], tally: Tally, sem: Floats, snaps: NDArray[np.bool_]
+) -> dict[str, Array]:
+    """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable over dims, from its tally and standard error.
 
     ``snaps`` [..., step] says where contacts may be at the point of letting go. NaN stands for a standard error that is
     not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
     """
     variable = LAW[name]
-    mean, sem = mean_and_error(values, axis=-2)
     remark = {}
     if name == "stiffness" and snaps.any():
         sem[snaps] = math.nan
@@ -40,8 +41,28 @@ def summarise(name: str, dims: tuple[str, ...], values: Floats, snaps: NDArray[n
         return Array(dims, numbers, {"units": variable.units, "long_name": f"{what} of {variable.long_name}", **attrs})
 
     return {
-        f"{name}_mean": array(mean, "mean", {"ancillary_variables": f"{name}_sem"}),
+        f"{name}_mean": array(tally.mean, "mean", {"ancillary_variables": f"{name}_sem"}),
         f"{name}_sem": array(sem, "standard error of the mean", remark),
-        f"{name}_min": array(values.min(axis=-2), "least", {}),
-        f"{name}_max": array(values.max(axis=-2), "greatest", {}),
+        f"{name}_min": array(tally.least, "least", {}),
+        f"{name}_max": array(tally.greatest, "greatest", {}),
     }
+
+
+def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Mean and its standard error over the realisations that are ``done`` [..., realization], cell by cell.
+
+    ``values`` lie over the same and, where there are more dimensions, over those too. NaN for the error of a single
+    realisation, and for both where none is done.
+    """
+    cells = done.shape[:-1]
+    values = np.moveaxis(values, len(cells), 0)
+    if done.all():
+        whole = tally_of(values)
+        return whole.mean, whole.standard_error
+    mean, error = (np.full(values.shape[1:], math.nan) for _ in range(2))
+    for cell in np.ndindex(cells):
+        kept = values[(done[cell], *cell)]
+        if len(kept):
+            whole = tally_of(kept)
+            mean[cell], error[cell] = whole.mean, whole.standard_error
+    return mean, error

@@ -4,6 +4,7 @@ import contextlib
 import os
 import platform
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _ARRAYS = ("separation", "branch", "status", "run_time", "numerical_error", "seed")
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _TEMPORARY = ".roughmdr."
+_NETCDF = threading.Lock()  # the library crashes where two threads are in it
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 
 
@@ -51,6 +53,8 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
             raise StoreError(f"{path}: is read from; the output must be another file")
         if not path.parent.is_dir():
             raise StoreError(f"{path}: the folder {path.parent} does not exist")
+        if not _utf8(path.parent.absolute()):
+            raise StoreError(f"{path.name!r}: the name of its folder is not UTF-8, and netCDF cannot write there")
         descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY, dir=path.parent)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror}") from None
@@ -58,23 +62,39 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
     Path(name).unlink()
 
 
+def _utf8(path: Path) -> bool:
+    return str(path).encode(errors="replace").decode() == str(path)
+
+
 @contextlib.contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A temporary name beside ``path`` to write to; it takes the place of ``path`` when all is written and on disk."""
-    check_writable(path)
-    with tempfile.NamedTemporaryFile(prefix=_TEMPORARY, suffix=".part", dir=path.parent, delete=False) as made:
-        temporary = Path(made.name)
+def cannot_be_written(path: Path) -> Iterator[None]:
+    """Whatever the system has against writing within is a StoreError that names ``path``."""
     try:
-        yield temporary
-        with temporary.open("rb") as written:
-            os.fsync(written.fileno())
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-        _sync_folder(path.parent)
+        yield
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """A temporary name to write to, which takes the place of ``path`` when all is written and on disk.
+
+    It is in ``folder``, which must be on the same disk; by default beside ``path``.
+    """
+    check_writable(path)
+    place = folder or path.parent
+    with cannot_be_written(path):
+        with tempfile.NamedTemporaryFile(prefix=_TEMPORARY, suffix=".tmp", dir=place, delete=False) as made:
+            temporary = Path(made.name)
+        try:
+            yield temporary
+            with temporary.open("rb") as written:
+                os.fsync(written.fileno())
+            temporary.chmod(0o666 & ~_umask())
+            temporary.replace(path)
+            sync_folder(path.parent)
+        finally:
+            temporary.unlink(missing_ok=True)
 
 
 def _umask() -> int:
@@ -83,7 +103,7 @@ def _umask() -> int:
     return mask
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Make the new name last through a power cut, on systems that let a folder be opened."""
     with contextlib.suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
@@ -93,9 +113,9 @@ def _sync_folder(folder: Path) -> None:
             os.close(descriptor)
 
 
-def write(data: Labelled, path: Path) -> None:
-    """Put ``data`` at ``path`` as netCDF-4, atomically; StoreError where that fails."""
-    with replacing(path) as temporary:
+def write(data: Labelled, path: Path, folder: Path | None = None) -> None:
+    """Put ``data`` at ``path`` as netCDF-4, atomically, by way of ``folder``; StoreError where that fails."""
+    with replacing(path, folder) as temporary:
         try:
             _write_netcdf(data, temporary)
         except RuntimeError as error:  # so netCDF4 says that a disk is full
@@ -106,7 +126,7 @@ def _write_netcdf(data: Labelled, path: Path) -> None:
     import netCDF4
 
     beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
-    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+    with _NETCDF, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(data.attrs)
         for dimension, size in data.sizes.items():
             file.createDimension(dimension, size)
@@ -131,7 +151,7 @@ def read(path: Path) -> Labelled:
     try:
         if not path.is_file():
             raise StoreError(f"{path}: no such file")
-        with netCDF4.Dataset(path) as file:
+        with _NETCDF, netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             data = _read_netcdf(file)
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
@@ -168,6 +188,8 @@ def _read_netcdf(file: "netCDF4.Dataset") -> Labelled:
         beside |= set(attrs.pop("coordinates", "").split())
         attrs.pop("_FillValue", None)
         arrays[name] = Array(variable.dimensions, np.asarray(variable[...]), attrs)
+        if arrays[name].values.ndim != len(variable.dimensions):  # letters of a text, in the classic format
+            raise ValueError(f"{name} is a text made of letters; it must be one of netCDF-4")
     return Labelled(
         {name: array for name, array in arrays.items() if name not in beside},
         {name: array for name, array in arrays.items() if name in beside},

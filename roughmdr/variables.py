@@ -73,5 +73,11 @@ RUN = _table(
     ("status", "1", "what became of the realization"),
     ("tabor_number", "1", "least Tabor number of the asperities"),
     ("adhesion_law", "1", "law of adhesion that was taken"),
+    ("edge_slope", "1", "largest slope of a profile at the edge of its contact"),
+    ("profile_extent", "1", "largest contact radius over the radius where its profile ends"),
+    ("remark", "", "why it failed, or what makes it doubtful"),
+    ("cell_key", "", "hash of all that decides the numbers of a cell, and of the versions"),
+    ("accuracy_reached", "1", "standard error of the mean force over its largest value; of an expected law its error"),
+    ("accuracy_method", "1", "how the cell was computed"),
 )
 """Variables that stand in every result."""

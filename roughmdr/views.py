@@ -4,7 +4,9 @@ import tomllib
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
+from roughmdr.batch.shard import DONE
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.variables import LAW
@@ -20,9 +22,21 @@ def held_variables(result: Labelled) -> list[str]:
 
 
 def estimator_of(result: Labelled) -> str:
-    """How the realisations were made."""
+    """How the realisations were made; where not all alike, drawn."""
+    if "accuracy_method" in result.variables:
+        method = result.variables["accuracy_method"]
+        taken = {str(method.attrs["flag_meanings"]).split()[number] for number in np.unique(method.values)}
+        return taken.pop() if len(taken) == 1 else "sampled"
     estimator = tomllib.loads(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled")
     return str(estimator)
+
+
+def method_of(result: Labelled, cell: tuple[int, ...]) -> str:
+    """How a cell was computed, where that was for the run to find out; else empty."""
+    if "accuracy_method" not in result.variables:
+        return ""
+    method = result.variables["accuracy_method"]
+    return str(method.attrs["flag_meanings"].split()[int(method.values[cell])])
 
 
 def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:
@@ -35,11 +49,28 @@ def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:
     return names
 
 
+def done_of(result: Labelled) -> NDArray[np.bool_]:
+    """Which runs, or cells where the runs were not kept, were computed."""
+    return np.asarray(result.variables["status"].values == DONE)
+
+
 def realizations_of(result: Labelled) -> int:
     """How many realisations a result is made from."""
     if "realization_count" in result.variables:
         return int(result.variables["realization_count"].values.max())
     return result.sizes["realization"]
+
+
+def realizations_in_words(result: Labelled) -> str:
+    """How many realisations a picture is of, and what it shows of them."""
+    if estimator_of(result) == "expected":
+        return "expected law"
+    most = least = realizations_of(result)
+    if "realization_count" in result.variables:
+        least = int(result.variables["realization_count"].values.min())
+    if most == 1:
+        return "one realisation"
+    return f"{most if most == least else f'{least} to {most}'} realisations, mean ± 2 standard errors"
 
 
 def swept_sizes(result: Labelled) -> dict[str, int]:
@@ -57,7 +88,7 @@ def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     names = list(swept_sizes(result))
     parts = []
     for name, array in result.coordinates.items():
-        if name not in ("separation", "branch"):
+        if name not in ("separation", "branch", "cell_key", "remark"):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
             unit = array.attrs.get("units", "1")
             shown = f"{value:.6g}" if array.values.dtype.kind == "f" else str(value)

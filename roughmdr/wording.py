@@ -40,3 +40,10 @@ def in_cells(lines: Iterable[str], cells: int) -> list[str]:
     return [
         line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in Counter(lines).items()
     ]
+
+
+def seconds_in_words(seconds: float) -> str:
+    """A time with a unit that suits it."""
+    if seconds < 100.0:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60.0:.3g} min" if seconds < 6000.0 else f"{seconds / 3600.0:.3g} h"

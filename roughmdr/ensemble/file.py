@@ -1,6 +1,5 @@
 """source = "file": an ensemble that was saved, by ``roughmdr generate`` or by the user."""
 
-from functools import cached_property
 from typing import Literal
 
 from roughmdr.ensemble.ensemble import Ensemble
@@ -13,8 +12,7 @@ class FileAsperities(FromFile):
 
     source: Literal["file"]
 
-    @cached_property
-    def held(self) -> Ensemble:
+    def read(self) -> Ensemble:
         """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
         import xarray as xr
 

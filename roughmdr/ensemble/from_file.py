@@ -1,6 +1,8 @@
 """What the sources that read their asperities from a file have in common."""
 
+import hashlib
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -9,7 +11,7 @@ from pydantic import AfterValidator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
-from roughmdr.errors import RoughmdrError
+from roughmdr.errors import RoughmdrError, SceneError
 
 
 def _is_file(value: str) -> str:
@@ -30,10 +32,34 @@ class FromFile(Source):
 
     file: Annotated[str, AfterValidator(_is_file)]
 
+    def read(self) -> Ensemble:
+        """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
+        raise NotImplementedError
+
+    @cached_property
+    def _read_once(self) -> tuple[str, Ensemble]:
+        before = self._hash()
+        found = self.read()
+        if self._hash() != before:
+            raise SceneError(f"{self.file}: changed while it was read")
+        return before, found
+
+    def _hash(self) -> str:
+        try:
+            with open(self.file, "rb") as file:
+                return hashlib.file_digest(file, "sha256").hexdigest()
+        except OSError as error:
+            raise SceneError(f"{self.file}: cannot be read: {error.strerror}") from None
+
     @property
     def held(self) -> Ensemble:
         """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
-        raise NotImplementedError
+        return self._read_once[1]
+
+    @property
+    def content(self) -> str:
+        """A hash of the file as it was when the asperities were read."""
+        return self._read_once[0]
 
     @property
     def shape_name(self) -> str:

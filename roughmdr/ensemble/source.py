@@ -39,6 +39,11 @@ class Source(Section):
         return ()
 
     @property
+    def content(self) -> str:
+        """A hash of what is in those files; empty where there are none."""
+        return ""
+
+    @property
     def expected_count(self) -> float:
         """How many asperities there are, on average."""
         raise NotImplementedError

@@ -1,7 +1,6 @@
 """source = "surface": the summits of a measured height map, as paraboloids."""
 
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -44,8 +43,7 @@ class SurfaceAsperities(FromFile):
         unit_factor(value or "", "m")
         return value
 
-    @cached_property
-    def held(self) -> Ensemble:
+    def read(self) -> Ensemble:
         """The asperities of the map; SceneError where it cannot be read or has none."""
         path = Path(self.file)
         surface = read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)

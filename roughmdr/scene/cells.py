@@ -15,6 +15,9 @@ from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import in_words, read_sweep
 
+_Known = dict[tuple[str, tuple[tuple[str, object], ...]], tuple[dict[str, Any], Any]]
+"""Parts of a scene, as tables and read, by their names and what is swept of them."""
+
 
 def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, list[Fault]]:
     """The scene with its cells, or all that is wrong with it."""
@@ -28,13 +31,14 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
     # What is wrong with a value that was only filled in is for the cells to find.
     faults += found + [fault for fault in faults_of_base if fault.key not in filled]
     if base is None and not faults:
-        base, faults = _read_cell(plain, first, path, {})
+        base, faults = _read_cell(plain, first, path, {}, {})
     if base is None or sweep is None or faults:
         return None, faults
     parts = {name: getattr(base, name) for name in Scene.model_fields if name != "sweep"}
+    known: _Known = {}
     cells, faults_of_cells, where = [], Counter[Fault](), dict[Fault, str]()
     for values in sweep.cells():
-        cell, found = _read_cell(plain, values, path, parts)
+        cell, found = _read_cell(plain, values, path, parts, known)
         for fault in found:
             faults_of_cells[fault] += 1
             where.setdefault(fault, in_words(values))
@@ -86,17 +90,32 @@ def _fill(plain: dict[str, Any], first: dict[str, object]) -> tuple[set[str], li
 
 
 def _read_cell(
-    plain: dict[str, Any], values: dict[str, object], path: Path | None, parts: dict[str, Any]
+    plain: dict[str, Any], values: dict[str, object], path: Path | None, parts: dict[str, Any], known: _Known
 ) -> tuple[Scene | None, list[Fault]]:
-    """One cell of a sweep; those of the read ``parts`` that no swept key belongs to are taken as they are."""
-    swept = {key.split(".")[0] for key in values}
-    table = {name: _copied(part) if name in swept else part for name, part in plain.items()}
+    """One cell of a sweep; those of the read ``parts`` that no swept key belongs to are taken as they are.
+
+    Swept parts are taken from ``known``, where one was read with the same values before, and put there.
+    """
+    swept: dict[str, tuple[tuple[str, object], ...]] = {}
     for key, value in values.items():
-        try:
-            put(table, key, value)
-        except RoughmdrError as error:
-            return None, [Fault(f"sweep.{key}", "", str(error))]
-    cell, faults = _read(table, path, {name: part for name, part in parts.items() if name not in swept})
+        name = key.split(".")[0]
+        swept[name] = (*swept.get(name, ()), (key, value))
+    alike = {name: known[name, own] for name, own in swept.items() if (name, own) in known}
+    ready = {name: part for name, part in parts.items() if name not in swept}
+    table = {name: _copied(part) if name in swept and name not in alike else part for name, part in plain.items()}
+    table |= {name: part_table for name, (part_table, _) in alike.items()}
+    for name, own in swept.items():
+        if name in alike:
+            continue
+        for key, value in own:
+            try:
+                put(table, key, value)
+            except RoughmdrError as error:
+                return None, [Fault(f"sweep.{key}", "", str(error))]
+    cell, faults = _read(table, path, ready | {name: part for name, (_, part) in alike.items()})
+    if cell is not None:
+        for name, own in swept.items():
+            known[name, own] = table[name], getattr(cell, name)
     return cell, [_at_swept_key(fault, values) for fault in faults]
 
 

@@ -26,6 +26,7 @@ from roughmdr.variables import DEFAULT, LAW
 
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _ERROR = 0.01  # of the largest force, by which "auto" may be off unless the scene says otherwise
+_MOST = 1_000_000_000  # realisations
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, most=0.5))]
 
 
@@ -112,7 +113,18 @@ class Batch(Section):
     """
 
     estimator: Literal["sampled", "stratified", "expected"] = "sampled"
-    realizations: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000_000))] = 1
+    realizations: Annotated[int, BeforeValidator(WholeNumber(1, _MOST))] = 1
+
+
+class Accuracy(Section):
+    """[accuracy]: realisations are added until the standard error of the mean force, over its largest value, is met.
+
+    ``method`` "auto" takes the expected law of each cell where there is one that is right enough, and else draws.
+    """
+
+    relative: Annotated[float, BeforeValidator(Quantity("1", above=0.0, most=1.0))]
+    max_realizations: Annotated[int, BeforeValidator(WholeNumber(2, _MOST))] = 10_000
+    method: Literal["auto", "sampled", "stratified", "expected"] = "auto"
 
 
 def _misfit(key: str, message: str) -> PydanticCustomError:
@@ -137,6 +149,7 @@ class Scene(Section):
     path: Path
     output: Output = Output()
     batch: Batch = Batch()
+    accuracy: Accuracy | None = None
     sweep: InstanceOf[Sweep] = Sweep()
 
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
@@ -177,6 +190,7 @@ class Scene(Section):
             raise _misfit("batch.realizations", f"must be 1 with source {source!r}: nothing of it is drawn")
         if self.batch.estimator != "sampled" and (reason := self.asperities.unfit_for(self.batch.estimator)):
             raise _misfit("batch.estimator", f"cannot be {self.batch.estimator!r}: {reason}")
+        self._accuracy_fits()
         if self.batch.estimator == "expected" and self.batch.realizations > 1:
             raise _misfit("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
         if not self.asperities.drawn:
@@ -194,6 +208,29 @@ class Scene(Section):
                 f"can be as low as {exponent:g}; with adhesion it must be above 0.5",
             )
         return self
+
+    def _accuracy_fits(self) -> None:
+        if self.accuracy is None:
+            return
+        if not self.asperities.drawn:
+            raise _misfit("accuracy", f"does not go with source {self.asperities.source!r}: nothing of it is drawn")
+        if "estimator" in self.batch.model_fields_set:
+            raise _misfit("batch.estimator", "is chosen by accuracy.method where there is an [accuracy]")
+        if self.batch.realizations > self.accuracy.max_realizations:
+            most = self.accuracy.max_realizations
+            raise _misfit("batch.realizations", f"must be at most accuracy.max_realizations, {most}")
+        method = self.accuracy.method
+        if method != "auto" and (reason := self.asperities.unfit_for(method)):
+            raise _misfit("accuracy.method", f"cannot be {method!r}: {reason}")
+
+    @property
+    def estimator(self) -> str:
+        """How its realisations are made, to begin with: with accuracy.method "auto" there may come another one."""
+        if self.accuracy is None:
+            return self.batch.estimator
+        if self.accuracy.method != "auto":
+            return self.accuracy.method
+        return "sampled" if self.asperities.unfit_for("expected") else "expected"
 
     @property
     def modulus(self) -> float:

@@ -1,0 +1,149 @@
+"""What is there of earlier runs: a result at the output, shards that were kept; and whether they are of use."""
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.batch.held import Held
+from roughmdr.batch.identity import changes, versions
+from roughmdr.batch.parts import Parts
+from roughmdr.batch.shard import DONE, FAILED, Shard
+from roughmdr.errors import StoreError
+from roughmdr.labelled import Labelled
+from roughmdr.plan import Plan
+from roughmdr.store import read
+
+_MOST_CHANGES = 5
+_SHAPING = ("title", "output", "batch", "accuracy", "sweep")
+"""Parts of a scene that say what a result looks like and how many realisations it has."""
+_WAYS_OUT = "give another output, or --fresh (resume=False) to replace it"
+
+
+def earlier(target: Path) -> Labelled | None:
+    """The result at ``target``, None where nothing is; StoreError where it is none, or was changed later."""
+    if not target.exists():
+        return None
+    try:
+        old = read(target)
+    except StoreError as error:
+        raise StoreError(f"{error}. It is there already: {_WAYS_OUT}") from None
+    try:
+        tomllib.loads(old.attrs["scene"])
+    except tomllib.TOMLDecodeError as error:
+        raise StoreError(f"{target}: its scene cannot be read ({error}): {_WAYS_OUT}") from None
+    if old.attrs.get("checksum", old.checksum()) != old.checksum():
+        raise StoreError(f"{target}: its numbers are not those that were written: {_WAYS_OUT}")
+    return old
+
+
+def is_finished(old: Labelled, plan: Plan, keys: Sequence[set[str]]) -> bool:
+    """Whether a result is just what is asked for; ``keys`` are those that each cell may have."""
+    asked, was = (tomllib.loads(text) for text in (plan.scene.toml, old.attrs["scene"]))
+    same = all(asked.get(part) == was.get(part) for part in _SHAPING)
+    same = same and list(asked.get("sweep", ())) == list(was.get("sweep", ()))  # in this order are its dimensions
+    held = _keys(old)
+    same = same and len(held) == len(keys) and all(key in may for key, may in zip(held, keys, strict=True))
+    return same and not (old.variables["status"].values == FAILED).any()
+
+
+def _keys(old: Labelled) -> list[str]:
+    return old.coordinates["cell_key"].values.ravel().tolist() if "cell_key" in old.coordinates else []
+
+
+def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Plan, held: Held) -> None:
+    """Add what there is of earlier runs to ``held``: the shards that were kept, and the curves of a result.
+
+    StoreError, saying what changed, where there are results and none of them is of use.
+    """
+    matches, there = False, list[str]()
+    if parts is not None and not parts.empty:
+        matches = sum(map(held.add, parts.held())) > 0
+        if not matches:
+            there += _what_changed(parts.scene, parts.versions, plan)
+    if old is not None and held.wants(_keys(old)):
+        matches = True
+        if less := _what_would_go(old, plan, held):
+            raise StoreError(f"{target}: holds {less}, which this scene does not ask for: {_WAYS_OUT}")
+        if "realization" in old.sizes:
+            shard = _shard_of(old)
+            held.add(lambda: shard)
+    elif old is not None:
+        there += _what_changed(old.attrs["scene"], old.attrs.get("versions", "other versions"), plan)
+    if there and not matches:
+        unique = list(dict.fromkeys(there))
+        more = f" and {len(unique) - _MOST_CHANGES} more" if len(unique) > _MOST_CHANGES else ""
+        raise StoreError(
+            f"{target}: holds results of another scene: {'; '.join(unique[:_MOST_CHANGES])}{more}: {_WAYS_OUT}"
+        )
+
+
+def _what_would_go(old: Labelled, plan: Plan, held: Held) -> str:
+    """Cells and realisations of a result that would be lost; empty for none."""
+    keys = _keys(old)
+    strangers = sum(not held.wants([key]) for key in keys)
+    if strangers:
+        return f"{strangers} cell{'s' * (strangers > 1)} more"
+    batch, status = plan.scene.batch, old.variables["status"]
+    if plan.scene.accuracy is not None:
+        return ""
+    count = old.variables["realization_count"].values.max() if "realization" not in old.sizes else 0
+    if "realization" in old.sizes:
+        done = (status.values == DONE).reshape(-1, status.values.shape[-1])
+        count = max((int(row.nonzero()[0][-1]) + 1 for row in done if row.any()), default=0)
+    return f"{int(count)} realisations" if count > batch.realizations else ""
+
+
+def _what_changed(scene: str, made_with: str, plan: Plan) -> list[str]:
+    """Why no cell of a plan is one of a scene, in words."""
+    try:
+        changed = list(changes(scene, plan.scene.toml))
+    except tomllib.TOMLDecodeError:
+        changed = ["its scene cannot be read"]
+    if made_with != versions():
+        changed.append(f"it was made with {made_with}, this is {versions()}")
+    reads = any(cell.scene.asperities.inputs for cell in plan.cells)
+    return changed or ["a file that it reads holds something else" if reads else "its cells are others"]
+
+
+def _shard_of(old: Labelled) -> Shard:
+    """The curves of a result that were computed, as a shard."""
+    status = old.variables["status"]
+    cells = status.values.reshape(-1, status.values.shape[-1])
+    cell, first = np.nonzero(cells == DONE)
+    names = [name for name, array in old.variables.items() if array.dims == (*status.dims, "step")]
+
+    def column(name: str, default: float) -> np.ndarray:
+        if name not in old.variables:
+            return np.full(cell.size, default)
+        return old.variables[name].values.reshape(cells.shape)[cell, first]
+
+    tabor = column("tabor_number", np.inf)
+    nothing = np.empty((cell.size, 0, 0))
+    return Shard(
+        keys=tuple(_keys(old)),
+        variables=tuple(names),
+        cell=cell,
+        first=first,
+        size=np.ones(cell.size, dtype=np.int64),
+        values=np.stack([old.variables[name].values.reshape(*cells.shape, -1)[cell, first] for name in names], axis=1),
+        spread=nothing,
+        least=nothing,
+        greatest=nothing,
+        run_time=column("run_time", 0.0),
+        numerical_error=column("numerical_error", 0.0),
+        tabor=np.where(np.isnan(tabor), np.inf, tabor),
+        law=column("adhesion_law", 0).astype(np.int64),
+        slope=column("edge_slope", 0.0),
+        extent=column("profile_extent", 0.0),
+        status=np.full(cell.size, DONE, dtype=np.int64),
+        remark=_remarks(old)[cell, first],
+    )
+
+
+def _remarks(old: Labelled) -> NDArray[np.str_]:
+    shape = old.variables["status"].values.shape
+    remarks = old.coordinates["remark"].values if "remark" in old.coordinates else np.full(shape, "")
+    return remarks.astype(str).reshape(-1, shape[-1])

@@ -1,0 +1,94 @@
+"""Keeps what is finished: shards on the disk while a batch runs, by one thread, and the result at its end."""
+
+import os
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from roughmdr.batch.identity import versions
+from roughmdr.batch.parts import Parts, locked_parts, parts_of
+from roughmdr.batch.shard import FAILED, Shard
+from roughmdr.errors import StoreError
+from roughmdr.labelled import Labelled
+from roughmdr.store import write
+
+_LONGEST = 255  # bytes of a file's name
+_WAITING = 16  # shards that may wait to be written before the batch does
+
+
+class Keeper:
+    """Of one output; it holds the lock of its parts, unless its name is too long for them."""
+
+    def __init__(self, target: Path, stack: ExitStack) -> None:
+        self.target, self._stack = target, stack
+        self.parts: Parts | None = None
+        self._writer: ThreadPoolExecutor | None = None
+        self._pending: deque[Future[None]] = deque()
+        if len(os.fsencode(parts_of(target).name)) <= _LONGEST:
+            self.parts = stack.enter_context(locked_parts(target))
+
+    def clear(self) -> None:
+        """Take away what an earlier run kept."""
+        if self.parts is not None:
+            self.parts.remove()
+
+    def begin(self, scene: str) -> None:
+        """From now on there is something to lose: keep shards of this scene."""
+        if self._writer is None:
+            if self.parts is None:
+                raise StoreError(f"{self.target}: the name is too long for a folder of parts; give a shorter one")
+            self.parts.begin(scene, versions())
+            self._writer = self._stack.enter_context(ThreadPoolExecutor(1, "roughmdr-writer"))
+
+    def put(self, shard: Shard) -> None:
+        """Keep a shard, if shards are kept, without the runs of it that failed; StoreError where that cannot be."""
+        done = shard.rows((shard.status != FAILED).nonzero()[0])
+        if self._writer is None or self.parts is None or not len(done.first):
+            return
+        self._pending.append(self._writer.submit(self.parts.put, done))
+        while self._pending and (self._pending[0].done() or len(self._pending) > _WAITING):
+            self._pending.popleft().result()
+
+    def flush(self) -> None:
+        """All shards are on the disk when this returns."""
+        while self._pending:
+            self._pending.popleft().result()
+
+    def finish(self, result: Labelled, *, whole: bool) -> None:
+        """Write the result; the parts go if it is ``whole``: if no run failed, and all that was kept is in it."""
+        self.flush()
+        write(result, self.target, self._near())
+        if self.parts is not None and whole:
+            self.parts.remove()
+
+    def _near(self) -> Path | None:
+        """Where the result is best written to: with the parts, so that the next run takes away what this one may leave.
+
+        None where netCDF cannot write there, or the result could not take its place from there.
+        """
+        if self.parts is None:
+            return None
+        folder = self.parts.folder
+        named = os.fsencode(folder.name).decode(errors="replace") == folder.name
+        return folder if named and folder.stat().st_dev == self.target.parent.stat().st_dev else None
+
+    @property
+    def begun(self) -> bool:
+        """Whether shards are kept from now on."""
+        return self._writer is not None
+
+    @property
+    def said(self) -> str:
+        """What is safe, in words; empty where nothing is."""
+        if self.parts is None or self.parts.empty or not self.parts.folder.is_dir():
+            return ""
+        return f"what is finished is kept in {self.parts.folder}; the same command goes on from there"
+
+
+@contextmanager
+def keeping(target: Path | None) -> Iterator[Keeper | None]:
+    """The keeper of an output, None where there is none."""
+    with ExitStack() as stack:
+        yield None if target is None else Keeper(target, stack)
