@@ -6,6 +6,8 @@ import xarray as xr
 from scenes import scene
 
 import roughmdr as rm
+from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.tasks import cut
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
@@ -25,7 +27,9 @@ def base() -> xr.Dataset:
 @pytest.mark.parametrize("chunk", [1, 7, 16])
 def test_bits_do_not_depend_on_workers_or_chunks(base: xr.Dataset, workers: int, chunk: int) -> None:
     plan = make_plan(read(scene()), chunk)
-    assert [number for task in plan.tasks for number in task] == list(range(16))
+    tasks = cut(plan, Rounds(plan).begin(), plan.scene.output.variables, workers)
+    assert [n for task in tasks for stretch in task for n in range(stretch.first, stretch.last)] == list(range(16))
+    assert len(tasks) == -(-16 // chunk)
     assert_same_bits(base, execute(plan, None, workers=workers, quiet=True).to_xarray())
 
 
@@ -52,9 +56,10 @@ def test_a_realisation_equals_the_ensemble_pressed_alone(base: xr.Dataset) -> No
 
 def test_the_contract_of_the_result(base: xr.Dataset) -> None:
     assert base.sizes == {"realization": 16, "step": 80}
-    assert set(base.coords) == {"separation", "branch"}
+    assert set(base.coords) == {"separation", "branch", "cell_key"}
     assert list(base.data_vars) == [
-        "force", "contact_area", "contact_count", "stiffness", "run_time", "numerical_error", "status",
+        "force", "contact_area", "contact_count", "stiffness", "run_time", "numerical_error",
+        "edge_slope", "profile_extent", "status",
     ]  # fmt: skip
     for name in ("force", "contact_area", "contact_count", "stiffness"):
         assert base[name].dims == ("realization", "step")

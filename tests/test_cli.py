@@ -93,17 +93,17 @@ def test_a_picture_of_a_crooked_path_with_an_odd_title(small: Path) -> None:
 
 _INTERRUPTED_IN_THE_FIRST_TASK = """
 import os, signal
-import roughmdr.runner as runner
+import roughmdr.runner.local as local
 from roughmdr.cli import main
 
-compute, signals = runner.compute_shard, [signal.SIGINT]
+compute, signals = local.compute, [signal.SIGINT]
 
 def interrupted(*arguments):
     if signals:
         os.kill(os.getpid(), signals.pop())
     return compute(*arguments)
 
-runner.compute_shard = interrupted
+local.compute = interrupted
 main()
 """
 

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,10 @@ from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.analysis import pull_off_force
+from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.tasks import cut
 from roughmdr.cli import main
+from roughmdr.errors import FailedRuns
 from roughmdr.plan import make_plan
 from roughmdr.scene import read
 from roughmdr.store import read as read_result
@@ -138,8 +142,14 @@ def test_one_mistake_is_said_once_and_counted() -> None:
 
 def test_a_run_that_cannot_be_computed_says_which() -> None:
     table = scene(sweep={"asperities.radius": ["50 um", "1e300 m"]}, batch=None)
-    with pytest.raises(rm.OutOfRange, match=r"asperities\.radius = 1e300 m, realisation 0: "):
-        rm.run(table)
+    with pytest.warns(FailedRuns, match="1 of 2 failed"):
+        found = rm.run(table)
+    np.testing.assert_array_equal(found.status, [[0], [1]])
+    assert "OutOfRange: " in found.remark.item(1)
+    assert np.isnan(found.force[1]).all()
+    alone = scene(asperities={**ASPERITIES, "radius": "1e300 m"}, batch={"realizations": 2})
+    with pytest.raises(rm.OutOfRange, match=r"^realisation 0: "):
+        rm.run(alone)
 
 
 @pytest.mark.parametrize(
@@ -251,10 +261,13 @@ def test_a_plan_is_not_disturbed_by_files_in_the_folder(folder: Path) -> None:
 
 
 def test_a_huge_batch_is_planned_at_once() -> None:
-    plan = make_plan(read(scene(batch={"realizations": 1_000_000_000}, asperities={**ASPERITIES, "count": 1})))
-    assert plan.tasks[0].start == 0
-    assert plan.tasks[-1].stop == 1_000_000_000
-    assert all(a.stop == b.start for a, b in zip(plan.tasks[:-1], plan.tasks[1:], strict=True))
+    huge = {"batch": {"realizations": 1_000_000_000}, "output": {"keep": "statistics"}}
+    plan = make_plan(read(scene(**huge, asperities={**ASPERITIES, "count": 1})))
+    tasks = [stretch for (stretch,) in cut(plan, Rounds(plan).begin(), ["force"], workers=2)]
+    assert len(tasks) < 100_000
+    assert tasks[0].first == 0
+    assert tasks[-1].last == 1_000_000_000
+    assert all(a.last == b.first for a, b in pairwise(tasks))
 
 
 def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None:

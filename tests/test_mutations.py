@@ -33,6 +33,7 @@ BASES: dict[str, dict[str, Any]] = {
         **SCENE,
         "material": {"effective_modulus": "4 MPa"},
         "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
+        "accuracy": {"relative": 0.1, "max_realizations": 20, "method": "sampled"},
     },
     "populations": {
         **SCENE,
@@ -230,7 +231,9 @@ def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> N
     assert len(ALL) > 400
     for table in BASES.values():
         (folder / "right.toml").write_text(tomli_w.dumps(table))
-        done = CliRunner().invoke(main, ["run", str(folder / "right.toml"), "-o", str(folder / "right.nc"), "--quiet"])
+        done = CliRunner().invoke(
+            main, ["run", str(folder / "right.toml"), "-o", str(folder / "right.nc"), "--quiet", "--fresh"]
+        )
         assert done.exit_code == 0, done.output
     for made in ("right.toml", "right.nc"):
         (folder / made).unlink()

@@ -42,7 +42,9 @@ def test_it_is_one_flat_netcdf_4_file(result: xr.Dataset, tmp_path: Path) -> Non
 
 
 def test_an_old_file_is_replaced(result: xr.Dataset, tmp_path: Path) -> None:
-    again = rm.run(scene(seed=8), tmp_path / "out.nc")
+    with pytest.raises(rm.StoreError, match="seed was 7, is 8: give another output, or --fresh"):
+        rm.run(scene(seed=8), tmp_path / "out.nc")
+    again = rm.run(scene(seed=8), tmp_path / "out.nc", resume=False)
     assert read(tmp_path / "out.nc").to_xarray().force.equals(again.force)
     assert not again.force.equals(result.force)
 

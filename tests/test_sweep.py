@@ -59,7 +59,8 @@ def test_a_product_of_three_by_five_by_thirty_two(tmp_path: Path) -> None:
     assert ds.adhesion_work.to_numpy().tolist() == [0.01, 0.02, 0.05]
     assert ds.asperities_height_std.sel(asperities_height_std=1e-6) == 1e-6
     units = {name: ds[name].attrs.get("units") for name in ds.coords}
-    assert units == {"adhesion_work": "J m-2", "asperities_height_std": "m", "separation": "m", "branch": None}
+    texts = {"branch": None, "cell_key": None}
+    assert units == {"adhesion_work": "J m-2", "asperities_height_std": "m", "separation": "m", **texts}
     assert ds.separation.dims == ("asperities_height_std", "step")
     assert (ds.status == 0).all()
     assert ds.run_time.dims == ds.numerical_error.dims == ("adhesion_work", "asperities_height_std", "realization")

@@ -1,0 +1,154 @@
+"""Batches as processes of their own, to be disturbed, and what they leave behind."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import psutil
+import tomli_w
+import xarray as xr
+from scenes import ASPERITIES, scene
+
+_CLI = "from roughmdr.cli import main; main()"
+_IN_CHUNKS = """
+import sys
+import roughmdr.plan as plan
+chunk, make_plan = int(sys.argv.pop(1)), plan.make_plan
+plan.make_plan = lambda scene: make_plan(scene, chunk)
+"""
+PATIENCE = 120.0
+"""After so long [s] something hangs."""
+
+
+def slow_scene(runs: int = 96, count: int = 10_000, **changes: Any) -> dict[str, Any]:
+    """A scene whose runs take some milliseconds each."""
+    return scene(asperities=ASPERITIES | {"count": count}, batch={"realizations": runs}, **changes)
+
+
+class Batch:
+    """A ``roughmdr run`` in a session of its own, with tasks of a given number of runs."""
+
+    def __init__(self, folder: Path, *options: object, chunk: int = 4, code: str = "", scene: str = "scene.toml"):
+        self.folder = folder
+        self._said = (folder.parent / f"{folder.name}.stderr").open("w+")
+        command = [sys.executable, "-c", f"{_IN_CHUNKS}{code}\n{_CLI}", str(chunk)]
+        self.process = subprocess.Popen(
+            [*command, "run", scene, "-o", "out.nc", *map(str, options)],
+            cwd=folder,
+            stdout=subprocess.DEVNULL,
+            stderr=self._said,
+            start_new_session=True,
+        )
+        self.pid = self.process.pid
+
+    def end(self) -> tuple[int, str]:
+        """Wait for its end: exit status, and what it said on the standard error stream."""
+        try:
+            status = self.process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise
+        self._said.seek(0)
+        with self._said as said:
+            return status, said.read()
+
+    def succeed(self) -> int:
+        """Wait for its end, which must be a good one: how many runs it computed."""
+        status, said = self.end()
+        assert status == 0, said
+        return computed(said)
+
+    def kill(self) -> None:
+        os.kill(self.pid, signal.SIGKILL)
+        self.process.wait()
+        self._said.close()
+
+    def signal_group(self, number: int) -> None:
+        """As a terminal does it."""
+        os.killpg(self.pid, number)
+
+    def children(self) -> list[psutil.Process]:
+        """The worker processes."""
+        found = psutil.Process(self.pid).children(recursive=True)
+        return [child for child in found if "spawn_main" in " ".join(child.cmdline())]
+
+    def wait_for_lines(self, count: int) -> None:
+        """Until so many shards are kept, or it is over."""
+        until(lambda: len(lines(self.folder)) >= count or self.process.poll() is not None)
+
+
+def computed(said: str) -> int:
+    """How many runs the last line about them tells of."""
+    counts = [line.split(": ")[-1].split()[0] for line in said.splitlines() if line.endswith(" runs")]
+    return int(counts[-1]) if counts else 0
+
+
+def until(condition: Callable[[], bool], patience: float = PATIENCE, pause: float = 0.002) -> None:
+    end = time.monotonic() + patience
+    while not condition():
+        assert time.monotonic() < end, "it hangs"
+        time.sleep(pause)
+
+
+def lines(folder: Path) -> list[dict[str, Any]]:
+    """The whole lines of the manifest that speak of shards."""
+    manifest = folder / "out.nc.parts" / "manifest.jsonl"
+    try:
+        content = manifest.read_bytes()
+    except OSError:
+        return []
+    found = [json.loads(line) for line in content[: content.rfind(b"\n") + 1].splitlines()]
+    return [line for line in found if "file" in line]
+
+
+def kept(folder: Path) -> int:
+    """How many runs are kept."""
+    return sum(line["realizations"] for line in lines(folder))
+
+
+def write_scene(folder: Path, table: dict[str, Any]) -> None:
+    folder.mkdir(exist_ok=True)
+    (folder / "scene.toml").write_text(tomli_w.dumps(table))
+
+
+def assert_clean(folder: Path, *others: str) -> None:
+    """Nothing is left but the scene and the result."""
+    assert sorted(path.name for path in folder.iterdir()) == sorted(["out.nc", "scene.toml", *others])
+
+
+def assert_no_traceback(said: str) -> None:
+    assert "Traceback" not in said, said
+    assert "Error:" not in said, said
+
+
+def assert_result(folder: Path, base: xr.Dataset) -> None:
+    """The result has the bits of an undisturbed run."""
+    with xr.open_dataset(folder / "out.nc") as file:
+        found = file.load()
+    assert_same(found, base)
+
+
+def assert_same(found: xr.Dataset, base: xr.Dataset) -> None:
+    """Same bits but for the clock."""
+    xr.testing.assert_identical(
+        found.drop_vars("run_time"), base.drop_vars("run_time").assign_attrs(history=found.attrs["history"])
+    )
+    for name, array in base.drop_vars("run_time").data_vars.items():
+        assert found[name].to_numpy().tobytes() == array.to_numpy().tobytes(), name
+
+
+@contextmanager
+def running(batch: Batch) -> Iterator[Batch]:
+    """A batch that does not outlive a test."""
+    try:
+        yield batch
+    finally:
+        if batch.process.poll() is None:
+            batch.kill()
