@@ -70,8 +70,8 @@ def expected(rough: Rough, points: int, digits: int) -> tuple[np.ndarray, dict[s
     """The force [N] of an asperity on the way in; how far off it is; and seconds, for each of ``ASKED``."""
     cell, both = cell_of(rough, "expected"), cell_of(rough, "expected", unload=True)
     runs = [(cell, ["force"]), (cell, list(DEFAULT)), (both, ["force"])]
-    seconds = [shortest(partial(law_of, *way, 0, names)) for way, names in runs]
-    law = law_of(*cell, 0, ["force"])
+    seconds = [shortest(partial(law_of, *way, 0, names, "expected")) for way, names in runs]
+    law = law_of(*cell, 0, ["force"], "expected")
     force, separation = law.variables["force"], cell.route.separation
     steps = np.linspace(0, force.size - 1, points).astype(int)
     off = max(abs(rough.force(float(separation[i]), digits=digits) - float(force[i])) for i in steps)
@@ -88,7 +88,7 @@ def by_draws(rough: Rough, force: np.ndarray, counts: np.ndarray) -> tuple[np.nd
             count, cell = int(counts[place[1]]), cells[place[0]][place[1]]
             for number in (numbers + count).tolist():  # other draws for each count, else they begin alike
                 started = time.perf_counter()
-                law = law_of(*cell, number, ["force"])
+                law = law_of(*cell, number, ["force"], DRAWN[place[0]])
                 seconds[place] = min(seconds[place], time.perf_counter() - started)
                 squares[place] += np.mean((law.variables["force"] / count - force) ** 2)
     return np.sqrt(squares / REALIZATIONS) / np.abs(force).max(), seconds

@@ -30,7 +30,7 @@ _TAKE = """
 import sys
 from roughmdr.cli import main
 changes = [part for change in sys.argv[2:] for part in ("--set", change)]
-main(["run", sys.argv[1], "-o", sys.argv[1] + ".nc", "--quiet", *changes], standalone_mode=False)
+main(["run", sys.argv[1], "-o", sys.argv[1] + ".nc", "--quiet", "--fresh", *changes], standalone_mode=False)
 with open("/proc/self/status") as status:
     print(next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM")))
 """
