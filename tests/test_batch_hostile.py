@@ -1,5 +1,6 @@
 """What was once done to batches, or will be: nothing is lost, mixed up or taken for what it is not."""
 
+import errno
 import json
 import multiprocessing
 import os
@@ -167,6 +168,17 @@ def test_parts_on_another_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         for path in elsewhere.iterdir():
             path.unlink()
         elsewhere.rmdir()
+
+
+def test_a_disk_without_locks_will_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import fcntl
+
+    def no_locks(*_: object) -> None:
+        raise OSError(errno.ENOSYS, "Function not implemented")
+
+    monkeypatch.setattr(fcntl, "flock", no_locks)
+    xr.testing.assert_equal(rm.run(few(), tmp_path / "out.nc").force, rm.run(few()).force)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
 
 
 @pytest.mark.parametrize("name", ["lock", "manifest.jsonl"])

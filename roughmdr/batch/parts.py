@@ -5,6 +5,7 @@ hold. What no line speaks of does not count, and a line that was not finished is
 of when its holder dies keeps others out.
 """
 
+import errno
 import hashlib
 import json
 import os
@@ -23,6 +24,8 @@ from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
 from roughmdr.store import cannot_be_written, sync_folder
 
+# What disks say that know no locks, as some of those that a cluster shares: there nobody is kept out.
+_NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 _LOCK, _MANIFEST, _SHARD = "lock", "manifest.jsonl", "{:06d}.npz"
 _SHARD_NAME = re.compile(r"[0-9]{6,}\.npz")
 
@@ -184,6 +187,10 @@ def _locked(folder: Path, target: Path) -> int:
             holder = os.read(lock, 200).decode(errors="replace").strip()
             os.close(lock)
             raise StoreError(f"{target}: another run is writing it{holder and f' ({holder})'}") from None
+        except OSError as error:
+            if error.errno not in _NO_LOCKS:
+                os.close(lock)
+                raise
         with suppress(FileNotFoundError):
             if os.path.samestat(os.fstat(lock), os.stat(folder / _LOCK)):
                 os.truncate(lock, 0)
