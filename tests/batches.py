@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -86,7 +87,7 @@ class Batch:
 
 def computed(said: str) -> int:
     """How many runs the last line about them tells of."""
-    counts = [line.split(": ")[-1].split()[0] for line in said.splitlines() if line.endswith(" runs")]
+    counts = re.findall(r": (\d+) of \d+ runs", said)
     return int(counts[-1]) if counts else 0
 
 

@@ -129,11 +129,19 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
         raise
     except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
         raise RoughmdrError(f"scheduler is {address!r}: no dask scheduler answers there ({error})") from None
-    log = logging.getLogger("distributed.client")
-    level = log.level
-    log.setLevel(logging.CRITICAL)  # what it says of a lost connection, with a traceback, is said here in words
+    with _silent(), client:
+        yield Cluster(client)
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """What dask says of a lost connection, with a traceback, is said here in words."""
+    logs = [logging.getLogger(f"distributed.{part}") for part in ("client", "batched", "core", "comm")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
     try:
-        with client:
-            yield Cluster(client)
+        yield
     finally:
-        log.setLevel(level)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
