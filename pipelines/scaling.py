@@ -1,4 +1,4 @@
-"""What the sum costs: time a visited asperity and step, beside NumPy and SciPy; two workers; a million.
+"""What the sum costs: time a visited asperity and step, beside NumPy and SciPy; two workers; a million; a cell.
 
     python pipelines/scaling.py -o results/studies
 
@@ -15,6 +15,7 @@ from typing import Any
 import click
 import numpy as np
 import xarray as xr
+from batch import by_cell
 from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
@@ -212,9 +213,10 @@ def study(quick: bool) -> xr.Dataset:
         ]
     )
     workers = over_workers(count // 10, 16, repeats)
+    cells = by_cell(200 if quick else 10_000, repeats)
     seconds, size = million(count)
     return (
-        xr.merge([by_shape(count // 50, repeats), by_range(count // 10, repeats)], combine_attrs="no_conflicts")
+        xr.merge([by_shape(count // 50, repeats), by_range(count // 10, repeats), cells], combine_attrs="no_conflicts")
         .assign(
             {
                 "cost": (("contact", "method"), cost, ns("time per visited asperity and step")),
@@ -279,6 +281,8 @@ def main(output: Path, quick: bool) -> None:
     click.echo(result[names].to_dataframe()[names].round(2).to_string())
     one, two = result["batch_time"].to_numpy()
     click.echo(f"a batch: {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times")
+    cells, overhead = result.attrs["cells"], 1e3 * float(result["cell_overhead"].sum())
+    click.echo(f"a sweep of {cells} tiny cells: {overhead:.2f} ms a cell beside its realisation")
     size = float(result["large_memory"]) / 2**20
     count, seconds = result.attrs["asperities"], float(result["large_time"])
     click.echo(f"{count} asperities, in and out: {seconds:.2f} s, {size:.0f} MB above them")

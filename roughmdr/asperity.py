@@ -128,8 +128,8 @@ def pull_off(
     with np.errstate(all="ignore"):
         results = contact.pull_off(control)
     radius = results["contact_radius"]
-    for name, numbers in results.items():
-        if not np.isfinite(numbers).all() or (adhesion == "jkr" and (radius == 0.0).any()):
+    for name in names:
+        if not np.isfinite(results[name]).all() or (adhesion == "jkr" and (radius == 0.0).any()):
             raise OutOfRange(
                 f"{name} at pull-off is not representable: modulus {modulus:g} Pa, work {work:g} J/m^2, {shape}"
             )
