@@ -13,9 +13,17 @@ from pathlib import Path
 from typing import Any
 
 import psutil
+import pytest
 import tomli_w
 import xarray as xr
 from scenes import ASPERITIES, scene
+
+from roughmdr.batch import tasks
+from roughmdr.batch.parts import parts_of
+from roughmdr.batch.shard import Shard
+from roughmdr.plan import make_plan
+from roughmdr.runner import execute, local
+from roughmdr.scene import read
 
 _CLI = "from roughmdr.cli import main; main()"
 _IN_CHUNKS = """
@@ -31,6 +39,27 @@ PATIENCE = 120.0
 def slow_scene(runs: int = 96, count: int = 10_000, **changes: Any) -> dict[str, Any]:
     """A scene whose runs take some milliseconds each."""
     return scene(asperities=ASPERITIES | {"count": count}, batch={"realizations": runs}, **changes)
+
+
+RUNS = 96
+CURVES, STATISTICS = slow_scene(RUNS), slow_scene(RUNS, output={"keep": "statistics"})
+
+
+def interrupted(table: dict[str, Any], out: Path, after: int, monkeypatch: pytest.MonkeyPatch, chunk: int = 2) -> None:
+    """A batch in this process, of tasks of so many runs, ended by Ctrl-C when some of them are done."""
+    left, compute = iter(range(after)), tasks.compute
+
+    def until(task: tasks.Task) -> Shard:
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return compute(task)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(local, "compute", until)
+        with pytest.raises(KeyboardInterrupt):
+            execute(make_plan(read(table), chunk), out, workers=1)
+    assert not out.exists()
+    assert parts_of(out).is_dir()
 
 
 class Batch:

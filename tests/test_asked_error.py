@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from accuracy import SCENES, law_of_force, realizations_taken
+from batches import interrupted
 from click.testing import CliRunner
 from scenes import ASPERITIES, scene
 
@@ -217,21 +218,12 @@ def test_the_outcome_depends_on_no_interruption(
     after: int, keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     table, out = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), tmp_path / "out.nc"
-    left, compute, done = iter(range(after)), tasks.compute, 0
-
-    def until(task: tasks.Task) -> shard.Shard:
-        if next(left, None) is None:
-            raise KeyboardInterrupt
-        return compute(task)
-
-    with monkeypatch.context() as patched:
-        patched.setattr(local, "compute", until)
-        with pytest.raises(KeyboardInterrupt):
-            go(table, out, chunk=8, workers=1)
+    compute, done = tasks.compute, 0
+    interrupted(table, out, after, monkeypatch, chunk=8)
 
     def counting(task: tasks.Task) -> shard.Shard:
         nonlocal done
-        done += task.runs
+        done += sum(part.last - part.first for part in task.parts)
         return compute(task)
 
     with monkeypatch.context() as patched:

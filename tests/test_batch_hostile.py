@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from batches import interrupted
 from scenes import ASPERITIES, scene
 from test_cli import roughmdr
 
@@ -22,7 +23,6 @@ from roughmdr.batch.parts import parts_of
 from roughmdr.batch.tally import Tally
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
-from roughmdr.runner.stopping import Interrupted
 from roughmdr.scene import read
 from roughmdr.store import read as read_result
 
@@ -117,28 +117,10 @@ def test_no_force_yet_is_no_small_error() -> None:
     assert "none of 40 realisations had any force" in never.attrs["warnings"]
 
 
-def interrupted(table: dict[str, Any], out: Path, monkeypatch: pytest.MonkeyPatch, after: int = 3) -> None:
-    """Some shards of a batch, and no result."""
-    from roughmdr.runner import local
-
-    compute, left = local.compute, [after]
-
-    def until(*arguments: Any) -> Any:
-        if not left[0]:
-            raise Interrupted("enough")
-        left[0] -= 1
-        return compute(*arguments)
-
-    with monkeypatch.context() as patched:
-        patched.setattr(local, "compute", until)
-        with pytest.raises(KeyboardInterrupt):
-            execute(make_plan(read(table), 5), out, workers=1)
-
-
 def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, sweep = tmp_path / "out.nc", {"adhesion.work": [0.01, 0.02, 0.05]}
     whole = few(10, sweep=sweep)
-    interrupted(whole, out, monkeypatch)
+    interrupted(whole, out, 3, monkeypatch, chunk=5)
     shards = sorted(path.name for path in parts_of(out).glob("*.npz"))
     assert len(shards) == 3
     rm.run(few(10, sweep={"adhesion.work": [0.01]}), out)
@@ -149,7 +131,7 @@ def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch:
 
 def test_a_cluster_that_is_not_there_costs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out.nc"
-    interrupted(few(), out, monkeypatch)
+    interrupted(few(), out, 3, monkeypatch, chunk=5)
     before = sorted(path.name for path in parts_of(out).iterdir())
     with pytest.raises(rm.RoughmdrError, match="no dask scheduler answers"):
         rm.run(few(), out, scheduler="tcp://127.0.0.1:1", resume=False)

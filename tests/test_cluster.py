@@ -16,7 +16,10 @@ import psutil
 import pytest
 import xarray as xr
 from batches import (
+    CURVES,
     PATIENCE,
+    RUNS,
+    STATISTICS,
     Batch,
     assert_clean,
     assert_no_traceback,
@@ -24,20 +27,12 @@ from batches import (
     assert_same,
     kept,
     running,
-    slow_scene,
     until,
-    write_scene,
 )
 
-import roughmdr as rm
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-
-pytest.importorskip("distributed")
-RUNS = 96
-CURVES = slow_scene(RUNS)
-STATISTICS = slow_scene(RUNS, output={"keep": "statistics"})
 
 
 class Dask:
@@ -83,22 +78,6 @@ def dask(folder: Path, workers: int, *options: str) -> Iterator[Dask]:
             cluster.add_worker()
         cluster.wait_for_workers(workers)
         yield cluster
-
-
-@pytest.fixture(scope="module")
-def curves() -> xr.Dataset:
-    return rm.run(CURVES)
-
-
-@pytest.fixture(scope="module")
-def statistics() -> xr.Dataset:
-    return rm.run(STATISTICS)
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    write_scene(tmp_path / "batch", CURVES)
-    return tmp_path / "batch"
 
 
 @pytest.fixture(scope="module")

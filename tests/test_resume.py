@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from batches import interrupted
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr import result
-from roughmdr.batch import earlier, identity, keeper, shard, tasks
+from roughmdr.batch import earlier, identity, keeper, tasks
 from roughmdr.batch.parts import parts_of
 from roughmdr.plan import make_plan
-from roughmdr.runner import batch, execute, local
+from roughmdr.runner import batch, execute
 from roughmdr.scene import read
 from roughmdr.variables import LAW
 
@@ -76,23 +77,6 @@ def out(tmp_path: Path) -> Path:
 def go(table: dict[str, Any], out: Path | None, chunk: int = 2, workers: int = 2, resume: bool = True) -> xr.Dataset:
     """A run in many tasks, small as it is."""
     return execute(make_plan(read(table), chunk), out, workers=workers, resume=resume).to_xarray()
-
-
-def interrupted(table: dict[str, Any], out: Path, after: int, monkeypatch: pytest.MonkeyPatch, chunk: int = 2) -> None:
-    """The same, ended by Ctrl-C when so many tasks are done."""
-    left, compute = iter(range(after)), tasks.compute
-
-    def until(task: tasks.Task) -> shard.Shard:
-        if next(left, None) is None:
-            raise KeyboardInterrupt
-        return compute(task)
-
-    with monkeypatch.context() as patched:
-        patched.setattr(local, "compute", until)
-        with pytest.raises(KeyboardInterrupt):
-            go(table, out, chunk, workers=1)
-    assert not out.exists()
-    assert parts_of(out).is_dir()
 
 
 def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:

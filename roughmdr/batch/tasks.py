@@ -56,11 +56,6 @@ class Task(NamedTuple):
     """Whether tallies are wanted, not curves."""
     versions: str
 
-    @property
-    def runs(self) -> int:
-        """How many realisations it has."""
-        return sum(part.last - part.first for part in self.parts)
-
 
 def cut(plan: Plan, stretches: Sequence[Stretch], variables: Sequence[str], workers: int) -> list[list[Stretch]]:
     """Stretches, in their order, cut so that each group takes about as long as a task should."""
