@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from twins import Real, Twin, mp
+from judgement import answers_at, judge, natural_scales, representable
+from twins import PowerShape, Real, Twin, mp
 
 import roughmdr as rm
 
@@ -15,7 +16,7 @@ VALUES = 6
 
 
 class Case(NamedTuple):
-    shape: rm.Paraboloid | rm.Cone | rm.PowerLaw
+    shape: PowerShape
     modulus: float
     work: float
 
@@ -51,48 +52,6 @@ def control_values(rng: np.random.Generator, twin: Twin, control: str, width: fl
     return [*stable, fold * mp.mpf(rng.random())] if twin.work else stable
 
 
-def scales(twin: Twin, answers: list[Real]) -> list[Real]:
-    """All that a float must hold: the natural scales under both controls, and every answer."""
-    natural = []
-    if twin.work:
-        held, dead = twin.fold("indentation"), twin.fold("force")
-        natural = [held, twin.indentation(held), twin.force(held), 2 * twin.modulus * held, twin.force(dead)]
-        natural.append(2 * twin.modulus * held * twin.stretch(held))
-    return natural + [
-        answer for a in answers for answer in (a, a * a, twin.indentation(a), twin.force(a), twin.stiffness(a))
-    ]
-
-
-def representable(numbers: list[Real]) -> bool:
-    return all(mp.mpf("1e-299") < abs(number) < mp.mpf("1e299") for number in numbers)
-
-
-def excesses(twin: Twin, control: str, got: dict[str, float]) -> dict[str, float]:
-    """Each error over its bound."""
-    law = {"indentation": twin.indentation, "force": twin.force}
-    a = mp.mpf(got["contact_radius"])
-    # Each of the four roundings that make a (of its scale, the growth, the product, and a itself) moves delta by n u.
-    steep = max(1, 4 * twin.n * 2.0**-53 / 1e-14)
-    fold = twin.fold("force" if control == "force" else "indentation")
-    scale = {name: max(abs(mp.mpf(got[name])), abs(law[name](fold))) for name in law}
-    bound = {"indentation": mp.mpf("1e-13"), "force": mp.mpf("1e-13")}
-    bound["indentation" if control == "contact_radius" else control] = mp.mpf("1e-14")
-    errors = {f"backward {name}": abs(law[name](a) - got[name]) / (scale[name] * bound[name] * steep) for name in law}
-    own = "force" if control == "force" else "indentation"
-    exact = a if control == "contact_radius" else twin.radius(control, got[control])
-    X = 1 - law[own](exact) / law[own](fold) if twin.work else mp.mpf(1)
-    forward = mp.mpf("1e-12") + mp.mpf("3e-16") / mp.sqrt(X)
-    k, plain = twin.stiffness(exact), 2 * twin.modulus * exact
-    errors["contact_radius"] = abs(a - exact) / (forward * exact)
-    errors["contact_area"] = abs(got["contact_area"] - mp.pi * exact**2) / (2 * forward * exact**2 * mp.pi)
-    for name, formula in law.items():
-        errors[name] = abs(formula(exact) - got[name]) / (forward * scale[name])
-    errors["stiffness"] = abs(got["stiffness"] - k) / ((mp.mpf("1e-12") + mp.mpf("1e-15") / X) * max(abs(k), plain))
-    size = {"contact_radius": exact, "contact_area": exact**2, "stiffness": k, **scale}
-    held = {name for name, number in size.items() if representable([number])}
-    return {name: float(error) for name, error in errors.items() if name.removeprefix("backward ") in held}
-
-
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
 @pytest.mark.parametrize("kind", SHAPES)
@@ -111,11 +70,12 @@ def test_every_output_is_as_accurate_as_promised(kind: str, adhesive: bool, cont
         try:
             contact = rm.indent(case.shape, modulus=case.modulus, work=case.work, **{control: values})
         except rm.OutOfRange:
-            assert not representable(scales(twin, answers)), case
+            needed = [*natural_scales(twin), *(number for a in answers for number in answers_at(twin, a))]
+            assert not representable(needed), case
             refused += 1
             continue
         for i in range(len(values)):
             got = {name: float(contact[name][i]) for name in contact.variables}
-            for name, excess in excesses(twin, control, got).items():
-                assert excess <= 1.0, (case, name, excess, got)
+            for name, judged in judge(twin, control, got).items():
+                assert judged.excess <= 1.0, (case, name, judged, got)
     assert refused < CASES / 2

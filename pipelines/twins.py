@@ -11,14 +11,16 @@ mp = mpmath.mp.clone()
 mp.dps = 60
 
 Real = Any  # mpmath carries no types
+PowerShape = rm.Paraboloid | rm.Cone | rm.PowerLaw
 
 
 def kappa(exponent: float) -> Real:
+    """g over f (H 26)."""
     n = mp.mpf(exponent)
     return mp.sqrt(mp.pi) / 2 * n * mp.gamma(n / 2) / mp.gamma((n + 1) / 2)
 
 
-def coefficient_and_exponent(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw) -> tuple[Real, Real]:
+def coefficient_and_exponent(shape: PowerShape) -> tuple[Real, Real]:
     """c and n of f = c r^n."""
     given = {name: mp.mpf(value) for name, value in shape.parameters.items()}
     if "radius" in given:
@@ -32,16 +34,19 @@ def coefficient_and_exponent(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw) -> tu
 class Twin:
     """f = c r^n pressed into a half-space, without (work = 0) or with JKR adhesion."""
 
-    def __init__(self, shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, modulus: float, work: float) -> None:
+    def __init__(self, shape: PowerShape, modulus: float, work: float) -> None:
         c, self.n = coefficient_and_exponent(shape)
-        self.g_at_1 = kappa(self.n) * c
+        self.kappa = kappa(self.n)
+        self.g_at_1 = self.kappa * c
         self.modulus = mp.mpf(modulus)
         self.work = mp.mpf(work)
 
     def g(self, a: Real) -> Real:
+        """MDR profile [m]."""
         return self.g_at_1 * mp.mpf(a) ** self.n
 
     def G(self, a: Real) -> Real:
+        """Its integral [m2]."""
         return self.g_at_1 * mp.mpf(a) ** (self.n + 1) / (self.n + 1)
 
     def stretch(self, a: Real) -> Real:
@@ -49,12 +54,15 @@ class Twin:
         return mp.sqrt(2 * mp.pi * a * self.work / self.modulus)
 
     def indentation(self, a: Real) -> Real:
+        """delta [m] of equilibrium (H 40)."""
         return self.g(a) - self.stretch(a)
 
     def force(self, a: Real) -> Real:
+        """P [N] (H 41)."""
         return 2 * self.modulus * (a * self.g(a) - self.G(a) - a * self.stretch(a))
 
     def stiffness(self, a: Real) -> Real:
+        """dP/d(delta) [N/m] along the equilibria."""
         slope, dl = self.n * self.g(a) / a, self.stretch(a)
         return 2 * self.modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
 
