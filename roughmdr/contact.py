@@ -47,6 +47,11 @@ class Contact(NamedTuple):
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, reaches beyond the end of "
                     f"{shape}; it must be larger"
                 )
+            if isinstance(shape, FlatPunch) and adhesion.cohesive and form[COUNT] == 0.0:
+                raise OutOfRange(
+                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, is so long that a contact "
+                    f"of {shape} is lost in its roundings; it must be larger"
+                )
             scales = law.natural(modulus, adhesion.work, width, rise, form)
             contact = cls(law, shape, modulus, adhesion, form, *scales)
         contact._check(
@@ -172,10 +177,11 @@ class Contact(NamedTuple):
     def _answers(self, state: Floats) -> tuple[Floats, Floats, Floats]:
         """Contact radius [m], force [N] and stiffness [N/m] of each state."""
         law, form = self.law, self.form
-        if law.answer is None:
-            parts = [apply(kernel, state, form) for kernel in (law.radius, law.force, law.stiffness)]
-        else:
-            parts = list(apply_all(law.answer, state, form))
+        with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
+            if law.answer is None:
+                parts = [apply(kernel, state, form) for kernel in (law.radius, law.force, law.stiffness)]
+            else:
+                parts = list(apply_all(law.answer, state, form))
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
     def _cohesive(self, state: Floats) -> Results:

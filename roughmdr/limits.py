@@ -17,6 +17,8 @@ Johnson, Contact Mechanics, 1985, section 4.1). At a/R = 0.3 a sphere and its pa
 TABOR = 3.0
 """The Tabor number below which there is a warning: there the pull-off force of a paraboloid is 1 % from that of JKR."""
 
+_LARGEST = float(np.finfo(np.float64).max)  # stands for a flank that is upright
+
 
 class Extremes(NamedTuple):
     """The most that any contact comes to."""
@@ -35,7 +37,8 @@ class Extremes(NamedTuple):
             return cls()
         with np.errstate(all="ignore"):
             steepest = np.where((radius > 0.0) & ~np.isnan(slopes), slopes, 0.0)
-            return cls(float(np.max(steepest)), float(np.max(np.where(np.isfinite(radius), radius / ends, 0.0))))
+            farthest = np.where(np.isfinite(radius), radius / ends, 0.0)
+        return cls(min(float(np.max(steepest)), _LARGEST), min(float(np.max(farthest)), _LARGEST))
 
     def joined(self, other: "Extremes") -> "Extremes":
         """The more extreme of both."""

@@ -138,6 +138,53 @@ def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> No
         assert np.median(np.abs(moved - done)) < 1e-6 * scale
 
 
+@pytest.mark.parametrize("reach", [1e-6, 0.1, 1e10, 1e20])
+def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> None:
+    """Else the force of a punch, P/(2 E*) = b delta - beta/2 (a m + b^2 theta), is right to the stated error."""
+    b, beta, modulus = 1e-6, 2e-3, 1e9
+    strength = 0.5 * beta * modulus
+    law = {"modulus": modulus, "work": reach * strength, "adhesion": "dugdale", "strength": strength}
+    data, way = ensemble([0.0], shape="flat_punch", radius=b), np.linspace(2.0, -1.0, 31) * beta * b
+    if reach > 1.0:
+        with pytest.raises(rm.OutOfRange, match=r"is lost in its roundings"):
+            rm.indent(rm.FlatPunch(b), indentation=-way, **law)
+        with pytest.raises(rm.OutOfRange, match="not representable"):
+            rm.load_separation(data, separation=way, **law)
+        return
+    curve = rm.load_separation(data, separation=way, **law)
+    m = np.clip(way / beta, 0.0, b)
+    a = np.sqrt((b - m) * (b + m))
+    pulled = 0.5 * beta * (a * m + b * b * np.arctan2(m, a))
+    expected = 2.0 * modulus * (b * np.maximum(-way, 0.0) - pulled)
+    assert np.abs(curve.force - expected).max() <= float(curve.numerical_error) * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(("reach", "beta"), [(0.3, 0.1), (0.87, 4.7)])
+def test_the_cohesive_zone_ends_with_the_sphere(reach: float, beta: float) -> None:
+    """P and k are Maugis's with c = R, and the work of the force is the energy stored and lost."""
+    radius, strength = 2e-6, 0.5 * beta * E
+    sphere = rm.Sphere(radius)
+    law = {"modulus": E, "work": reach * radius * strength, "adhesion": "dugdale", "strength": strength}
+    contact = rm.indent(sphere, indentation=np.linspace(1.5, 5.0, 8) * radius, **law)
+    a = contact.contact_radius.to_numpy()
+    m, theta = np.sqrt((radius - a) * (radius + a)), np.arccos(a / radius)
+    np.testing.assert_allclose(contact.cohesive_radius, radius, rtol=1e-15)
+    np.testing.assert_allclose(contact.indentation, sphere.g(a) - beta * m, rtol=1e-11)
+    pushed = a * sphere.g(a) - sphere.G(a) - 0.5 * beta * (a * m + radius**2 * theta)
+    np.testing.assert_allclose(contact.force, 2.0 * E * pushed, rtol=1e-11)
+    np.testing.assert_allclose(contact.stiffness, 2.0 * E * a, rtol=1e-11)
+
+    way = -np.linspace(-1.01 * reach, 3.0, 4001) * radius
+    curve = rm.load_separation(
+        ensemble([0.0], shape="sphere", radius=radius), separation=way, variables=VARIABLES, **law
+    )
+    assert (np.diff(curve.dissipated_energy) >= 0.0).all()
+    moved = np.diff(curve.energy) + np.diff(curve.dissipated_energy)
+    done = -0.5 * (curve.force.to_numpy()[1:] + curve.force.to_numpy()[:-1]) * np.diff(way)
+    scale = float(np.abs(curve.energy).max())
+    assert np.sort(np.abs(moved - done))[-2] < 1e-6 * scale  # but for the step in which the attraction begins
+
+
 @settings(deadline=None, max_examples=30)
 @given(
     tabor=st.floats(0.01, 100.0),
@@ -257,6 +304,17 @@ def test_one_asperity_refuses(changes: dict[str, object], says: str) -> None:
     control = {} if "contact_radius" in changes else {"indentation": 0.0}
     with pytest.raises(rm.RoughmdrError, match=says):
         rm.indent(rm.Paraboloid(1e-6), modulus=1e9, work=W, **control, **changes)
+
+
+@pytest.mark.parametrize("radius", [2.068411851025195, 2.104768134310386, 3.096157246512134])
+def test_next_to_the_fold_every_float_has_its_contact(radius: float) -> None:
+    """There the indentation is all roundings, along which Newton's method would creep."""
+    tip, law = rm.Paraboloid(radius), {"modulus": 251837.4456117847, "work": 0.09166012584432522}
+    cohesion = {"adhesion": "dugdale", "strength": 240.14722117573052}
+    fold = rm.pull_off(tip, **law, **cohesion)
+    near = float(fold.indentation) + np.arange(3000) * np.spacing(abs(float(fold.indentation)))
+    force = rm.indent(tip, **law, **cohesion, indentation=near).force
+    np.testing.assert_allclose(force, float(fold.force), rtol=1e-4)
 
 
 def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:

@@ -142,7 +142,14 @@ def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]
     zone_and_margins = (*zone.PARTS, *margins.PARTS)
     if shape is Paraboloid:
         closed = dugdale_paraboloid
-        zone_and_margins = (*closed.PARTS, margins.find_junction, margins.extent, *closed.AFTER)
+        zone_and_margins = (
+            zone.widest,
+            *closed.PARTS,
+            margins.find_junction,
+            margins.opened,
+            margins.extent,
+            *closed.AFTER,
+        )
     search = (*folds.LISTING, *dugdale_folds.PARTS, *_SEARCH)
     return (balance.strain, *zone_and_margins, *dugdale.PARTS, *search, *_ENDS)
 

@@ -9,7 +9,8 @@ beta = 2 sigma0/E*, any profile has (from delta = g(a) - beta m and f(c) = 2/pi 
     d(delta) = (g' + beta a/m) da B/D,   c dc = theta (g' + beta a/m) da c^2/D,
     B = K - beta (c - a),   D = B + beta theta c^2/m,
 
-so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta theta^2 c^2/B.
+so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta theta^2 c^2/B. Where the body ends the
+zone does too, as on a flat punch: c stays, the gap there is at most w/sigma0, and B is without bound.
 
 The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
 grows with s. Notation of ``row``.

@@ -17,6 +17,7 @@ from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRE
 natural, natural_force = compiled(curved.natural), compiled(curved.natural_force)
 own = njit(curved.own, inline=True)
 passes = 1
+_LONGEST = 2.0**26  # times beta: the depth, of whose roundings the edge of a contact that closes makes less than 1e-12
 
 
 @njit
@@ -52,17 +53,20 @@ def prepare(
     stop: int,
     control: float,
 ) -> Floats:
-    """A row for each of the punches from start to stop."""
+    """A row for each of the punches from start to stop; COUNT = 0 where the range is so long that contact is lost in
+    its roundings.
+    """
     rows = np.zeros((stop - start, -UNIT))
     for i in range(stop - start):
         row, b = rows[i], width[start + i]
         beta, reach = 2.0 * strength / modulus, work / strength / b
-        row[STRENGTH], row[RANGE], row[CONTROL], row[COUNT] = beta, reach, control, 1.0
+        row[STRENGTH], row[RANGE], row[CONTROL] = beta, reach, control
         if reach > (1.0 - 2.0 / math.pi) * beta:
             depth, angle = reach + 2.0 / math.pi * beta, 0.5 * math.pi
         else:
             angle = _angle(0.5 * math.pi * reach / beta, False)
             depth = beta * math.sin(angle)
+        row[COUNT] = 1.0 if depth <= _LONGEST * beta else 0.0
         row[ONSET] = 1.0 - reach / depth
         pulled = angle + math.sin(angle) * math.cos(angle)
         row[DEPTH] = depth if control == 0.0 else 0.5 * beta * pulled

@@ -14,16 +14,19 @@ _height: Callable[..., tuple[float, float]]
 _place: Callable[..., float]
 _flat: bool
 _end: float
+widest: Callable[..., float]
 zone: Callable[..., tuple[float, float, float]]
 
 _CLOSE = 1e-9  # its square is below rounding
 _ROUNDING = 1e-15
-_NEAREST = 1e-8  # to the end of the profile; its square is a rounding of it
 _PATIENCE = 100
+_LARGEST = 1e150  # its square, and that of its inverse, is a float
 
 
 def find_junction(row: Floats) -> bool:
-    """Find c where contact begins: f(c) + (1 - 2/pi) beta c = w/sigma0. False where the body ends before."""
+    """Find c where contact begins: f(c) + (1 - 2/pi) beta c = w/sigma0. False where the body ends before, or floats do
+    not hold its square.
+    """
     wanted, per_c = row[RANGE], (1.0 - 2.0 / math.pi) * row[STRENGTH]
     low, high = 0.0, min(wanted / per_c, _end)
     if not (high > 0.0 and _height(high, row)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
@@ -41,13 +44,26 @@ def find_junction(row: Floats) -> bool:
     row[JUNCTION] = c
     t = row[TENSION] if _flat else _place(c, 1.0, row)
     row[UNIT] = t
-    return 0.0 < c < math.inf and 0.0 < t < math.inf
+    return 1.0 / _LARGEST < c < _LARGEST and 0.0 < t < math.inf
+
+
+def opened(a: float, g: float, m: float, row: Floats) -> tuple[float, float]:
+    """pi/2 times the gap at c, and its slope over m^2/2."""
+    c, theta = math.sqrt(a * a + m * m), atan(m / a)
+    j, k, _ = zone(a, g, m, theta, row)
+    short = m * m / (c + a)
+    return j + row[STRENGTH] * (m * theta - short), (k / c + row[STRENGTH] * (c * theta / m - short / c)) / c
 
 
 def extent(a: float, g: float, slope: float, row: Floats) -> float:
-    """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms."""
+    """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms.
+
+    Where the gap at the end of the profile is below w/sigma0, the zone stays there.
+    """
     beta, wanted, c0 = row[STRENGTH], 0.5 * math.pi * row[RANGE], row[JUNCTION]
-    low, high = 0.0, max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
+    low, high = 0.0, widest(a)
+    if high < math.inf and not opened(a, g, high, row)[0] > wanted:
+        return high
     lone = wanted / beta
     most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
     near = (6.0 * lone * beta * a * (a / slope)) ** (1.0 / 3.0) if slope > 0.0 else math.inf
@@ -55,17 +71,13 @@ def extent(a: float, g: float, slope: float, row: Floats) -> float:
     if not m < high:
         m = 0.5 * high
     for _ in range(_PATIENCE):
-        c, theta = math.sqrt(a * a + m * m), atan(m / a)
-        j, k, _ = zone(a, g, m, theta, row)
-        short = m * m / (c + a)
-        value = j + beta * (m * theta - short)
+        value, growth = opened(a, g, m, row)
         if not 0.0 < value < math.inf:  # so near to the end of the profile that floats do not tell c from a
             low, high = (m, high) if value <= 0.0 else (low, m)
             m = 0.5 * (low + high)
             continue
         low, high = (m, high) if value < wanted else (low, m)
-        slope = k / c + beta * (c * theta / m - short / c)
-        change = math.log(wanted / value) * value * c / (m * m * slope)
+        change = math.log(wanted / value) * value / (m * m * growth)
         better = m * math.exp(min(max(change, -5.0), 5.0))
         if abs(change) <= _CLOSE or not low < high:
             return better
@@ -92,4 +104,4 @@ def state_of_radius(radius: float, width: float, row: Floats) -> float:
     return _place(radius, width, row) / row[UNIT] + (2.0 if _flat else 1.0)
 
 
-PARTS: tuple[Callable[..., Any], ...] = (find_junction, extent, margins, state_of_radius)
+PARTS: tuple[Callable[..., Any], ...] = (find_junction, opened, extent, margins, state_of_radius)

@@ -17,7 +17,7 @@ _LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, fou
 _GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
 _FINE = 1e-8  # the square of a last step is below rounding
 _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
-_PATIENCE = 6  # steps: the slope of a table can change so much that Newton's method goes in circles
+_PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
 
 
 def above(t: float, j: int, row: Floats) -> tuple[float, float]:
@@ -51,7 +51,7 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
         if abs(step) <= _FINE * (t - foot):
             return t - step
         better = t - step
-        circling = i % 3 == 2 and i > _PATIENCE and high < math.inf
+        circling = i % 3 == 2 and i > _PATIENCE
         if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
             if not low < better < high:

@@ -5,8 +5,11 @@ Its integrals, in units of the shape's width and rise:
     J = ∫ (g(x) - g(a))/sqrt(c^2 - x^2) dx,   K = ∫ x g'(x)/sqrt(c^2 - x^2) dx,
     L = ∫ (g(x) - g(a)) sqrt(c^2 - x^2) dx.
 
+At the end of the profile, where it is upright and c comes no further, K is without bound.
 From each edge y of the profile on g is smooth in q = sqrt(x^2 - y^2) = sqrt(c^2 - y^2) cos(psi), and
-dx/sqrt(c^2 - x^2) is q/x dpsi.
+dx/sqrt(c^2 - x^2) is q/x dpsi. Where the zone is thin g(x) - g(a) has few digits; by parts, with A = acos(x/c),
+
+    J = ∫ g'(x) A dx,   L = ∫ g'(x) [c^2 A - x sqrt(c^2 - x^2)]/2 dx.
 """
 
 import math
@@ -24,26 +27,37 @@ _edge_count: Callable[..., int]
 _edge: Callable[..., tuple[float, float]]
 _beyond: Callable[..., float] | None
 _flat: bool
+_end: float
 
 # Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
 _Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
 _Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
 _FAR = 8.0  # from the lower end of a panel to the higher
+_THIN = 0.01  # m/a: below it g(x) - g(a) has too few digits to find m by
+_STEEP = 6.0  # times 1/sqrt(n) is the psi within which x^n falls to nothing
+_NEAREST = 1e-8  # to the end of the profile; its square is a rounding of it
+_BEFORE = 1.0 - 2.0**-53  # times the end of the profile: so far g is finite
+_UPRIGHT = 1e100  # stands for what is without bound
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
+
+
+def widest(a: float) -> float:
+    """m where the zone comes to the end of the profile."""
+    return max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
 
 
 def onward(q: float, base: float, row: Floats) -> float:
     """t where q = sqrt(x^2 - base^2)."""
     if _beyond is not None and base > 0.0:
         return _beyond(q, row)
-    return _place(math.sqrt(base * base + q * q), 1.0, row)
+    return _place(min(math.sqrt(base * base + q * q), _BEFORE * _end), 1.0, row)
 
 
 def panel(
-    low: float, high: float, base: float, g: float, c: float, m: float, row: Floats
+    low: float, high: float, base: float, g: float, c: float, m: float, thin: bool, row: Floats
 ) -> tuple[float, float, float]:
-    """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2)."""
+    """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2). By parts where ``thin``."""
     reach = math.sqrt((c - base) * (c + base))
     begin = math.atan2(m, math.sqrt((low - base) * (low + base)))
     end = math.atan2(math.sqrt((c - high) * (c + high)), math.sqrt((high - base) * (high + base)))
@@ -53,16 +67,29 @@ def panel(
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
         _, da, value, dg = _curve(onward(q, base, row), row)
-        term = _WEIGHTS[i] * (value - g) * q / x
-        j += term
-        k += _WEIGHTS[i] * q * dg / da
-        l += term * below * below
+        push = _WEIGHTS[i] * q * dg / da
+        k += push
+        if thin:
+            angle = math.atan2(below, x)
+            j += push * angle * below / x
+            l += 0.5 * push * (c * c * angle - x * below) * below / x
+        else:
+            term = _WEIGHTS[i] * (value - g) * q / x
+            j += term
+            l += term * below * below
     return (begin - end) * j, (begin - end) * k, (begin - end) * l
+
+
+def rise_begins(low: float, c: float, row: Floats) -> float:
+    """From where on the profile rises, to all digits, where it is as steep as x^n with a large n; else ``low``."""
+    a, da, g, dg = _curve(_place(c, 1.0, row), row)
+    n = a * dg / (da * g) if 0.0 < g < math.inf else 0.0
+    return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
 
 
 def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
     """J, K and L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
-    c = math.sqrt(a * a + m * m)
+    c, thin = math.sqrt(a * a + m * m), m < _THIN * a
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m
     count = _edge_count(row)
@@ -71,18 +98,24 @@ def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float
         if begin > low:
             high = min(begin, c)
             while base > 0.0 and _FAR * low < high:  # at q << x as smooth as at q = x
-                parts = panel(low, _FAR * low, base, g, c, beside, row)
+                parts = panel(low, _FAR * low, base, g, c, beside, thin, row)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _FAR * low
                 beside = math.sqrt((c - low) * (c + low))
-            if high > low and (base > 0.0 or not _flat):
-                parts = panel(low, high, base, g, c, beside, row)
+            if base == 0.0 and not _flat and high == c:
+                middle = rise_begins(low, c, row)
+                if middle > low:
+                    parts = panel(low, middle, base, g, c, beside, thin, row)
+                    j, k, l = j + parts[0], k + parts[1], l + parts[2]
+                    low, beside = middle, math.sqrt((c - middle) * (c + middle))
+            if beside > 0.0 and (base > 0.0 or not _flat):
+                parts = panel(low, high, base, g, c, beside, thin, row)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
             if begin >= c:
                 break
             low, beside = begin, math.sqrt((c - begin) * (c + begin))
         base = after
-    return j, k, l
+    return j, k if m < widest(a) else _UPRIGHT, l
 
 
-PARTS: tuple[Callable[..., Any], ...] = (onward, panel, zone)
+PARTS: tuple[Callable[..., Any], ...] = (widest, onward, panel, rise_begins, zone)

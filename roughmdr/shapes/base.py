@@ -97,7 +97,9 @@ class Shape(ABC):
 
     def stretched(self) -> tuple[float, float, Any]:
         """Width [m], rise [m] and form [1] of this one."""
-        columns = self.stretch({name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()})
+        parameters = {name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()}
+        with np.errstate(all="ignore"):  # what no float can hold is refused where a contact is looked for
+            columns = self.stretch(parameters)
         width, rise, form = (float(column[0]) for column in columns)
         return width, rise, form
 

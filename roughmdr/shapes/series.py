@@ -125,7 +125,8 @@ class PowerSeries(Common):
         return self._summed(self.terms, radii("r", r), 0.0)
 
     def df(self, r: ArrayLike) -> Floats:
-        return self._summed({n: n * c for n, c in self.terms.items()}, radii("r", r), 1.0)
+        with np.errstate(all="ignore"):  # below n = 1 the tip is infinitely steep
+            return self._summed({n: n * c for n, c in self.terms.items()}, radii("r", r), 1.0)
 
     def stretched(self) -> tuple[float, float, Any]:
         """The width where the first and the last term are equal, their rise there, and the reduced terms."""

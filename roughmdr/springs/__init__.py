@@ -74,7 +74,7 @@ class Springs(NamedTuple):
             _fill(results, touching[some], state)
         lost = (results["contact_radius"] == 0.0) & ((force < 0.0) | (self.rows.tenacity > 0.0))
         if lost.any():
-            worst, least = float(force[lost].min()), self._pull_off_force()
+            worst, least = float(force[lost].min()), self.pull_off_force()
             raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {least!r} N")
         return results
 
@@ -134,7 +134,7 @@ class Springs(NamedTuple):
         }
         return {name: np.where(held > 0, numbers, 0.0) for name, numbers in results.items()}
 
-    def _pull_off_force(self) -> float:
+    def pull_off_force(self) -> float:
         """The least force [N] that the springs hold under dead load."""
         if not self.rows.tenacity > 0.0:
             return 0.0

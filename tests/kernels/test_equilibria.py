@@ -2,6 +2,7 @@
 
 import math
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -111,7 +112,7 @@ def steps_of_table(rng: np.random.Generator) -> rm.Tabulated:
     return rm.Tabulated(r, np.concatenate([[0.0], np.cumsum(slopes * np.diff(r))]))
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=5 if numba.config.DISABLE_JIT else 30)  # uncompiled a table takes seconds
 @given(seed=st.integers(0, 10**6), tension=st.floats(-2.0, 2.0), place=st.floats(1e-6, 1.0))
 def test_a_table_of_any_convex_form_has_its_equilibria_in_turn(seed: int, tension: float, place: float) -> None:
     shape = steps_of_table(np.random.default_rng(seed))
