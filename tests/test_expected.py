@@ -222,6 +222,31 @@ def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> Non
     assert table.low.size < 200
 
 
+def test_what_a_function_does_at_the_end_of_a_piece_alone_is_seen() -> None:
+    """The nodes of a piece lie within it: a kink between the last of them and the end is outside all of them."""
+    for kink in (0.999, 0.9999):
+        table = Table.of(
+            lambda x, kink=kink: (x**3 + np.maximum(x - kink, 0.0))[None],
+            np.array([0.0, 1.0]),
+            np.array([1e-13]),
+            lambda low, high: np.full_like(low, 2.0**-40),
+            lambda low, high: (high - low) / high,
+        )
+        u = 2.0 * (1.0 - table.low[-1]) / (table.high[-1] - table.low[-1]) - 1.0
+        at_end = np.polynomial.chebyshev.chebval(u, table.coefficients[-1, 0])
+        assert abs(at_end - (2.0 - kink)) <= 20.0 * table.slack[-1, 0] + 1e-14
+
+
+def test_cohesive_contacts_that_begin_to_touch_on_the_way_in() -> None:
+    """Where they do, the force has a kink; the expected law is within its stated error of even draws all the same."""
+    stiff = {"shape": "paraboloid", "radius": 2e-5, "height": {"distribution": "expon", "scale": "1.4 nm"}}
+    asked = scene(stiff, {"model": "dugdale", "work": 10.0, "strength": 6.7e6}, material={"effective_modulus": 8e10})
+    asked |= {"path": {"separation": [2.7e-9, 2.6e-10]}, "output": {"variables": ["force"]}}
+    law = rm.run({**asked, "batch": {"estimator": "expected"}}).isel(realization=0)
+    mean, error = even_draws(asked)
+    assert (np.abs(mean - law.force) <= 5.0 * error + 1e-6 * float(np.abs(law.force).max())).all()
+
+
 def even_draws(asked: dict[str, object]) -> tuple[np.ndarray, np.ndarray]:
     """The mean force of evenly spread draws, and its standard error."""
     force = rm.run({**asked, "batch": {"estimator": "stratified", "realizations": 64}}).force
@@ -258,3 +283,41 @@ def test_an_error_that_is_large_is_stated_and_warned_of() -> None:
         assert (np.abs(mean - law.force) - 4.0 * error).max() <= stated * float(np.abs(law.force).max())
         assert stated > 1e-3
         assert "an expected law that is right only to" in law.attrs["warnings"]
+
+
+def test_areas_converge_too_where_the_force_did_at_once() -> None:
+    """The force of flat punches goes with b, so that any rule has it for radii spread evenly; b^2 takes more."""
+    low, high = 1e-6, 3e-6
+    asperities = {
+        "source": "random",
+        "shape": "flat_punch",
+        "count": 10,
+        "patch": "1 mm",
+        "height": {"distribution": "uniform", "loc": "1 um", "scale": "1 um"},
+        "radius": {"distribution": "uniform", "loc": low, "scale": high - low},
+    }
+    asked = {**scene(asperities, None), "path": {"separation": [0.0]}, "output": {"variables": ["contact_area"]}}
+    area = float(rm.run({**asked, "batch": {"estimator": "expected"}}).contact_area.item())
+    assert area == pytest.approx(10 * math.pi * (high**3 - low**3) / (3.0 * (high - low)), rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("coefficient", [1e-300, 1e300])
+def test_contacts_that_no_float_holds_are_refused(coefficient: float) -> None:
+    """Cones so blunt that their areas overflow, or so sharp that they underflow; and no warning of numpy's."""
+    cones = {"shape": "power_law", "exponent": 1.0, "coefficient": coefficient}
+    asked = {**scene(cones, None), "path": {"separation": [0.0]}, "batch": {"estimator": "expected"}}
+    with pytest.raises(rm.OutOfRange, match="is not representable"):
+        rm.run(asked)
+
+
+@pytest.mark.parametrize(
+    "adhesion", [{"model": "jkr", "work": 0.05}, {"model": "dugdale", "work": 1.0, "strength": 1e8}]
+)
+def test_heights_that_reach_beyond_all_tables_are_refused_at_once(adhesion: dict[str, object]) -> None:
+    """A table up to there would be cut into pieces for minutes."""
+    heights = {"distribution": "lognorm", "s": 60.0, "scale": 1.0}
+    asked = scene({"shape": "paraboloid", "radius": 1.0, "height": heights}, adhesion, batch={"estimator": "expected"})
+    with pytest.raises(
+        rm.OutOfRange, match=r"the heights reach .* times the natural depth of Paraboloid\(radius=1\.0\)"
+    ):
+        rm.run({**asked, "path": {"separation": [1.0]}})

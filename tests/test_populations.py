@@ -206,3 +206,11 @@ def test_moments_far_out_in_a_tail(end: dict[str, float]) -> None:
     law = Drawn("m", mean=0.0)({"distribution": "normal", "std": UM, **end})
     assert abs(law.mean) - 20 * UM == pytest.approx(UM * (1 / 20 - 2 / 20**3), rel=1e-3)
     assert law.std == pytest.approx(UM * (1 / 20 - 3 / 20**3), rel=1e-3)
+
+
+def test_scipy_does_not_warn_where_roughmdr_has_looked() -> None:
+    """Of what can be drawn from, and of what is refused."""
+    drawn = Drawn("m")({"distribution": "invgauss", "mu": 0.3541, "scale": 1e-6, "mean": 314.0})
+    assert (np.diff(drawn.quantile(np.linspace(0.01, 0.99, 50))) >= 0.0).all()
+    with pytest.raises(rm.RoughmdrError, match="cannot be drawn from"):
+        Drawn("m")({"distribution": "weibull", "c": 1e-310, "scale": 1e-6})

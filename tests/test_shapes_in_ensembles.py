@@ -214,7 +214,7 @@ def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
         deep = rm.indent(rm.Paraboloid(1e-6), modulus=1e9, indentation=[1e-9, 2e-6])
     assert "1.41 times" in deep.attrs["warnings"]
     assert "slopes of up to 1.41" in deep.attrs["warnings"]
-    with pytest.warns(rm.LimitWarning, match=r"slopes of up to inf"):  # a is R to the last digit
+    with pytest.warns(rm.LimitWarning, match=r"slopes of up to 1\.8e\+308"):  # a is R to the last digit
         rm.indent(rm.Sphere(1e-5), modulus=1e6, work=0.01, indentation=0.3)
     table = rm.Tabulated([0.0, 1e-6, 2e-6], [0.0, 1e-8, 4e-8])
     with pytest.warns(rm.LimitWarning, match=r"times the radius where the profile"):
@@ -261,3 +261,33 @@ def test_what_a_shape_cannot_do_is_refused() -> None:
         rm.indent(rm.PowerSeries({0.4: 1e-3, 2.0: 1.0}), modulus=1e9, work=0.1, indentation=0.0)
     with pytest.raises(rm.OutOfRange, match="representable"):
         rm.indent(rm.Sphere(1e-6), modulus=1e9, contact_radius=1e-6)
+
+
+def test_a_tip_without_a_slope_out_of_contact() -> None:
+    """r^0.7 is upright at its tip, where the summits are that the flat does not reach."""
+    data = ensemble([1e-6, -1e-3], shape="power_series").assign(
+        exponent=("term", [0.7, 2.0]), terms=("term", [1e-3, 10.0])
+    )
+    law = rm.load_separation(data, separation=[1e-5, 0.0], modulus=1e9, work=1e-9)
+    np.testing.assert_array_equal(law.contact_count, [0.0, 1.0])
+    assert np.isinf(rm.PowerSeries({0.7: 1e-3}).df([0.0]))
+
+
+def test_a_contact_that_reaches_the_equator_has_a_slope_that_a_float_holds() -> None:
+    asperities = {"source": "random", "shape": "sphere", "count": 1, "patch": 1.0, "radius": 1e-60, "height": 0.0}
+    scene = {**SCENE, "asperities": asperities, "path": {"separation": [0.0]}, "batch": {"realizations": 1}}
+    with pytest.warns(rm.LimitWarning, match="slopes of up to"):
+        result = rm.run({**scene, "material": {"effective_modulus": 1e3}, "adhesion": {"model": "jkr", "work": 1e3}})
+    assert np.isfinite(result.edge_slope).all()
+    assert result.edge_slope.item() > 1e300
+
+
+def test_a_form_that_no_float_holds_is_refused_and_nothing_else() -> None:
+    """b^2 over the radius of the edge, which numpy would warn of."""
+    parameters = {"flat_radius": 1.0, "edge_radius": 5e-324}
+    with pytest.raises(rm.OutOfRange):
+        rm.indent(rm.RoundedPunch(**parameters), modulus=1e3, work=1.0, indentation=0.1)
+    with pytest.raises(rm.OutOfRange):
+        rm.load_separation(
+            ensemble([0.0], shape="rounded_punch", **parameters), separation=[-0.1], modulus=1e3, work=1.0
+        )

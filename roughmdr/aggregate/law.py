@@ -94,7 +94,8 @@ def compute(
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
         raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
     columns = ensemble.columns()
-    spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
+    with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
+        spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
     reach = range_of(ensemble.shape, spread, columns, modulus, adhesion)
     adhesion = adhesion.settled(reach.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])

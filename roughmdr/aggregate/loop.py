@@ -106,7 +106,7 @@ def _loop(
     for start in range(0, height.size, BLOCK):
         block = slice(start, min(start + BLOCK, height.size))
         z = height[block]
-        if z[0] < closest:
+        if _within_reach(z, closest) == 0:
             break
         n = _prepare(modulus, work, strength, width, rise, form, start, start + z.size, 0.0)
         if not measure(width[block], rise[block], n, modulus, work, energetic, scales, greatest, terms):

@@ -55,7 +55,8 @@ class Ensemble:
     def columns(self) -> tuple[Floats, Floats, Floats]:
         """Width [m], rise [m] and form [1] of each asperity; of a fixed profile the one form in a row."""
         if self.fixed is None:
-            return SHAPES[self.shape].stretch(self.parameters)
+            with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
+                return SHAPES[self.shape].stretch(self.parameters)
         width, rise, form = self.fixed.stretched()
         return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(form)[None]
 
@@ -63,7 +64,9 @@ class Ensemble:
         """The most that contacts of these radii [m], 0 for none, come to."""
         if self.fixed is None:
             kind = SHAPES[self.shape]
-            return Extremes.of(radius, kind.slopes(self.parameters, radius), kind.ends(self.parameters))
+            with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
+                slopes = kind.slopes(self.parameters, radius)
+            return Extremes.of(radius, slopes, kind.ends(self.parameters))
         return Extremes.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
 
     def labelled(self) -> Labelled:

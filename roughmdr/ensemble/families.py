@@ -4,13 +4,19 @@ scipy.stats takes longer to import than a small scene to compute. The families t
 scipy.special; they give the same bits as scipy.stats, which a test holds them to.
 """
 
+import threading
+import warnings
 from collections.abc import Callable
-from functools import cache
-from typing import Any, NamedTuple
+from functools import cache, wraps
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
 from roughmdr.arguments import Floats
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+_ALONE = threading.Lock()  # the filters of warnings are those of all threads
 
 
 class Family(NamedTuple):
@@ -113,14 +119,26 @@ def find_family(name: str) -> Family | None:
 def _from_scipy(family: Any) -> Family:
     return Family(
         () if family.shapes is None else tuple(family.shapes.split(", ")),
-        lambda *own: bool(family._argcheck(*own)),
-        lambda *own: tuple(float(moment) for moment in family.stats(*own, moments="mv")),
-        lambda u, *own: np.asarray(family.ppf(u, *own)),
-        lambda u, *own: np.asarray(family.isf(u, *own)),
-        lambda x, *own: np.asarray(family.cdf(x, *own)),
-        lambda x, *own: np.asarray(family.sf(x, *own)),
-        lambda x, *own: np.asarray(family.pdf(x, *own)),
+        _quiet(lambda *own: bool(family._argcheck(*own))),
+        _quiet(lambda *own: tuple(float(moment) for moment in family.stats(*own, moments="mv"))),
+        _quiet(lambda u, *own: np.asarray(family.ppf(u, *own))),
+        _quiet(lambda u, *own: np.asarray(family.isf(u, *own))),
+        _quiet(lambda x, *own: np.asarray(family.cdf(x, *own))),
+        _quiet(lambda x, *own: np.asarray(family.sf(x, *own))),
+        _quiet(lambda x, *own: np.asarray(family.pdf(x, *own))),
     )
+
+
+def _quiet(function: Callable[_P, _T]) -> Callable[_P, _T]:
+    """The same without scipy's warnings: what comes of it is looked at."""
+
+    @wraps(function)
+    def call(*args: _P.args, **kwargs: _P.kwargs) -> _T:
+        with _ALONE, warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            return function(*args, **kwargs)
+
+    return call
 
 
 def known_families() -> list[str]:

@@ -145,6 +145,10 @@ class NayakAsperities(PatchSource):
         """The product of the curvatures alone says what contacts bear."""
         return True
 
+    def node_count(self, order: int) -> int:
+        """One for each of their scores."""
+        return order
+
     def nodes(self, rule: Rule) -> Nodes:
         """Nodes at products of curvatures of these normal scores."""
         v = product_of_score(rule.scores)

@@ -110,11 +110,10 @@ def nodes_of(law: AsperityLaw, rule: Rule) -> Nodes:
 
 
 def _of_population(law: AsperityLaw, population: Population, rule: Rule) -> Nodes:
-    varied = [name for name, entry in population.parameters.items() if entry.constant is None]
-    order = rule.scores.size
-    numbers = np.indices((order,) * len(varied)).reshape(len(varied), order ** len(varied))
+    drawn, order = population.drawn, rule.scores.size
+    numbers = np.indices((order,) * len(drawn)).reshape(len(drawn), order ** len(drawn))
     share = population.share * np.prod(rule.weights[numbers], axis=0)
-    own = dict(zip(varied, rule.scores[numbers], strict=True))
+    own = dict(zip(drawn, rule.scores[numbers], strict=True))
     parameters = {
         name: entry.of_scores(own.get(name, np.zeros(share.size))) for name, entry in population.parameters.items()
     }

@@ -19,6 +19,11 @@ class Population:
     height: Distribution
     parameters: dict[str, Distribution]
 
+    @property
+    def drawn(self) -> list[str]:
+        """The shape parameters that are not always the same."""
+        return [name for name, entry in self.parameters.items() if entry.constant is None]
+
 
 @dataclass(frozen=True)
 class AsperityLaw:

@@ -143,8 +143,12 @@ class RandomAsperities(PatchSource):
     @property
     def one_parameter(self) -> bool:
         """Whether just one shape parameter is drawn, and from one distribution."""
-        drawn = [entry for entry in self.distributions.values() if entry.constant is None]
-        return len(drawn) == 1 and len(self.law.populations) == 1
+        first, *others = self.law.populations
+        return len(first.drawn) == 1 and not others
+
+    def node_count(self, order: int) -> int:
+        """One for each set of scores of the parameters that are drawn."""
+        return sum(order ** len(population.drawn) for population in self.law.populations)
 
     def nodes(self, rule: Rule) -> Nodes:
         """Nodes at the scores of a rule, for each shape parameter that is not a constant."""

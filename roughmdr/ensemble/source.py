@@ -62,6 +62,10 @@ class Source(Section):
         """Whether just one shape parameter is drawn, and from one distribution."""
         return False
 
+    def node_count(self, order: int) -> int:
+        """How many ``nodes`` a rule of this order has."""
+        raise NotImplementedError
+
     def nodes(self, rule: Rule) -> Nodes:
         """Asperities with weights that stand for all: at the scores of a rule for each parameter that is drawn."""
         raise NotImplementedError

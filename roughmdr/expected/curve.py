@@ -15,6 +15,7 @@ from roughmdr.aggregate.totals import AREA, COUNT, ENERGY, FORCE, RADIUS, STIFFN
 from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Heights
+from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import Table
 from roughmdr.kernels import row as places
 from roughmdr.kernels.elementwise import apply, apply_all
@@ -96,6 +97,11 @@ def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, .
 
         # A piece that reaches far higher than another begins would not hold what is small there.
         end = math.sqrt(top - foot)
+        if end > first_edge * _WIDER**_MOST_EDGES:
+            raise OutOfRange(
+                f"the heights reach {farthest:.3g} times the natural depth of {contact.shape}; the expected law "
+                f"goes up to {(first_edge * _WIDER**_MOST_EDGES) ** 2:.3g} times, estimator 'sampled' has no such limit"
+            )
         edges = [0.0, *(first_edge * _WIDER**k for k in range(_MOST_EDGES) if first_edge * _WIDER**k < end), end]
         tables.append(Table.of(bears, np.array(edges), tolerance, narrow, weight))
     first = np.cumsum([0, *(table.low.size for table in tables)])

@@ -1,7 +1,7 @@
 """The expected load-separation law: contacts integrated over the heights, and over the shape parameters.
 
 Over the heights by tables that know where contact begins and ends; over the parameters by Gauss's rule in their normal
-scores, of ever higher order until the force does not change any more.
+scores, of ever higher order until nothing changes any more.
 """
 
 import math
@@ -13,7 +13,7 @@ from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route
 from roughmdr.aggregate.law import ROW
 from roughmdr.aggregate.tabor import range_of
-from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
+from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE, STIFFNESS
 from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
@@ -31,6 +31,7 @@ _DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warn
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
 
 
+@np.errstate(all="ignore")  # what no float can hold is refused at the end
 def compute(
     source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
@@ -46,7 +47,7 @@ def compute(
     reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
     asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
     parted = Parted.of(asked)
-    rule, nodes, doubt = _enough(asked, parted)
+    rule, nodes, doubt = _enough(asked, parted, dissipating=dissipating)
     total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
     if dissipating:
         total[DISSIPATED] = dissipated_of(nodes, steps)
@@ -55,12 +56,26 @@ def compute(
             total[:, step] = parted.total(step, dissipating=dissipating)
     count = source.expected_count
     total *= count
+    if not np.isfinite(total).all():
+        raise OutOfRange(
+            f"the contact of an asperity is not representable: {asked.law.name} with modulus {modulus:g} Pa, "
+            f"{asked.adhesion}, separation down to {route.separation.min():g} m"
+        )
     largest = float(np.abs(total[FORCE]).max())
     defect = sum(node.share * node.heights.defect for node in nodes)
     total[ERROR] += (doubt + _KERNEL_ERROR + defect) * largest
     extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, float(route.separation.min()), count))
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
     return law._replace(doubts=_doubts(law.numerical_error))
+
+
+@np.errstate(all="ignore")  # nothing is made of its numbers
+def prepare(source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]) -> None:
+    """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
+    rows = tuple(dict.fromkeys([FORCE, *(ROW[name] for name in variables if ROW[name] != DISSIPATED)]))
+    for model in adhesion.candidates:
+        asked = Asked(source, route, modulus, adhesion._replace(model=model), rows)
+        totals_of(set_up(asked, Rule.smooth(1)), route.separation, rows, [0])
 
 
 def _doubts(error: float) -> tuple[str, ...]:
@@ -83,22 +98,25 @@ def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
     return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
 
 
-def _enough(asked: Asked, parted: Parted | None) -> tuple[Rule, list[Node], float]:
-    """A rule with so many nodes that more do not change the force, they, and how far the force over its largest is off.
+def _enough(asked: Asked, parted: Parted | None, *, dissipating: bool) -> tuple[Rule, list[Node], float]:
+    """A rule with so many nodes that more change nothing, they, and how far the force over its largest is off.
 
-    Steps at which the rule is parted do not count.
+    Of all that is asked for, but for the stiffness, which runs off where contacts let go. Steps at which the rule is
+    parted do not count.
     """
     separation = asked.route.separation
     steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
     if not asked.hysteretic:
         steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
+    rows = tuple(row for row in asked.rows if row != STIFFNESS)
 
-    def force(nodes: list[Node]) -> Floats:
-        return np.asarray(totals_of(nodes, separation, (FORCE,), steps)[0][FORCE])
+    def curves(nodes: list[Node]) -> Floats:
+        found = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
+        return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
 
-    rule, doubt, before = Rule.smooth(_ORDERS[0]), math.inf, math.inf
+    rule, doubts, before = Rule.smooth(_ORDERS[0]), np.array([math.inf]), np.array([math.inf])
     nodes = set_up(asked, rule)
-    found = force(nodes)
+    found = curves(nodes)
     for order in _ORDERS[1:]:
         finer_rule = Rule.smooth(order)
         count = asked.source.nodes(finer_rule).share.size
@@ -107,16 +125,21 @@ def _enough(asked: Asked, parted: Parted | None) -> tuple[Rule, list[Node], floa
         if count > _MOST_NODES:
             break
         finer = set_up(asked, finer_rule)
-        again = force(finer)
-        largest = float(np.abs(again).max())
-        before, doubt = doubt, float(np.abs(again - found).max()) / largest if largest > 0.0 else 0.0
-        if doubt <= _AGREE:
+        again = curves(finer)
+        largest, apart = (np.abs(values).max(axis=1, initial=0.0) for values in (again, again - found))
+        before, doubts = doubts, apart / np.where(largest > 0.0, largest, 1.0)
+        if doubts.max() <= _AGREE:
             break
         rule, nodes, found = finer_rule, finer, again
-        if doubt > _SLOW * before:
+        if doubts.max() > _SLOW * before.max():
             break
+    doubt, last = float(doubts[0]), float(before[0])  # of the force
+    if doubt <= _AGREE or last == math.inf:
+        return rule, nodes, doubt
     # What is left is the sum of all differences to come: they fall as the last two did, or more slowly.
-    fall = min(doubt / before, _SLOWEST) if doubt > _AGREE and before < math.inf else 0.0
+    fall = min(doubt / last, _SLOWEST) if last > 0.0 else _SLOWEST
+    if asked.hysteretic or doubt > _SLOW * last:  # between kinks two orders may agree by chance
+        doubt = max(doubt, last)
     return rule, nodes, doubt * max(fall / (1.0 - fall), 1.0)
 
 

@@ -18,6 +18,9 @@ _ANGLES = np.pi * (np.arange(ORDER) + 0.5) / ORDER
 _NODES = np.cos(_ANGLES)
 _TO_COEFFICIENTS = 2.0 / ORDER * np.cos(np.outer(np.arange(ORDER), _ANGLES))
 _TO_COEFFICIENTS[0] *= 0.5
+_ENDS = np.array([-1.0, 1.0]) * (1.0 - 2.0**-26)  # just inside: what a function does there alone, no node sees
+_AT_ENDS = np.polynomial.chebyshev.chebvander(_ENDS, ORDER - 1)
+_POINTS = np.concatenate([_NODES, _ENDS])
 _TAIL = 2  # of the last coefficients, which tell how far the polynomial is off
 
 
@@ -45,25 +48,27 @@ class Table(NamedTuple):
     ) -> "Table":
         """The table of ``function``, points -> [row, point], between ``edges``.
 
-        A piece is held where its last coefficients, times the ``weight`` of the piece, are below ``tolerance`` [row] of
-        the greatest value on it, or are roundings, and the first row's values do not vary by more than ``ratio``; or
-        where it is ``narrow`` (its ends -> how narrow).
+        A piece is held where its last coefficients and what it is off at its ends, times the ``weight`` of the piece,
+        are below ``tolerance`` [row] of the greatest value on it, or are roundings, and the first row's values do not
+        vary by more than ``ratio``; or where it is ``narrow`` (its ends -> how narrow).
         """
         low, high = edges[:-1], edges[1:]
         held: list[tuple[Floats, ...]] = []
         before = np.full((low.size, tolerance.size), np.inf)
         for _ in range(_MOST_HALVINGS):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
-            values = function((middle[:, None] + half[:, None] * _NODES).ravel())
-            values = values.reshape(values.shape[0], -1, ORDER).swapaxes(0, 1)
+            values = function((middle[:, None] + half[:, None] * _POINTS).ravel())
+            values = values.reshape(values.shape[0], -1, _POINTS.size).swapaxes(0, 1)
+            values, ends = values[..., :ORDER], values[..., ORDER:]
             coefficients = values @ _TO_COEFFICIENTS.T
             tail = np.abs(coefficients[..., -_TAIL:]).max(axis=-1)
+            tail = np.maximum(tail, np.abs(coefficients @ _AT_ENDS.T - ends).max(axis=-1))
             greatest = np.abs(values).max(axis=-1)
             coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
             least = np.abs(values[:, 0]).min(axis=-1)
             noise = (tail <= _NOISE * greatest) & (tail > _BETTER * before)
             fine = ((weight(low, high)[:, None] * tail <= tolerance * greatest) | noise).all(axis=-1) & (
-                greatest[:, 0] <= ratio * least
+                greatest[:, 0] / ratio <= least
             )
             done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
             done |= low.size > _MOST_AT_ONCE
