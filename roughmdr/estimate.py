@@ -60,9 +60,10 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     prepare_all(plan)
     start_up, resident = _start_up(plan.cells[0]), _resident()
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
-    costs, failures = _costs(plan, sorted(chosen.tolist()))
+    rounds = Rounds(plan)
+    costs, failures = _costs(plan, rounds, sorted(chosen.tolist()))
     variables, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
-    first = Rounds(plan).begin()
+    first = rounds.begin()
     runs = sum(stretch.last - stretch.first for stretch in first)
     tasks = len(cut(plan, first, variables, workers))
     busy = min(workers, tasks, _cores())
@@ -88,12 +89,12 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     )
 
 
-def _costs(plan: Plan, cells: list[int]) -> tuple[list[_Cost], list[str]]:
+def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], list[str]]:
     """The costs of those cells that can be run, and why the others cannot; RoughmdrError where none can."""
     costs, failures = [], []
     for cell in cells:
         try:
-            costs.append(_cost(plan, plan.cells[cell]))
+            costs.append(_cost(plan, plan.cells[cell], rounds.choices[cell].estimator))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(cell, 0)}: {error}")
     if not costs:
@@ -101,7 +102,7 @@ def _costs(plan: Plan, cells: list[int]) -> tuple[list[_Cost], list[str]]:
     return costs, failures
 
 
-def _cost(plan: Plan, cell: Cell) -> _Cost:
+def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
     """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
     scene, route = cell.scene, cell.route
     section = scene.asperities.sampled(_SAMPLE)
@@ -112,10 +113,10 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
 
     def run() -> tuple[float, float]:
         started = time.perf_counter()
-        if scene.estimator == "expected":
+        if estimator == "expected":
             law_of(scene, route, 0, plan.scene.output.variables, "expected")
             return 0.0, time.perf_counter() - started
-        ensemble = section.ensemble(scene.seed, 0)
+        ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
         made = time.perf_counter()
         compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=plan.scene.output.variables)
         return made - started, time.perf_counter() - made
@@ -125,8 +126,7 @@ def _cost(plan: Plan, cell: Cell) -> _Cost:
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
-    sampled = scene.estimator != "expected"
-    part = scene.asperities.expected_count / section.expected_count if sampled else 1.0
+    part = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
     return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
 
 

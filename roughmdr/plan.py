@@ -96,17 +96,26 @@ def _cells(scene: Scene) -> Iterator[Cell]:
 
 def prepare_all(plan: Plan) -> None:
     """Compile what a plan needs, once, before several threads or a clock need it."""
-    needed: dict[tuple[object, ...], Cell] = {}
-    for cell in plan.cells:
-        law = cell.scene.law
-        needed.setdefault((cell.scene.asperities.shape_name, law.work > 0.0, law.candidates, law.known), cell)
-    for scene, route in needed.values():
-        if scene.estimator == "expected":
-            one = Route.along(route.separation[:1], unload=False, adhesive=scene.work > 0.0)
-            with suppress(RoughmdrError):  # that is said of the whole path
-                law_of(scene, one, 0, plan.scene.output.variables, scene.estimator)
-        else:
-            prepare(scene.asperities.shape_name, scene.law)
+    kinds: set[tuple[object, ...]] = set()
+    for scene, route in plan.cells:
+        for estimator in scene.estimators:
+            law, shape = scene.law, scene.asperities.shape_name
+            kind = shape, law.work > 0.0, law.candidates, law.known, estimator == "expected"
+            if kind in kinds:
+                continue
+            kinds.add(kind)
+            if estimator == "expected":
+                one = Route.along(route.separation[:1], unload=False, adhesive=scene.work > 0.0)
+                with suppress(RoughmdrError):  # that is said of the whole path
+                    _prepare_expected(scene, one, plan.scene.output.variables)
+            else:
+                prepare(shape, law)
+
+
+def _prepare_expected(scene: Scene, route: Route, variables: list[str]) -> None:
+    from roughmdr import expected
+
+    expected.prepare(scene.asperities, route, modulus=scene.modulus, adhesion=scene.law, variables=variables)
 
 
 def law_of(scene: Scene, route: Route, realization: int, variables: list[str], estimator: str) -> LoadSeparation:

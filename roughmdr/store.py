@@ -7,6 +7,7 @@ import tempfile
 import threading
 from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,14 +33,21 @@ _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 def provenance(title: str, command: str) -> dict[str, str]:
     """The attributes that say what made a file, and with which versions."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
+    source, packages = _made_with()
     return {
         "Conventions": "CF-1.11",
         "title": title,
-        "source": f"roughmdr {version('roughmdr')}",
+        "source": source,
         "history": f"{now}: {command}",
-        "packages": ", ".join(versions),
+        "packages": packages,
     }
+
+
+@cache
+def _made_with() -> tuple[str, str]:
+    """The version of the package, and of what it needs: looked up once, which takes as long as a small scene."""
+    versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
+    return f"roughmdr {version('roughmdr')}", ", ".join(versions)
 
 
 def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 import time
@@ -96,7 +95,8 @@ class Batch:
         return computed(said)
 
     def kill(self) -> None:
-        os.kill(self.pid, signal.SIGKILL)
+        """Unless it has ended by itself."""
+        self.process.kill()
         self.process.wait()
         self._said.close()
 

@@ -16,9 +16,14 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.analysis import pull_off_force
 from roughmdr.batch import shard, tasks
-from roughmdr.batch.rounds import FIRST, Rounds, bound, next_count
+from roughmdr.batch.costs import seconds
+from roughmdr.batch.enough import FIRST, bound, next_count
+from roughmdr.batch.rounds import Rounds
 from roughmdr.cli import main
-from roughmdr.plan import make_plan
+from roughmdr.contact import Contact
+from roughmdr.ensemble.nodes import Nodes
+from roughmdr.expected import node
+from roughmdr.plan import make_plan, prepare_all
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
 from roughmdr.scene.sections import Accuracy
@@ -34,6 +39,12 @@ def asking(relative: float, method: str | None = "sampled", most: int | None = N
     entries = {"relative": relative, "method": method, "max_realizations": most}
     accuracy = {key: value for key, value in entries.items() if value is not None}
     return scene(**{"asperities": FEW, "path": PATH, "batch": None, "accuracy": accuracy, **changes})
+
+
+def methods(found: xr.Dataset) -> list[str]:
+    """Of each cell."""
+    names = found.accuracy_method.attrs["flag_meanings"].split()
+    return [names[method] for method in np.atleast_1d(found.accuracy_method)]
 
 
 def kept(keep: str, *variables: str) -> dict[str, Any]:
@@ -79,7 +90,7 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
     law = go(scene(asperities=FEW, path=PATH, batch={"estimator": "expected"}, output=kept("curves")))
     force = found.force[0] if keep == "curves" else found.force_mean
     np.testing.assert_array_equal(force, law.force[0])
-    assert found.accuracy_method.attrs["flag_meanings"].split()[int(found.accuracy_method)] == "expected"
+    assert methods(found) == ["expected"]
     assert float(found.accuracy_reached) == float(law.numerical_error[0]) < 1e-4
     assert found.realization_count == 1
     assert "the expected law, which has no noise, in 1 of them" in found.attrs["accuracy"]
@@ -90,27 +101,106 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: str) -> None:
     found = go(asking(1e-16, None, 20, output=kept(keep)))
-    assert found.accuracy_method.attrs["flag_meanings"].split()[int(found.accuracy_method)] == "sampled"
+    assert methods(found) == ["stratified"]
     assert found.realization_count == 20
-    drawn = go(asking(1e-16, "sampled", 20, output=kept(keep)))
+    drawn = go(asking(1e-16, "stratified", 20, output=kept(keep)))
     assert_same(found.assign_attrs(scene=""), drawn.assign_attrs(scene=""))
     assert "expected" not in found.attrs["accuracy"]
 
 
 def test_where_all_heights_are_the_same_asperities_are_drawn() -> None:
     found = go(asking(0.1, None, asperities=LEVEL))
-    assert found.accuracy_method.attrs["flag_meanings"].split()[int(found.accuracy_method)] == "sampled"
+    assert methods(found) == ["stratified"]
     still = {**LEVEL, "radius": "50 um", "count": 10}
     assert go(asking(1e-9, None, asperities=still)).realization_count == FIRST
 
 
 def test_each_cell_has_the_method_that_fits_it() -> None:
-    table = asking(0.1, None, asperities={**FEW, "correlation": {"radius": 0.0}})
+    table = asking(2e-3, None, 100, asperities={**FEW, "correlation": {"radius": 0.0}})
     found = go({**table, "sweep": {"asperities.correlation.radius": [0.5, 1.0]}})
-    names = found.accuracy_method.attrs["flag_meanings"].split()
-    assert [names[method] for method in found.accuracy_method.to_numpy()] == ["expected", "sampled"]
+    assert methods(found) == ["expected", "stratified"]
     assert "realisations in 1 of them; the expected law, which has no noise, in 1 of them" in found.attrs["accuracy"]
     assert found.status[0].to_numpy().tolist() == [0] + [2] * (found.sizes["realization"] - 1)
+
+
+def made(table: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> tuple[xr.Dataset, list[tuple[str, int]]]:
+    """What is found, and the runs that were made for it."""
+    runs, run = list[tuple[str, int]](), tasks._run
+
+    def counting(part: tasks.Part, realization: int, names: Any) -> Any:
+        runs.append((part.estimator, realization))
+        return run(part, realization, names)
+
+    monkeypatch.setattr(tasks, "_run", counting)
+    return go(table, workers=1), runs
+
+
+EVEN = [("stratified", number) for number in range(FIRST)]
+ALIKE: dict[str, Any] = {**FEW, "radius": "50 um"}
+
+
+@pytest.mark.parametrize(
+    ("table", "runs"),
+    [
+        (asking(0.2, None), EVEN),
+        (asking(1e-4, None), [*EVEN, ("expected", 0)]),
+        (asking(1e-4, None, FIRST), [*EVEN, ("expected", 0)]),
+        (asking(0.2, None, asperities={**FEW, "count": 1_000_000}), [("expected", 0)]),
+        (asking(0.2, None, asperities={**ALIKE, "count": 30_000}), [("expected", 0)]),
+    ],
+)
+def test_the_cheaper_of_draws_and_the_expected_law_is_made(
+    table: dict[str, Any], runs: list[tuple[str, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Few draws where they are enough; where they are not, or more than the expected law takes, that; by counting."""
+    found, counted = made(table, monkeypatch)
+    assert counted == runs
+    assert methods(found) == [runs[-1][0]]
+    assert float(found.accuracy_reached) <= table["accuracy"]["relative"]
+
+
+def test_to_prepare_for_the_expected_law_takes_one_asperity(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It may never be needed, and can take a thousand times as long as the draws."""
+    counts, contacts_of = list[int](), node.contacts_of
+
+    def counting(asked: node.Asked, nodes: Nodes) -> list[Contact]:
+        counts.append(nodes.share.size)
+        return contacts_of(asked, nodes)
+
+    monkeypatch.setattr(node, "contacts_of", counting)
+    prepare_all(make_plan(read(asking(0.1, None))))
+    assert counts == [1]
+
+
+def test_draws_go_on_where_they_stood_when_the_expected_law_is_not_right_enough(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _, runs = made(asking(1e-16, None, 20), monkeypatch)
+    assert runs == [*EVEN, ("expected", 0), *(("stratified", number) for number in range(FIRST, 20))]
+
+
+@pytest.mark.parametrize(("density", "method"), [("50 /mm^2", "stratified"), ("33 /mm^2", "sampled")])
+def test_asperities_whose_number_would_be_rounded_are_drawn_one_by_one(density: str, method: str) -> None:
+    """Of 33 on 0.04 mm^2 there are 1.32 on average, and 1 would be another surface."""
+    few = {**{key: value for key, value in FEW.items() if key != "count"}, "density": density, "patch": "0.2 mm"}
+    assert methods(go(asking(0.9, None, FIRST, asperities={**few, "height": "0 um"}))) == [method]
+
+
+def test_more_parameters_make_the_expected_law_dearer() -> None:
+    """And so do adhesion, and shapes whose contacts each have a table of their own; draws cost by their number."""
+    cone = {key: value for key, value in FEW.items() if key != "radius"} | {"shape": "truncated_cone"}
+    drawn = {"distribution": "uniform", "loc": 1e-6, "scale": 1e-6}
+    costs = []
+    for slope in (0.1, {"distribution": "uniform", "loc": 0.1, "scale": 0.1}):
+        table = asking(0.1, None, asperities={**cone, "slope": slope, "flat_radius": drawn})
+        for work in (0.0, 0.05):
+            cell = make_plan(read({**table, "adhesion": {"model": "jkr", "work": work}})).cells[0]
+            costs.append(seconds(cell, "expected"))
+    fixed, sticky_fixed, drawn_twice, sticky_drawn_twice = costs
+    assert fixed < sticky_fixed < sticky_drawn_twice / 20.0
+    assert fixed < drawn_twice < sticky_drawn_twice / 20.0
+    few, many = (make_plan(read(asking(0.1, asperities={**FEW, "count": n}))).cells[0] for n in (10_000, 1_000_000))
+    assert seconds(many, "sampled") == pytest.approx(100.0 * seconds(few, "sampled"), rel=0.2)
 
 
 def test_the_expected_law_alone_says_where_it_is_not_right_enough() -> None:

@@ -237,7 +237,7 @@ def test_what_is_used_again_is_said(tmp_path: Path) -> None:
 
 
 def test_the_error_of_no_realisations_with_force_is_not_known() -> None:
-    from roughmdr.batch.rounds import relative_error
+    from roughmdr.batch.enough import relative_error
 
     nothing = np.zeros(3)
     assert relative_error(Tally(5, nothing, nothing, nothing, nothing)) == np.inf

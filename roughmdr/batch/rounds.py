@@ -3,24 +3,14 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from roughmdr.batch.costs import seconds
+from roughmdr.batch.enough import FIRST, enough, next_count, relative_error, still_missing
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.identity import keys_of
 from roughmdr.batch.shard import DONE
-from roughmdr.batch.tally import Tally
 from roughmdr.batch.tasks import Stretch
 from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
-
-FIRST = 16
-"""Realisations at least, before a standard error is believed at all."""
-_AFTER_ALL = "sampled"  # with accuracy.method "auto", where the expected law is not right enough
-_SCORE = 2.326  # of 99 %: the share of cases in which the true standard error is to be met
-_CARE = 0.7  # of the realisations that seem to be missing, how many are added before the next look
-_LEAST = 0.02  # of those that there are, how many are added at least
-_GROWTH = 4  # times as many at most from one look to the next
-_FAR = 1e3  # times too large, an error asks for more than _GROWTH whatever it is
 
 
 class Choice(NamedTuple):
@@ -38,14 +28,17 @@ class Rounds:
 
     def __init__(self, plan: Plan) -> None:
         self._plan, self._accuracy = plan, plan.scene.accuracy
-        estimators = {cell.scene.estimator for cell in plan.cells}
-        if self._accuracy is not None and self._accuracy.method == "auto":
-            estimators.add(_AFTER_ALL)
+        estimators = {estimator for cell in plan.cells for estimator in cell.scene.estimators}
         self._keys = {estimator: keys_of(plan, estimator) for estimator in sorted(estimators)}
         self._choices = [self._first_choice(cell) for cell in range(len(plan.cells))]
         alike: dict[str, int] = {}
         self._leader = [alike.setdefault(choice.key, cell) for cell, choice in enumerate(self._choices)]
         self._open = list(alike.values())
+        self._made: dict[str, int] = {}
+        self._drawn: dict[int, Choice] = {}
+        """Of cells whose expected law came, or comes, after draws."""
+        self._ruled_out: set[int] = set()
+        """Cells whose expected law is not right enough."""
 
     @property
     def choices(self) -> list[Choice]:
@@ -63,78 +56,72 @@ class Rounds:
 
     def begin(self) -> list[Stretch]:
         """The runs of the first round."""
-        return [self._stretch(cell, 0) for cell in self._open]
+        return [self._stretch(cell) for cell in self._open]
 
     def next(self, gathered: Gathered) -> list[Stretch]:
         """The runs of the next round, given what was gathered in those before; none where there are enough."""
         if self._accuracy is None:
             return []
-        stretches, still_open = [], []
         for cell in self._open:
-            before = self._choices[cell]
-            now = self._judged(cell, before, gathered, self._accuracy)
-            self._choices[cell] = now
-            if (now.key, now.realizations) != (before.key, before.realizations):
-                still_open.append(cell)
-                stretches.append(self._stretch(cell, before.realizations if now.key == before.key else 0))
-        self._open = still_open
-        return stretches
+            self._choices[cell] = self._judged(cell, self._choices[cell], gathered, self._accuracy)
+        wanting = [(cell, self._choices[cell]) for cell in self._open]
+        self._open = [cell for cell, choice in wanting if choice.realizations > self._made.get(choice.key, 0)]
+        return [self._stretch(cell) for cell in self._open]
 
-    def _stretch(self, cell: int, first: int) -> Stretch:
-        return Stretch(cell, first, self._choices[cell].realizations, self._choices[cell].estimator)
+    def _stretch(self, cell: int) -> Stretch:
+        """What the choice of a cell needs beyond what was made."""
+        key, estimator, count, _ = self._choices[cell]
+        first, self._made[key] = self._made.get(key, 0), count
+        return Stretch(cell, first, count, estimator)
 
     def _choice(self, cell: int, estimator: str, count: int) -> Choice:
         return Choice(self._keys[estimator][cell], estimator, count)
 
     def _first_choice(self, cell: int) -> Choice:
-        scene = self._plan.cells[cell].scene
-        if self._accuracy is None:
-            return self._choice(cell, scene.estimator, scene.batch.realizations)
-        return self._choice(cell, scene.estimator, 1 if scene.estimator == "expected" else self._few(self._accuracy))
+        own, accuracy = self._plan.cells[cell], self._accuracy
+        estimator, *other = own.scene.estimators
+        if accuracy is None:
+            return self._choice(cell, estimator, own.scene.batch.realizations)
+        if estimator == "expected" or (other and self._dearer(cell, self._few(accuracy))):
+            return self._choice(cell, "expected", 1)
+        return self._choice(cell, estimator, self._few(accuracy))
 
     def _few(self, accuracy: Accuracy) -> int:
         """How many realisations to begin with."""
         return min(max(self._plan.scene.batch.realizations, FIRST), accuracy.max_realizations)
 
+    def _dearer(self, cell: int, draws: float) -> bool:
+        """Whether so many draws cost more than the expected law."""
+        own = self._plan.cells[cell]
+        drawn, law = (seconds(own, estimator) for estimator in own.scene.estimators)
+        return draws * drawn > law
+
     def _judged(self, cell: int, choice: Choice, gathered: Gathered, accuracy: Accuracy) -> Choice:
         """The choice with its error where it is good enough or nothing can be done, else a better one."""
         if choice.estimator == "expected":
-            row = gathered.beside(choice.key)
-            if accuracy.method == "auto" and not (row.status == DONE and row.numerical_error <= accuracy.relative):
-                return self._choice(cell, _AFTER_ALL, self._few(accuracy))
-            return choice._replace(error=row.numerical_error)
+            return self._judged_law(cell, choice, gathered, accuracy)
         tally = gathered.watched(choice.key, choice.realizations)
         if tally is None:  # some failed
             return choice
         error = relative_error(tally)
+        known = choice._replace(error=error if error < math.inf else math.nan)
+        if enough(choice.realizations, error, accuracy):
+            return known
         count = next_count(choice.realizations, error, accuracy)
-        error = error if error < math.inf else math.nan
-        return choice._replace(error=error) if count == choice.realizations else choice._replace(realizations=count)
+        missing = still_missing(choice.realizations, error, accuracy)
+        at_its_end = count == choice.realizations
+        may_integrate = "expected" in self._plan.cells[cell].scene.estimators and cell not in self._ruled_out
+        if may_integrate and (at_its_end or self._dearer(cell, missing)):
+            self._drawn[cell] = choice
+            return self._choice(cell, "expected", 1)
+        return known if at_its_end else choice._replace(realizations=count)
 
-
-def relative_error(tally: Tally) -> float:
-    """The largest standard error of the mean force [step] over its largest magnitude; inf without any force."""
-    largest = float(np.max(np.abs(tally.mean)))
-    return float(np.max(tally.standard_error)) / largest if largest > 0.0 else math.inf
-
-
-def bound(count: int) -> float:
-    """By how much the true standard error may exceed that of ``count`` normal realisations, in 99 % of cases.
-
-    From the chi-squared distribution (E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684).
-    """
-    a = 2.0 / (9.0 * (count - 1))
-    share = 1.0 - a - _SCORE * math.sqrt(a)
-    return share**-1.5 if share > 0.0 else math.inf
-
-
-def next_count(count: int, error: float, accuracy: Accuracy) -> int:
-    """How many realisations to look at next, where ``count`` have this ``error``; ``count`` where they are enough."""
-    if count >= accuracy.max_realizations or error * bound(count) <= accuracy.relative:
-        return count
-    ratio = min(error / accuracy.relative, _FAR)
-    needed = float(count)
-    for _ in range(4):  # the bound comes down as the count goes up
-        needed = max(count * (ratio * bound(math.ceil(needed))) ** 2, count + 1.0)
-    added = max(_CARE * (needed - count), _LEAST * count, 1.0)
-    return min(count + math.ceil(added), _GROWTH * count, accuracy.max_realizations)
+    def _judged_law(self, cell: int, choice: Choice, gathered: Gathered, accuracy: Accuracy) -> Choice:
+        """The same of an expected law."""
+        row = gathered.beside(choice.key)
+        if accuracy.method == "expected" or (row.status == DONE and row.numerical_error <= accuracy.relative):
+            return choice._replace(error=row.numerical_error)
+        self._ruled_out.add(cell)
+        if cell in self._drawn:
+            return self._judged(cell, self._drawn[cell], gathered, accuracy)
+        return self._choice(cell, self._plan.cells[cell].scene.estimators[0], self._few(accuracy))

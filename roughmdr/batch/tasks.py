@@ -8,17 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.arguments import Floats
+from roughmdr.batch.costs import seconds
 from roughmdr.batch.identity import check_versions
 from roughmdr.batch.shard import FAILED, LAWS, Row, Shard, table_of
 from roughmdr.batch.tally import Tallies, Tally
 from roughmdr.errors import RoughmdrError
 from roughmdr.plan import Cell, Plan, law_of
 
-# Seconds on one core of a small server, only to cut a batch into tasks: to begin a run, to draw and sort an asperity,
-# and to visit it at one step, by what makes the visit slow.
-_RUN, _DRAW = 1.5e-4, 2e-7
-_VISIT, _VISIT_CURVED, _VISIT_COHESIVE, _VISIT_COHESIVE_CURVED = 5e-9, 1.2e-7, 3e-7, 4e-5
-_NODES = 10_000  # what an expected law takes, in visits a step
 _AT_ONCE = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
 _LEAST, _USUAL, _MOST = 0.05, 0.1, 3.0  # what a task takes [s]
 _MANY = 4000  # of so many tasks each may take longer
@@ -81,20 +77,6 @@ def cut(plan: Plan, stretches: Sequence[Stretch], variables: Sequence[str], work
                 tasks.append(group)
                 group, filled, runs = [], 0.0, 0
     return [*tasks, group] if group else tasks
-
-
-def seconds(cell: Cell, estimator: str) -> float:
-    """About what one run takes [s]."""
-    law, section = cell.scene.law, cell.scene.asperities
-    simple = section.shape_name == "paraboloid" or not law.work
-    if "dugdale" in law.candidates:
-        visit = _VISIT_COHESIVE if simple else _VISIT_COHESIVE_CURVED
-    else:
-        visit = _VISIT if simple else _VISIT_CURVED
-    steps = cell.route.separation.size
-    if estimator == "expected":
-        return _NODES * visit * steps
-    return _RUN + section.expected_count * (_DRAW + visit * steps)
 
 
 def compute(task: Task) -> Shard:

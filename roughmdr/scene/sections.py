@@ -27,6 +27,7 @@ from roughmdr.variables import DEFAULT, LAW
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _ERROR = 0.01  # of the largest force, by which "auto" may be off unless the scene says otherwise
 _MOST = 1_000_000_000  # realisations
+_UNSEEN = 0.01  # of the error that is asked for
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, most=0.5))]
 
 
@@ -119,7 +120,7 @@ class Batch(Section):
 class Accuracy(Section):
     """[accuracy]: realisations are added until the standard error of the mean force, over its largest value, is met.
 
-    ``method`` "auto" takes the expected law of each cell where there is one that is right enough, and else draws.
+    ``method`` "auto" takes the cheaper of evenly spread draws and the expected law, where that is right enough.
     """
 
     relative: Annotated[float, BeforeValidator(Quantity("1", above=0.0, most=1.0))]
@@ -224,13 +225,19 @@ class Scene(Section):
             raise _misfit("accuracy.method", f"cannot be {method!r}: {reason}")
 
     @property
-    def estimator(self) -> str:
-        """How its realisations are made, to begin with: with accuracy.method "auto" there may come another one."""
+    def estimators(self) -> tuple[str, ...]:
+        """How its realisations may be made: in one way, or with accuracy.method "auto" by draws or the expected law.
+
+        Evenly spread draws come to an error sooner. Their number is rounded, which must not count beside it.
+        """
         if self.accuracy is None:
-            return self.batch.estimator
+            return (self.batch.estimator,)
         if self.accuracy.method != "auto":
-            return self.accuracy.method
-        return "sampled" if self.asperities.unfit_for("expected") else "expected"
+            return (self.accuracy.method,)
+        count = self.asperities.expected_count
+        whole = abs(count - round(count)) <= _UNSEEN * self.accuracy.relative * count
+        drawn = "stratified" if whole else "sampled"
+        return (drawn,) if self.asperities.unfit_for("expected") else (drawn, "expected")
 
     @property
     def modulus(self) -> float:
