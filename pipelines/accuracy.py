@@ -21,7 +21,7 @@ from accuracy_picture import draw
 
 import roughmdr as rm
 from roughmdr.arguments import Floats
-from roughmdr.batch.rounds import FIRST, next_count, relative_error
+from roughmdr.batch.enough import FIRST, next_count, relative_error
 from roughmdr.batch.tally import Tallies
 from roughmdr.labelled import Labelled
 from roughmdr.scene.sections import Accuracy

@@ -11,6 +11,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from peak import peak
+
 from roughmdr.batch.identity import keys_of
 from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan, law_of, make_plan, prepare_all
@@ -52,12 +54,6 @@ def swept(cells: int) -> Scene:
         "asperities.radius": {"linspace": [1e-5, 1e-4], "num": cells // works},
     }
     return tiny(sweep=sweep)
-
-
-def peak() -> int:
-    """Bytes of this process at most so far."""
-    with open("/proc/self/status") as status:
-        return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
 
 
 def run_time(result: Labelled) -> float:

@@ -1,13 +1,18 @@
-"""The expected force of paraboloids, slow and plain: a double integral with many digits, by nothing of the package.
+"""Expected force and area of paraboloids, slow and plain: double integrals with many digits, by nothing of the package.
 
 Over the heights by the contact radius a, in which both Hertz's law and JKR's are closed forms and the fold is smooth;
-over the radius of the tip by the trapezoidal rule in its normal score, which converges as fast as Gauss's.
+over the radius of the tip by the trapezoidal rule in its normal score, which converges as fast as Gauss's, and where
+some tips have let go of their lowest summits and others not by a rule for either.
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 from mpmath import mp, mpf
+
+Quantity = Callable[[mpf, mpf], mpf]
+"""Of a contact of radius a [m] of a tip of radius R [m]."""
 
 
 class Rough(NamedTuple):
@@ -26,25 +31,40 @@ class Rough(NamedTuple):
     def force(self, separation: float, closest: float | None = None, digits: int = 25) -> float:
         """Expected force [N] of one asperity at a separation [m], on the way in.
 
-        On the way back the flat has been as near as ``closest`` [m]. Not where some tips of this radius law have let go
-        of their lowest summits and others not: there the trapezoidal rule would meet a kink.
+        On the way back the flat has been as near as ``closest`` [m].
         """
+        return self._mean(self._force, separation, closest, digits)
+
+    def area(self, separation: float, closest: float | None = None, digits: int = 25) -> float:
+        """Expected contact area [m2], likewise."""
+        return self._mean(lambda a, R: mp.pi * a * a, separation, closest, digits)
+
+    def _force(self, a: mpf, R: mpf) -> mpf:
+        E, w = mpf(self.modulus), mpf(self.work)
+        return 4 * E * a**3 / (3 * R) - 2 * E * a * mp.sqrt(2 * mp.pi * a * w / E)
+
+    def _mean(self, quantity: Quantity, separation: float, closest: float | None, digits: int) -> float:
+        """Of a quantity, over the radii of the tips."""
         with mp.workdps(digits + 5):
             h = mpf(separation)
             nearest = h if closest is None else mpf(closest)
             if not self.radius_std:
-                return float(self._tip(mpf(self.radius), h, nearest, digits))
+                return float(self._tip(quantity, mpf(self.radius), h, nearest, digits))
             spread = mp.sqrt(mp.log1p((mpf(self.radius_std) / self.radius) ** 2))
             median = self.radius * mp.exp(-spread * spread / 2)
-            step, end = _trapezoid(digits)
-            total = mpf(0)
-            for number in range(-end, end + 1):
-                score = number * step
-                share = step * mp.npdf(score)
-                total += share * self._tip(median * mp.exp(spread * score), h, nearest, digits)
-            return float(total)
 
-    def _tip(self, R: mpf, h: mpf, nearest: mpf, digits: int) -> mpf:
+            def share(score: mpf) -> mpf:
+                return mp.npdf(score) * self._tip(quantity, median * mp.exp(spread * score), h, nearest, digits)
+
+            step, end = _trapezoid(digits)
+            if self.work and h > nearest:  # tips of this radius are about to let go of their lowest summits
+                last = (4 * (h - nearest) / 3) ** 3 * (self.modulus / (mp.pi * self.work)) ** 2
+                kink = mp.log(last / median) / spread
+                if abs(kink) < step * end:
+                    return float(mp.quad(share, [-step * end, kink, step * end]))
+            return float(step * mp.fsum(share(number * step) for number in range(-end, end + 1)))
+
+    def _tip(self, quantity: Quantity, R: mpf, h: mpf, nearest: mpf, digits: int) -> mpf:
         """Of tips of radius R."""
         E, w = mpf(self.modulus), mpf(self.work)
         floor = nearest if self.heights == "normal" else max(nearest, 0)
@@ -53,12 +73,11 @@ class Rough(NamedTuple):
         if not begin < end:
             return mpf(0)
 
-        def bears(a: mpf) -> mpf:
+        def share(a: mpf) -> mpf:
             stretch = mp.sqrt(2 * mp.pi * a * w / E)
-            force = 4 * E * a**3 / (3 * R) - 2 * E * a * stretch
-            return force * self._density(h + a * a / R - stretch) * (2 * a / R - stretch / (2 * a))
+            return quantity(a, R) * self._density(h + a * a / R - stretch) * (2 * a / R - stretch / (2 * a))
 
-        return mp.quad(bears, mp.linspace(begin, end, 7), method="gauss-legendre")
+        return mp.quad(share, mp.linspace(begin, end, 7), method="gauss-legendre")
 
     def _top(self, digits: int) -> mpf:
         """A height that one of 10^(digits + 4) summits reaches: the force grows while they get fewer."""

@@ -6,10 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import roughmdr as rm
 from roughmdr._jit import compiled
+from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble
 from roughmdr.shapes import SHAPES, Curved, PowerLaw, Shape
 from roughmdr.shapes.kappa import kappa
@@ -37,52 +39,75 @@ def cost_of(action: Callable[[], int], repeats: int) -> Cost:
     return Cost(min(times), visits)
 
 
-def by_numpy(ensemble: Ensemble, path: np.ndarray, modulus: float, work: float) -> Cost:
-    """The same with vectors, as most would write it: loading only, JKR by six Newton steps on t^4 - t = delta/d0."""
-    height, radius = ensemble.height, ensemble.parameters["radius"]
+class Sums(NamedTuple):
+    """What a plain loop over the path comes to."""
 
-    def action() -> int:
-        visits = 0
-        for h in path:
-            touching = height > h
-            delta, R = height[touching] - h, radius[touching]
-            visits += delta.size
-            if work:
-                a0 = np.cbrt(2.0 * np.pi * work * R * R / modulus)
-                d0 = a0 * a0 / R
-                t = 1.0 + np.sqrt(np.sqrt(delta / d0))
-                for _ in range(6):
-                    t -= (t**4 - t - delta / d0) / (4.0 * t**3 - 1.0)
-                a = a0 * t * t
-                force = 2.0 * modulus * a0 * d0 * (2.0 / 3.0 * t**6 - t**3)
-                stiffness = 2.0 * modulus * a * (4.0 * t**3 - 3.0) / (4.0 * t**3 - 1.0)
-            else:
-                a = np.sqrt(R * delta)
-                force, stiffness = 4.0 / 3.0 * modulus * a * delta, 2.0 * modulus * a
-            np.array([force.sum(), np.pi * (a * a).sum(), delta.size, stiffness.sum()])
-        return visits
-
-    return cost_of(action, 1)
+    force: Floats
+    """[N], at each separation."""
+    area: Floats
+    """[m2]."""
+    visits: int
 
 
-def by_brentq(ensemble: Ensemble, path: np.ndarray, modulus: float, work: float) -> Cost:
-    """The same with a root finder for each contact: loading only, a few hundred asperities."""
-    height, radius = ensemble.height[:300], ensemble.parameters["radius"][:300]
+def held(height: Floats, fold: Floats, h: float, closest: float) -> NDArray[np.bool_]:
+    """Which asperities are in contact at h, where the flat has been at ``closest``; ``fold`` is |delta_c| of each."""
+    return (height > closest) & (height - h > (-fold if h > closest else 0.0))
+
+
+def with_numpy(height: Floats, radius: Floats, path: Floats, modulus: float, work: float) -> Sums:
+    """Paraboloids with vectors, as most would write it: JKR by six Newton steps on t^4 - t = delta/d0."""
+    a0 = np.cbrt(2.0 * np.pi * work * radius * radius / modulus)
+    force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
+    for step, h in enumerate(path):
+        closest = min(closest, h)
+        touching = held(height, 0.75 * 4.0 ** (-1.0 / 3.0) * a0 * a0 / radius, h, closest)
+        delta, R = height[touching] - h, radius[touching]
+        visits += delta.size
+        if work:
+            own = a0[touching]
+            d0 = own * own / R
+            t = 1.0 + np.sqrt(np.sqrt(np.maximum(delta / d0, 0.0)))
+            for _ in range(6):
+                t -= (t**4 - t - delta / d0) / (4.0 * t**3 - 1.0)
+            a, force[step] = own * t * t, np.sum(2.0 * modulus * own * d0 * (2.0 / 3.0 * t**6 - t**3))
+        else:
+            a = np.sqrt(R * delta)
+            force[step] = np.sum(4.0 / 3.0 * modulus * a * delta)
+        area[step] = np.pi * np.sum(a * a)
+    return Sums(force, area, visits)
+
+
+def with_brentq(height: Floats, radius: Floats, path: Floats, modulus: float, work: float) -> Sums:
+    """The same with a root finder for each contact."""
+    folds = np.cbrt(np.pi * work * radius * radius / (8.0 * modulus))
+    depths = np.sqrt(2.0 * np.pi * folds * work / modulus) - folds * folds / radius
+    force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
 
     def indentation(a: float, R: float, delta: float) -> float:
         return float(a * a / R - np.sqrt(2.0 * np.pi * a * work / modulus) - delta)
 
-    def action() -> int:
-        visits, force = 0, 0.0
-        for h in path:
-            for z, R in zip(height[height > h], radius[height > h], strict=True):
-                fold = np.cbrt(np.pi * work * R * R / (8.0 * modulus))
-                a = brentq(indentation, fold, fold + 2.0 * np.sqrt(R * (z - h)) + 8.0 * fold, args=(R, z - h))
-                force += 4.0 * modulus * a**3 / (3.0 * R) - np.sqrt(8.0 * np.pi * work * modulus * a**3)
-                visits += 1
-        return visits
+    for step, h in enumerate(path.tolist()):
+        closest = min(closest, h)
+        touching = held(height, depths, h, closest)
+        for z, R, fold in zip(height[touching], radius[touching], folds[touching], strict=True):
+            top = fold + 2.0 * np.sqrt(R * max(z - h, 0.0)) + 8.0 * fold
+            a = brentq(indentation, fold, top, args=(R, z - h), xtol=1e-12 * top)
+            force[step] += 4.0 * modulus * a**3 / (3.0 * R) - np.sqrt(8.0 * np.pi * work * modulus * a**3)
+            area[step] += np.pi * a * a
+            visits += 1
+    return Sums(force, area, visits)
 
-    return cost_of(action, 1)
+
+def by_numpy(ensemble: Ensemble, path: Floats, modulus: float, work: float) -> Cost:
+    """What ``with_numpy`` costs."""
+    columns = ensemble.height, ensemble.parameters["radius"]
+    return cost_of(lambda: with_numpy(*columns, path, modulus, work).visits, 1)
+
+
+def by_brentq(ensemble: Ensemble, path: Floats, modulus: float, work: float) -> Cost:
+    """What ``with_brentq`` costs, by a few hundred asperities."""
+    columns = ensemble.height[:300], ensemble.parameters["radius"][:300]
+    return cost_of(lambda: with_brentq(*columns, path, modulus, work).visits, 1)
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:

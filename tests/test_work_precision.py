@@ -1,0 +1,118 @@
+"""The study of error against run time in its quick form: errors and counted work, never what it times."""
+
+import numpy as np
+import pytest
+import work_precision
+import work_precision_tip
+import xarray as xr
+from click.testing import CliRunner
+from work_precision_points import QUANTITIES, Method, Point
+from work_precision_rough import SURFACES, law
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    folder = tmp_path_factory.mktemp("study")
+    done = CliRunner().invoke(work_precision.STUDY.command, ["-o", str(folder), "--quick"], catch_exceptions=False)
+    assert done.exit_code == 0
+    assert done.output.startswith("## Error against run time\n")
+    assert sorted(path.name for path in folder.iterdir()) == ["work_precision.nc", "work_precision.png"]
+    with xr.open_dataset(folder / "work_precision.nc") as stored:
+        return stored.load()
+
+
+def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:
+    """Errors [point, quantity] and evaluations of a method."""
+    own = result.isel(point=np.flatnonzero((result.scene == scene) & (result.method == method)))
+    return own.error.to_numpy(), own.evaluations.to_numpy()
+
+
+def slope(error: np.ndarray, evaluations: np.ndarray) -> float:
+    return float(np.polyfit(np.log(evaluations), np.log(error), 1)[0])
+
+
+TIP, HERTZ, JKR = "paraboloid, JKR", "Hertz, lognormal radii", "JKR, equal radii"
+
+
+def test_closed_forms_are_exact_with_an_evaluation_for_each_state(result: xr.Dataset) -> None:
+    error, evaluations = points(result, TIP, "closed forms")
+    assert (error < 1e-12).all()
+    assert evaluations == [work_precision_tip.DEPTHS.size + 1]
+
+
+def test_springs_come_nearer_in_proportion_to_their_number(result: xr.Dataset) -> None:
+    error, evaluations = points(result, TIP, "springs")
+    for quantity in range(len(QUANTITIES)):
+        assert slope(error[:, quantity], evaluations) == pytest.approx(-1.0, abs=0.1)
+
+
+def test_root_finders_come_nearer_with_every_decade_of_tolerance(result: xr.Dataset) -> None:
+    for method, finest in (("brentq", 1e-12), ("Abel quadrature", 1e-12), ("plain NumPy", 1e-2)):
+        error, evaluations = points(result, TIP, method)
+        assert (np.diff(evaluations) >= 0.0).all()
+        assert error[-1, 0] < finest < error[0, 0]
+
+
+@pytest.mark.parametrize("scene", [HERTZ, JKR])
+def test_draws_come_nearer_as_the_root_of_their_number_and_even_ones_begin_nearer(
+    result: xr.Dataset, scene: str
+) -> None:
+    sampled, visits = points(result, scene, "sampled")
+    even, even_visits = points(result, scene, "stratified")
+    for error, count in ((sampled, visits), (even, even_visits)):
+        assert slope(error[:, 0], count) == pytest.approx(-0.5, abs=0.3)
+    assert (even[:, 0] < sampled[:, 0] / 4.0).all()
+    np.testing.assert_allclose(even_visits, visits, rtol=0.02)  # no more work
+    own, own_visits = points(result, scene, "plain NumPy")
+    assert own[0, 0] == pytest.approx(sampled[0, 0], rel=0.7)  # the same draws, but for their seeds
+    assert own_visits[0] == pytest.approx(visits[0], rel=0.05)
+
+
+@pytest.mark.parametrize("scene", [HERTZ, JKR])
+def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Dataset, scene: str) -> None:
+    error, evaluations = points(result, scene, "expected")
+    known = error[~np.isnan(error)]
+    assert (known < 1e-11).all()
+    assert evaluations[0] < law(SURFACES[scene], "sampled").evaluations
+
+
+def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
+    for scene in (HERTZ, JKR):
+        for method in ("sampled", "stratified", "auto"):
+            own = result.isel(
+                point=np.flatnonzero((result.scene == scene) & (result.method == f"{method}, error asked for"))
+            )
+            assert (own.error.sel(quantity="force") <= 2.0 * own.setting).all()  # of two runs each
+
+
+def test_the_cheapest_comes_to_the_error_and_is_no_dearer_than_any_other(result: xr.Dataset) -> None:
+    found = 0
+    for scene in (TIP, HERTZ, JKR):
+        for quantity in QUANTITIES:
+            for error in work_precision.TARGETS:
+                best = work_precision.cheapest(result, scene, quantity, error)
+                if best is None:
+                    continue
+                found += 1
+                own = result.isel(point=np.flatnonzero((result.scene == scene) & (result.competes == 1)))
+                enough = own.error.sel(quantity=quantity) <= error
+                assert float(best.error.sel(quantity=quantity)) <= error
+                assert float(best.seconds) == float(own.seconds[enough.to_numpy()].min())
+    assert found >= 24
+    assert work_precision.cheapest(result, TIP, "force", 0.0) is None
+
+
+def test_a_method_joins_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """That gives exact numbers for nothing, and so is the cheapest at once."""
+
+    def points_of(scene: object, exact: object, quick: bool) -> list[Point]:
+        return [Point(1.0, (0.0, 0.0, 0.0), 0.0, 0.0)]
+
+    part = work_precision.PARTS[0]._replace(methods=(Method("an oracle", "-", points_of), *part_methods()))
+    monkeypatch.setattr(work_precision, "PARTS", (part,))
+    told = work_precision.tell(work_precision.study(True))
+    assert f"| {TIP} | an oracle: 0 ms (0) | an oracle" in told
+
+
+def part_methods() -> tuple[Method, ...]:
+    return tuple(method for method in work_precision.PARTS[0].methods if method.name == "closed forms")
