@@ -1,0 +1,69 @@
+"""The force of a scene at least ten times finer than a run computes it: of draws, asperity by asperity; or expected."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from mpmath import mp
+from stated_error_cohesion import Cohesive, CohesivePunch
+from stated_error_contacts import DIGITS, Follower, Punch, Touching
+from stated_error_expected import ORDERS, Expected
+
+from roughmdr.arguments import Floats
+from roughmdr.ensemble import Ensemble
+from roughmdr.scene import Scene
+from roughmdr.shapes import SHAPES, FlatPunch, Shape
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
+from precise_profiles import Number
+
+FINER = 10.0
+"""Times the error that is stated: how right a reference is at least."""
+
+
+def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[Number]:
+    """[N] at each step, of the asperities of one realisation of a scene without a sweep."""
+    source = scene.asperities
+    drawn = source.ensemble(scene.seed, realization, stratified=scene.batch.estimator == "stratified")
+    with mp.workdps(DIGITS):
+        path = [mp.mpf(h) for h in separation.tolist()]
+        total = [mp.mpf(0)] * len(path)
+        found: dict[tuple[float, ...], Follower] = {}
+        deepest = float(drawn.height.max() - separation.min()) if drawn.height.size else 0.0
+        for number, z in enumerate(drawn.height.tolist()):
+            values = {name: float(column[number]) for name, column in _columns(drawn).items()}
+            key = tuple(values.values())
+            if key not in found:
+                shape = source.fixed or SHAPES[source.shape_name](**values)
+                found[key] = follower(shape, scene, deepest)
+            forces = found[key].forces([mp.mpf(z) - h for h in path])
+            total = [one + other for one, other in zip(total, forces, strict=True)]
+        return total
+
+
+def _columns(drawn: Ensemble) -> dict[str, Floats]:
+    """The parameters of each asperity, where they are not all the same profile."""
+    return {} if drawn.fixed is not None else drawn.parameters
+
+
+def follower(shape: Shape, scene: Scene, deepest: float) -> Follower:
+    """One asperity of a scene, pressed no farther than ``deepest`` [m]."""
+    law = scene.law
+    if isinstance(shape, FlatPunch):
+        if law.cohesive:
+            return CohesivePunch(shape.radius, scene.modulus, law.work, law.strength)
+        return Punch(shape.radius, scene.modulus, law.work)
+    if law.cohesive:
+        return Cohesive(shape, scene.modulus, law.work, law.strength, deepest)
+    return Touching(shape, scene.modulus, law.work)
+
+
+def expected_force(scene: Scene, separation: Floats, stated: float) -> Floats:
+    """[N] at each step: refined until it changes by less than a tenth of the stated error."""
+    expected = Expected(scene, separation)
+    force = expected.force(ORDERS[0])
+    for order in ORDERS[1:]:
+        before, force = force, expected.force(order)
+        if np.abs(force - before).max() <= stated * np.abs(force).max() / FINER:
+            return force
+    raise ArithmeticError("the reference is not right enough")

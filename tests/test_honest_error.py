@@ -1,0 +1,44 @@
+"""``numerical_error`` against the true error of 200 random scenes, from references that are ten times finer."""
+
+from pathlib import Path
+
+import pytest
+import stated_error as study
+from stated_error_scenes import ESTIMATORS, scene
+
+ONE_OF_EACH = (0, 2, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
+
+
+@pytest.mark.slow
+def test_the_stated_error_is_honest(tmp_path: Path) -> None:
+    drawn = [scene(number) for number in range(study.SCENES)]
+    result = study.judgement(drawn, [study.judge(one) for one in drawn])
+    assert result.attrs["refused"] == 0
+    assert study.honest(result).mean() >= study.HONEST, study.tell(result)
+    assert set(result.estimator.to_numpy()) == set(ESTIMATORS)
+    ordinary = result.stated_error.groupby(result.estimator).median()
+    assert (ordinary < 1e-10).all(), "a bound that says nothing"
+    study.draw(result).savefig(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize("number", ONE_OF_EACH)
+def test_the_judge_finds_forces_that_are_off_by_a_few_stated_errors(number: int) -> None:
+    assert study.judge(scene(number)).honest
+    assert not study.judge(scene(number), disturbance=3.0).honest
+    assert not study.judge(scene(number), disturbance=-3.0).honest
+
+
+def test_orders_that_agree_by_chance_are_not_believed() -> None:
+    """Punches of many radii, of which some have let go and others not: the rule over the radii meets kinks."""
+    assert study.judge(scene(44)).honest
+
+
+def test_scenes_that_are_not_honest_are_told_of() -> None:
+    drawn = [scene(number) for number in range(4)]
+    judged = [study.Judged(1e-15, 1e-13), study.Judged(1e-12, 1e-13), study.Judged(0.0, 0.0), study.Judged(0, 0, "no")]
+    said = study.tell(study.judgement(drawn, judged))
+    assert "in 66.7 % of 3 random scenes" in said
+    assert "1 more were refused" in said
+    assert "scene 1:" in said
+    assert "scene 0:" not in said
