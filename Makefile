@@ -1,10 +1,11 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
+# make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
-.PHONY: demo test setup lint lock clean
+.PHONY: demo test studies setup lint lock clean
 
 demo: setup
 	@mkdir -p results
@@ -14,6 +15,9 @@ demo: setup
 test: setup lint
 	$(BIN)/python -m pytest -n auto --dist loadfile
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto --dist loadfile tests/kernels tests/test_sum.py
+
+studies: setup
+	@$(BIN)/python pipelines/studies.py -o results/studies
 
 lint: setup
 	$(BIN)/ruff check .
