@@ -284,6 +284,8 @@ def test_jkr_of_a_small_tabor_number_warns_with_the_number() -> None:
         ({"model": "dugdale", "work": W, "strength": "1 MPa", "range": "1 nm"}, "takes strength or range, not both"),
         ({"model": "jkr", "work": W, "error": 0.1}, "takes error only with model 'auto'"),
         ({"model": "dugdale", "work": W, "strength": "1 nm"}, "adhesion.strength = '1 nm': 'nm' is a unit of m"),
+        ({"model": "dugdale", "work": 5e-324, "range": 1e20}, "work over range is 0 Pa; it must be a finite number"),
+        ({"model": "auto", "work": 1e10, "range": 1e-300}, "work over range is inf Pa; it must be a finite number"),
     ],
 )
 def test_what_does_not_go_together_is_refused(adhesion: dict[str, object], says: str) -> None:

@@ -16,6 +16,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from roughmdr.adhesion import Adhesion
+from roughmdr.arguments import check_number
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.quantities import Quantity, Section, WholeNumber
@@ -75,6 +76,8 @@ class AdhesionSection(Section):
             raise RoughmdrError(f"model {self.model!r} needs strength, the stress of the attraction, or its range")
         if self.error is not None and self.model != "auto":
             raise RoughmdrError("takes error only with model 'auto'")
+        if self.range is not None and self.work > 0.0:
+            check_number("work over range", self.work / self.range, "Pa")
         return self
 
     @property
