@@ -40,7 +40,7 @@ class Frame(NamedTuple):
     datum: float
     """Where the heights and the flat are [m]."""
     smooth: bool
-    """Whether the expected law is to be taken."""
+    """Whether the expected law is, or may be, taken."""
     dear: bool
     """Whether each asperity takes milliseconds to set up: adhesion of finite range on most shapes."""
 
@@ -213,10 +213,10 @@ def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
     parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(LAW), "keep": keep}}
     if not drawn:
         return parts
-    if frame.smooth:
+    if frame.smooth and draw(st.booleans()):
         return parts | {"batch": {"estimator": "expected"}}
-    if seldom(draw, 12):
-        method = draw(st.sampled_from(("sampled", "stratified")))
+    if frame.smooth or seldom(draw, 12):
+        method = "auto" if frame.smooth else draw(st.sampled_from(("sampled", "stratified")))
         asked = {
             "relative": 10.0 ** draw(st.floats(-3.0, 0.0)),
             "max_realizations": draw(st.integers(2, 3 if frame.dear else 20)),
