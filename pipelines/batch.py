@@ -17,8 +17,10 @@ from batch_measured import SCHEDULERS, child, medians, overheads, speed_ups
 from batch_pictures import CELL_GOAL, MEMORY_GOAL, SPEED_GOAL, draw
 from capacity import ASPERITIES, CELLS, WORKERS, Capacity, capacity, writing
 
+from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch.rounds import Rounds
 from roughmdr.labelled import Labelled
-from roughmdr.plan import make_plan, prepare_all
+from roughmdr.plan import make_plan
 from roughmdr.store import write
 
 PARTS = ("loading", "reading", "planning", "keys", "tasks", "file")
@@ -141,7 +143,8 @@ def large(result: xr.Dataset) -> Capacity:
 def study(quick: bool, most: int) -> xr.Dataset:
     """All figures, up to ``most`` realisations; ``quick`` with few of everything, for a look that takes a minute."""
     for scene in (swept(4), tiny(unload=False)):
-        prepare_all(make_plan(scene))
+        plan = make_plan(scene)
+        prepare_all(plan, Rounds(plan).begin())
     parts = [
         by_cell(200 if quick else 10_000, 1 if quick else 3),
         by_scheduler(*((60, 1, _WORKERS[1:]) if quick else (500, 3, _WORKERS))),

@@ -13,9 +13,11 @@ from typing import Any
 
 from peak import peak
 
+from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.identity import keys_of
+from roughmdr.batch.rounds import Rounds
 from roughmdr.labelled import Labelled
-from roughmdr.plan import Plan, law_of, make_plan, prepare_all
+from roughmdr.plan import Plan, law_of, make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import Scene, read
 
@@ -71,7 +73,7 @@ def carried_out(plan: Plan, target: Path | None, workers: int) -> tuple[float, f
 def cells(count: int, folder: Path) -> dict[str, float]:
     """Seconds of overhead of a sweep of so many tiny cells with one worker, by what they are spent on."""
     few = make_plan(swept(4), chunk=1)
-    prepare_all(few)
+    prepare_all(few, Rounds(few).begin())
     wall, inside = carried_out(few, folder / "few.nc", 1)
     loading = wall - inside
     started = time.perf_counter()
@@ -100,7 +102,7 @@ def statistics(count: int, folder: Path) -> dict[str, float]:
     """Seconds and peak bytes of so many tiny realisations of which statistics are kept."""
     scene = tiny(unload=False, output={"keep": "statistics"}, batch={"realizations": count})
     plan = make_plan(scene)
-    prepare_all(plan)
+    prepare_all(plan, Rounds(plan).begin())
     before = peak()
     wall, inside = carried_out(plan, folder / "statistics.nc", 1)
     return {"seconds": wall, "realisations": inside, "before": before, "peak": peak()}

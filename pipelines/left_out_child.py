@@ -24,7 +24,9 @@ from left_out_cases import BATCH, SIZES, Size, Way, forced, scene_of
 from peak import peak
 
 from roughmdr.arguments import Floats
-from roughmdr.plan import make_plan, prepare_all
+from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch.rounds import Rounds
+from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.variables import DEFAULT
 
@@ -71,7 +73,7 @@ def kept(size: Size, keep: str) -> Done:
     """All realisations as a batch, with their curves kept or their statistics."""
     scene = scene_of(size, keep=keep, variables=list(DEFAULT))
     plan = make_plan(scene, chunk=size.realizations // 2)  # two tasks at least, so that they go the way of many
-    prepare_all(plan)
+    prepare_all(plan, Rounds(plan).begin())
     result = execute(plan, None, workers=1, quiet=True).variables
     force = result["force"].values.mean(axis=0) if keep == "curves" else result["force_mean"].values
     numbers = sum(array.values.size for name, array in result.items() if name.startswith(DEFAULT))

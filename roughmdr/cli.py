@@ -134,12 +134,10 @@ def run(
         from roughmdr.scene import read
 
         asked = read(scene, changes)  # before anything heavy is loaded
-        from roughmdr.plan import make_plan, prepare_all
+        from roughmdr.plan import make_plan
         from roughmdr.runner import execute
 
         planned = make_plan(asked)
-        if "://" not in scheduler:
-            prepare_all(planned)
     result = execute(
         planned,
         output,

@@ -15,10 +15,11 @@ import numpy as np
 import tomli_w
 
 from roughmdr.aggregate import Route, compute
+from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
-from roughmdr.plan import Cell, Plan, law_of, prepare_all
+from roughmdr.plan import Cell, Plan, law_of
 from roughmdr.shapes import SHAPES
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
@@ -57,13 +58,13 @@ class _Cost(NamedTuple):
 
 def estimate(plan: Plan, workers: int) -> Estimate:
     """The cost of a plan, from single runs of a few of its cells and from a run of next to nothing."""
-    prepare_all(plan)
+    rounds = Rounds(plan)
+    first = rounds.begin()
+    prepare_all(plan, first)
     start_up, resident = _start_up(plan.cells[0]), _resident()
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
-    rounds = Rounds(plan)
     costs, failures = _costs(plan, rounds, sorted(chosen.tolist()))
     variables, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
-    first = rounds.begin()
     runs = sum(stretch.last - stretch.first for stretch in first)
     tasks = len(cut(plan, first, variables, workers))
     busy = min(workers, tasks, _cores())

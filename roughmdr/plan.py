@@ -1,16 +1,15 @@
 """From a scene to its cells: where the flat of each goes, how each is computed, what is left out and why."""
 
 from collections.abc import Iterator
-from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate import LoadSeparation, Route, compute, prepare
+from roughmdr.aggregate import LoadSeparation, Route, compute
 from roughmdr.aggregate.route import branches
-from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.errors import SceneError
 from roughmdr.labelled import Array
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
@@ -92,30 +91,6 @@ def _cells(scene: Scene) -> Iterator[Cell]:
                 other = f"sweep: with {in_words(values)} the flat goes another way, in or out,"
                 raise SceneError(f"{other} than in the first cell")
         yield Cell(cell, known[key])
-
-
-def prepare_all(plan: Plan) -> None:
-    """Compile what a plan needs, once, before several threads or a clock need it."""
-    kinds: set[tuple[object, ...]] = set()
-    for scene, route in plan.cells:
-        for estimator in scene.estimators:
-            law, shape = scene.law, scene.asperities.shape_name
-            kind = shape, law.work > 0.0, law.candidates, law.known, estimator == "expected"
-            if kind in kinds:
-                continue
-            kinds.add(kind)
-            if estimator == "expected":
-                one = Route.along(route.separation[:1], unload=False, adhesive=scene.work > 0.0)
-                with suppress(RoughmdrError):  # that is said of the whole path
-                    _prepare_expected(scene, one, plan.scene.output.variables)
-            else:
-                prepare(shape, law)
-
-
-def _prepare_expected(scene: Scene, route: Route, variables: list[str]) -> None:
-    from roughmdr import expected
-
-    expected.prepare(scene.asperities, route, modulus=scene.modulus, adhesion=scene.law, variables=variables)
 
 
 def law_of(scene: Scene, route: Route, realization: int, variables: list[str], estimator: str) -> LoadSeparation:

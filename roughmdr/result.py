@@ -130,10 +130,9 @@ def _missed(accuracy: Accuracy, choices: Sequence[Choice], failed: NDArray[np.bo
     said = []
     missed = [choice for choice in choices if choice.error > accuracy.relative]
     if missed:
-        expected = missed[0].estimator == "expected"  # only where no other method is allowed
         why = (
             "the expected law is not right enough, with accuracy.method 'auto' or 'sampled' more is drawn instead"
-            if expected
+            if accuracy.method == "expected"
             else f"accuracy.max_realizations, {accuracy.max_realizations}, is too low"
         )
         said.append(

@@ -16,6 +16,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.analysis import pull_off_force
 from roughmdr.batch import shard, tasks
+from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.enough import FIRST, bound, next_count
 from roughmdr.batch.rounds import Rounds
@@ -23,7 +24,7 @@ from roughmdr.cli import main
 from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
-from roughmdr.plan import make_plan, prepare_all
+from roughmdr.plan import make_plan
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
 from roughmdr.scene.sections import Accuracy
@@ -100,10 +101,11 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: str) -> None:
-    found = go(asking(1e-16, None, 20, output=kept(keep)))
+    asked = {"asperities": {**FEW, "correlation": {"radius": 1.0}}, "output": kept(keep)}
+    found = go(asking(2e-3, None, 100, **asked))
     assert methods(found) == ["stratified"]
-    assert found.realization_count == 20
-    drawn = go(asking(1e-16, "stratified", 20, output=kept(keep)))
+    assert found.realization_count == 100
+    drawn = go(asking(2e-3, "stratified", 100, **asked))
     assert_same(found.assign_attrs(scene=""), drawn.assign_attrs(scene=""))
     assert "expected" not in found.attrs["accuracy"]
 
@@ -159,8 +161,10 @@ def test_the_cheaper_of_draws_and_the_expected_law_is_made(
     assert float(found.accuracy_reached) <= table["accuracy"]["relative"]
 
 
-def test_to_prepare_for_the_expected_law_takes_one_asperity(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It may never be needed, and can take a thousand times as long as the draws."""
+def test_to_prepare_for_the_expected_law_takes_one_asperity_and_nothing_where_it_is_not_begun_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It can take a thousand times as long as the draws."""
     counts, contacts_of = list[int](), node.contacts_of
 
     def counting(asked: node.Asked, nodes: Nodes) -> list[Contact]:
@@ -168,15 +172,23 @@ def test_to_prepare_for_the_expected_law_takes_one_asperity(monkeypatch: pytest.
         return contacts_of(asked, nodes)
 
     monkeypatch.setattr(node, "contacts_of", counting)
-    prepare_all(make_plan(read(asking(0.1, None))))
-    assert counts == [1]
+    for method, prepared in ((None, []), ("expected", [1])):
+        plan = make_plan(read(asking(0.1, method)))
+        prepare_all(plan, Rounds(plan).begin())
+        assert counts == prepared
 
 
-def test_draws_go_on_where_they_stood_when_the_expected_law_is_not_right_enough(
+def test_an_expected_law_that_is_nearer_than_all_draws_is_kept_where_neither_is_near_enough(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _, runs = made(asking(1e-16, None, 20), monkeypatch)
+    """It is right to 1e-12, and no 20 draws come near that."""
+    found, runs = made(asking(1e-16, None, 20, output=kept("curves")), monkeypatch)
     assert runs == [*EVEN, ("expected", 0), *(("stratified", number) for number in range(FIRST, 20))]
+    assert methods(found) == ["expected"]
+    law = go(scene(asperities=FEW, path=PATH, batch={"estimator": "expected"}, output=kept("curves")))
+    assert float(found.accuracy_reached) == float(law.numerical_error[0]) > 1e-16
+    assert "was not reached in 1 of 1 cells" in found.attrs["warnings"]
+    assert "max_realizations, 20, is too low" in found.attrs["warnings"]
 
 
 @pytest.mark.parametrize(("density", "method"), [("50 /mm^2", "stratified"), ("33 /mm^2", "sampled")])

@@ -23,6 +23,16 @@ class Choice(NamedTuple):
     """Of the mean force over its largest value: standard error, or that of an expected law; NaN where not known."""
 
 
+class _Way(NamedTuple):
+    """How a cell came to its choice."""
+
+    choice: Choice
+    draws: Choice | None = None
+    """Those before its expected law."""
+    law: Choice | None = None
+    """Its expected law, where that is not right enough."""
+
+
 class Rounds:
     """The runs of a plan, round after round."""
 
@@ -30,20 +40,16 @@ class Rounds:
         self._plan, self._accuracy = plan, plan.scene.accuracy
         estimators = {estimator for cell in plan.cells for estimator in cell.scene.estimators}
         self._keys = {estimator: keys_of(plan, estimator) for estimator in sorted(estimators)}
-        self._choices = [self._first_choice(cell) for cell in range(len(plan.cells))]
+        self._ways = [_Way(self._first_choice(cell)) for cell in range(len(plan.cells))]
         alike: dict[str, int] = {}
-        self._leader = [alike.setdefault(choice.key, cell) for cell, choice in enumerate(self._choices)]
+        self._leader = [alike.setdefault(way.choice.key, cell) for cell, way in enumerate(self._ways)]
         self._open = list(alike.values())
         self._made: dict[str, int] = {}
-        self._drawn: dict[int, Choice] = {}
-        """Of cells whose expected law came, or comes, after draws."""
-        self._ruled_out: set[int] = set()
-        """Cells whose expected law is not right enough."""
 
     @property
     def choices(self) -> list[Choice]:
         """How each cell is computed, as far as that is known; cells that are the same are computed once."""
-        return [self._choices[leader] for leader in self._leader]
+        return [self._ways[leader].choice for leader in self._leader]
 
     @property
     def keys(self) -> list[set[str]]:
@@ -63,28 +69,28 @@ class Rounds:
         if self._accuracy is None:
             return []
         for cell in self._open:
-            self._choices[cell] = self._judged(cell, self._choices[cell], gathered, self._accuracy)
-        wanting = [(cell, self._choices[cell]) for cell in self._open]
+            self._ways[cell] = self._after(cell, self._ways[cell], gathered, self._accuracy)
+        wanting = [(cell, self._ways[cell].choice) for cell in self._open]
         self._open = [cell for cell, choice in wanting if choice.realizations > self._made.get(choice.key, 0)]
         return [self._stretch(cell) for cell in self._open]
 
     def _stretch(self, cell: int) -> Stretch:
         """What the choice of a cell needs beyond what was made."""
-        key, estimator, count, _ = self._choices[cell]
+        key, estimator, count, _ = self._ways[cell].choice
         first, self._made[key] = self._made.get(key, 0), count
         return Stretch(cell, first, count, estimator)
 
-    def _choice(self, cell: int, estimator: str, count: int) -> Choice:
-        return Choice(self._keys[estimator][cell], estimator, count)
-
     def _first_choice(self, cell: int) -> Choice:
-        own, accuracy = self._plan.cells[cell], self._accuracy
-        estimator, *other = own.scene.estimators
+        accuracy = self._accuracy
+        estimator, *other = self._plan.cells[cell].scene.estimators
         if accuracy is None:
-            return self._choice(cell, estimator, own.scene.batch.realizations)
+            return self._choice(cell, estimator, self._plan.cells[cell].scene.batch.realizations)
         if estimator == "expected" or (other and self._dearer(cell, self._few(accuracy))):
             return self._choice(cell, "expected", 1)
         return self._choice(cell, estimator, self._few(accuracy))
+
+    def _choice(self, cell: int, estimator: str, count: int) -> Choice:
+        return Choice(self._keys[estimator][cell], estimator, count)
 
     def _few(self, accuracy: Accuracy) -> int:
         """How many realisations to begin with."""
@@ -96,32 +102,33 @@ class Rounds:
         drawn, law = (seconds(own, estimator) for estimator in own.scene.estimators)
         return draws * drawn > law
 
-    def _judged(self, cell: int, choice: Choice, gathered: Gathered, accuracy: Accuracy) -> Choice:
-        """The choice with its error where it is good enough or nothing can be done, else a better one."""
-        if choice.estimator == "expected":
-            return self._judged_law(cell, choice, gathered, accuracy)
-        tally = gathered.watched(choice.key, choice.realizations)
-        if tally is None:  # some failed
-            return choice
-        error = relative_error(tally)
-        known = choice._replace(error=error if error < math.inf else math.nan)
-        if enough(choice.realizations, error, accuracy):
-            return known
-        count = next_count(choice.realizations, error, accuracy)
-        missing = still_missing(choice.realizations, error, accuracy)
-        at_its_end = count == choice.realizations
-        may_integrate = "expected" in self._plan.cells[cell].scene.estimators and cell not in self._ruled_out
-        if may_integrate and (at_its_end or self._dearer(cell, missing)):
-            self._drawn[cell] = choice
-            return self._choice(cell, "expected", 1)
-        return known if at_its_end else choice._replace(realizations=count)
+    def _after(self, cell: int, way: _Way, gathered: Gathered, accuracy: Accuracy) -> _Way:
+        """The same choice with its error where that is small enough or nothing is better; else a better one."""
+        if way.choice.estimator != "expected":
+            return self._after_draws(cell, way, gathered, accuracy)
+        row = gathered.beside(way.choice.key)
+        law = way.choice._replace(error=row.numerical_error)
+        if accuracy.method == "expected" or (row.status == DONE and law.error <= accuracy.relative):
+            return way._replace(choice=law)
+        if way.draws is None:
+            draws = self._choice(cell, self._plan.cells[cell].scene.estimators[0], self._few(accuracy))
+            return way._replace(choice=draws, law=law)
+        return self._after_draws(cell, way._replace(choice=way.draws, law=law), gathered, accuracy)
 
-    def _judged_law(self, cell: int, choice: Choice, gathered: Gathered, accuracy: Accuracy) -> Choice:
-        """The same of an expected law."""
-        row = gathered.beside(choice.key)
-        if accuracy.method == "expected" or (row.status == DONE and row.numerical_error <= accuracy.relative):
-            return choice._replace(error=row.numerical_error)
-        self._ruled_out.add(cell)
-        if cell in self._drawn:
-            return self._judged(cell, self._drawn[cell], gathered, accuracy)
-        return self._choice(cell, self._plan.cells[cell].scene.estimators[0], self._few(accuracy))
+    def _after_draws(self, cell: int, way: _Way, gathered: Gathered, accuracy: Accuracy) -> _Way:
+        draws = way.choice
+        tally = gathered.watched(draws.key, draws.realizations)
+        if tally is None:  # some failed
+            return way
+        error = relative_error(tally)
+        known = way._replace(choice=draws._replace(error=error if error < math.inf else math.nan))
+        if enough(draws.realizations, error, accuracy):
+            return known
+        count = next_count(draws.realizations, error, accuracy)
+        at_its_end = count == draws.realizations
+        untried = way.law is None and "expected" in self._plan.cells[cell].scene.estimators
+        if untried and (at_its_end or self._dearer(cell, still_missing(draws.realizations, error, accuracy))):
+            return way._replace(choice=self._choice(cell, "expected", 1), draws=draws)
+        if not at_its_end:
+            return way._replace(choice=draws._replace(realizations=count))
+        return way._replace(choice=way.law) if way.law is not None and way.law.error < error else known

@@ -20,6 +20,7 @@ _FRIENDLY = {
 _LOCATION = ("loc", "scale", "mean", "std")
 _ENDS = ("min", "max")
 _LEAST_SHARE = 1e-200  # of a distribution that is cut off: less has no digits left
+_LEAST_OWN, _GREATEST_OWN = 1e-20, 1e20  # of a family's own parameters: far beyond, scipy can end the whole process
 
 
 @dataclass(frozen=True)
@@ -146,6 +147,9 @@ def _located(
     if std is None and "scale" not in numbers:
         raise RoughmdrError(f"{given} needs a std or a scale")
     own = {shape: numbers[shape] for shape in family.shapes}
+    for shape, value in own.items():
+        if value and not _LEAST_OWN <= abs(value) <= _GREATEST_OWN:
+            raise EntryError(shape, value, f"must be 0, or {_LEAST_OWN:g} to {_GREATEST_OWN:g} in magnitude")
     if not family.defined(*own.values()):
         raise RoughmdrError(f"{given} is not defined for {_listed(own)}")
     unit_mean, unit_variance = family.moments(*own.values())

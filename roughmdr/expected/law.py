@@ -41,8 +41,7 @@ def compute(
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
     """
     names, steps = list(variables), route.separation.size
-    wanted = dict.fromkeys([FORCE, *(ROW[name] for name in names)])
-    rows, dissipating = tuple(row for row in wanted if row != DISSIPATED), DISSIPATED in wanted
+    rows, dissipating = _rows(names), any(ROW[name] == DISSIPATED for name in names)
     coarse = _stand_ins(source, source.nodes(Rule.smooth(_ORDERS[0])))
     reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
     asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
@@ -72,10 +71,15 @@ def compute(
 @np.errstate(all="ignore")  # nothing is made of its numbers
 def prepare(source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]) -> None:
     """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
-    rows = tuple(dict.fromkeys([FORCE, *(ROW[name] for name in variables if ROW[name] != DISSIPATED)]))
+    rows = _rows(variables)
     for model in adhesion.candidates:
         asked = Asked(source, route, modulus, adhesion._replace(model=model), rows)
         totals_of(set_up(asked, Rule.smooth(1)), route.separation, rows, [0])
+
+
+def _rows(variables: Iterable[str]) -> tuple[int, ...]:
+    """What is integrated over the heights: the force and what is asked for, but for the losses, which have jumps."""
+    return tuple(dict.fromkeys([FORCE, *(ROW[name] for name in variables if ROW[name] != DISSIPATED)]))
 
 
 def _doubts(error: float) -> tuple[str, ...]:
@@ -114,9 +118,10 @@ def _enough(asked: Asked, parted: Parted | None, *, dissipating: bool) -> tuple[
         found = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
         return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
 
-    rule, doubts, before = Rule.smooth(_ORDERS[0]), np.array([math.inf]), np.array([math.inf])
+    rule = Rule.smooth(_ORDERS[0])
     nodes = set_up(asked, rule)
     found = curves(nodes)
+    before = doubts = np.full(len(found), math.inf)
     for order in _ORDERS[1:]:
         finer_rule = Rule.smooth(order)
         count = asked.source.nodes(finer_rule).share.size
@@ -128,10 +133,11 @@ def _enough(asked: Asked, parted: Parted | None, *, dissipating: bool) -> tuple[
         again = curves(finer)
         largest, apart = (np.abs(values).max(axis=1, initial=0.0) for values in (again, again - found))
         before, doubts = doubts, apart / np.where(largest > 0.0, largest, 1.0)
-        if doubts.max() <= _AGREE:
+        wanting = doubts > _AGREE
+        if not wanting.any():
             break
         rule, nodes, found = finer_rule, finer, again
-        if doubts.max() > _SLOW * before.max():
+        if (doubts > _SLOW * before)[wanting].all():
             break
     doubt, last = float(doubts[0]), float(before[0])  # of the force
     if doubt <= _AGREE or last == math.inf:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.earlier import earlier, is_finished, use_again
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.held import Held
@@ -19,7 +20,7 @@ from roughmdr.batch.shard import FAILED, Shard
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
 from roughmdr.labelled import Labelled
-from roughmdr.plan import Plan, make_plan, prepare_all
+from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Progress, progress
 from roughmdr.result import assemble
 from roughmdr.runner.cluster import Cluster, Tls, connected
@@ -150,7 +151,6 @@ class _Batch:
         watched = None if plan.scene.accuracy is None else _FORCE
         steps = plan.cells[0].route.separation.size
         self._gathered = Gathered(self._variables, steps, tallied=self._tallied, watched=watched)
-        self._prepared = False
 
     def run(self, command: str, history: str) -> Labelled:
         """All rounds; the result, whose history goes on from that of the result that it may take the place of."""
@@ -202,11 +202,10 @@ class _Batch:
         if not tasks:
             return
         display.expect(sum(last - first for _, first, last, _ in missing))
+        if not isinstance(self._pool, Cluster):
+            prepare_all(self._plan, missing)
         if len(tasks) > 1 and self._keeper is not None:
             self._keeper.begin(self._plan.scene.toml)
-        if not self._prepared and not isinstance(self._pool, Cluster):
-            self._prepared = True
-            prepare_all(self._plan)
         pool = Here() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(shard: Shard) -> None:
