@@ -211,6 +211,9 @@ def test_more_parameters_make_the_expected_law_dearer() -> None:
     fixed, sticky_fixed, drawn_twice, sticky_drawn_twice = costs
     assert fixed < sticky_fixed < sticky_drawn_twice / 20.0
     assert fixed < drawn_twice < sticky_drawn_twice / 20.0
+    dugdale = {"model": "dugdale", "work": 0.05, "strength": 1e6}
+    table = asking(0.1, None, asperities={**cone, "slope": 0.1, "flat_radius": 1e-6}, adhesion=dugdale)
+    assert seconds(make_plan(read(table)).cells[0], "expected") > sticky_fixed / 10.0
     few, many = (make_plan(read(asking(0.1, asperities={**FEW, "count": n}))).cells[0] for n in (10_000, 1_000_000))
     assert seconds(many, "sampled") == pytest.approx(100.0 * seconds(few, "sampled"), rel=0.2)
 

@@ -321,3 +321,27 @@ def test_heights_that_reach_beyond_all_tables_are_refused_at_once(adhesion: dict
         rm.OutOfRange, match=r"the heights reach .* times the natural depth of Paraboloid\(radius=1\.0\)"
     ):
         rm.run({**asked, "path": {"separation": [1.0]}})
+
+
+@pytest.mark.parametrize(
+    ("family", "a", "b"),
+    [
+        ({"distribution": "arcsine"}, 0.5, 0.5),
+        ({"distribution": "beta", "a": 2.0, "b": 0.7}, 2.0, 0.7),
+        ({"distribution": "gamma", "a": 0.5}, 0.5, math.inf),
+    ],
+)
+@pytest.mark.parametrize("datum", [0.0, 1e-2])
+def test_heights_whose_density_has_a_pole_at_an_end(
+    family: dict[str, object], a: float, b: float, datum: float
+) -> None:
+    """The force of Hertzian contacts is known from their moments; the pole lies where contacts begin, or end."""
+    height = {**family, "loc": datum, "scale": 2e-6}
+    asked = scene({"shape": "paraboloid", "radius": 1e-4, "height": height}, None, batch={"estimator": "expected"})
+    law = rm.run({**asked, "path": {"separation": [datum + 2e-6, datum]}, "output": {"variables": ["force"]}})
+    moment = math.gamma(a + 1.5) / math.gamma(a)
+    if b < math.inf:
+        moment *= math.gamma(a + b) / math.gamma(a + b + 1.5)
+    exact = 2000 * 4.0 / 3.0 * 4e6 * math.sqrt(1e-4) * 2e-6**1.5 * moment
+    assert abs(float(law.force[0, -1]) - exact) <= float(law.numerical_error[0]) * exact
+    assert float(law.numerical_error[0]) < 1e-4

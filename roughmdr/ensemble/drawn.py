@@ -20,7 +20,7 @@ _FRIENDLY = {
 _LOCATION = ("loc", "scale", "mean", "std")
 _ENDS = ("min", "max")
 _LEAST_SHARE = 1e-200  # of a distribution that is cut off: less has no digits left
-_LEAST_OWN, _GREATEST_OWN = 1e-20, 1e20  # of a family's own parameters: far beyond, scipy can end the whole process
+_LEAST_OWN, _GREATEST_OWN = 1e-12, 1e12  # of a family's own parameters: far beyond, scipy can end the whole process
 
 
 @dataclass(frozen=True)

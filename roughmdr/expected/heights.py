@@ -10,7 +10,8 @@ from roughmdr.expected.integral import mass
 from roughmdr.expected.table import ORDER, Table
 
 _TOLERANCE, _RATIO = np.array([1e-13]), 1e3  # how right it is on each piece, and how much it may vary there
-_LAST_BITS = 2.0**-44  # of the width of the distribution: narrower pieces are not halved
+_LAST_BITS, _FLOATS = 2.0**-44, 2.0**8  # of the width of the distribution, of floats: narrower pieces are not halved
+_INSIDE = 2.0**-7  # of such a piece: so near to an end heights can just be told from it, where there may be a pole
 
 # What ∫ T_n du from -1 to 1 comes to.
 _INTEGRALS = np.array([2.0 / (1.0 - n * n) if n % 2 == 0 else 0.0 for n in range(ORDER)])
@@ -22,21 +23,29 @@ class HeightTable(NamedTuple):
     table: Table
     below: Floats
     """The part of all heights below each edge: [piece + 1]; the last is 1 but for errors."""
+    poles: Floats
+    """Heights next to which the density may have a pole, or a kink."""
 
     @classmethod
     def of(cls, heights: Heights) -> "HeightTable":
         """The table of heights."""
         edges = np.array([heights.low, heights.high])
+        narrowest = max(_LAST_BITS * heights.scale, _FLOATS * float(np.spacing(np.abs(edges).max())))
+
+        def density(z: Floats) -> Floats:
+            inside = _INSIDE * narrowest
+            return heights.density(z.clip(edges[0] + inside, edges[1] - inside))[None]
 
         def narrow(low: Floats, high: Floats) -> Floats:
-            return np.full_like(low, _LAST_BITS * heights.scale)
+            return np.full_like(low, narrowest)
 
         def weight(low: Floats, high: Floats) -> Floats:
             return np.minimum((high - low) / heights.scale, 1.0)
 
-        table = Table.of(lambda z: heights.density(z)[None], edges, _TOLERANCE, narrow, weight, _RATIO)
+        table = Table.of(density, edges, _TOLERANCE, narrow, weight, _RATIO)
         pieces = 0.5 * (table.high - table.low) * (table.coefficients[:, 0] @ _INTEGRALS)
-        return cls(table, np.concatenate([[0.0], np.cumsum(pieces)]))
+        poles = table.high[table.high - table.low <= narrowest]
+        return cls(table, np.concatenate([[0.0], np.cumsum(pieces)]), poles)
 
     @property
     def defect(self) -> float:

@@ -55,15 +55,15 @@ def compute(
             total[:, step] = parted.total(step, dissipating=dissipating)
     count = source.expected_count
     total *= count
+    largest = float(np.abs(total[FORCE]).max())
+    closest = float(route.separation.min())
+    total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _missing(nodes, closest)
     if not np.isfinite(total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {asked.law.name} with modulus {modulus:g} Pa, "
-            f"{asked.adhesion}, separation down to {route.separation.min():g} m"
+            f"{asked.adhesion}, separation down to {closest:g} m"
         )
-    largest = float(np.abs(total[FORCE]).max())
-    defect = sum(node.share * node.heights.defect for node in nodes)
-    total[ERROR] += (doubt + _KERNEL_ERROR + defect) * largest
-    extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, float(route.separation.min()), count))
+    extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, closest, count))
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
     return law._replace(doubts=_doubts(law.numerical_error))
 
@@ -154,3 +154,13 @@ def _reached(nodes: list[Node], closest: float, count: float) -> Floats:
     depths = [node.heights.highest(count * node.share) - closest for node in nodes]
     pairs = zip(nodes, depths, strict=True)
     return np.array([node.contact.at_indentation(np.array([depth]))["contact_radius"][0] for node, depth in pairs])
+
+
+def _missing(nodes: list[Node], closest: float) -> float:
+    """What the heights next to poles that no table holds bear [N], of an asperity, with the flat at ``closest``."""
+    lost = 0.0
+    for share, contact, heights in ((node.share, node.contact, node.heights) for node in nodes):
+        if heights.defect > _KERNEL_ERROR and heights.poles.size:
+            force = contact.at_indentation(heights.poles - closest)["force"]
+            lost += share * heights.defect * float(np.abs(force).max())
+    return lost

@@ -82,7 +82,7 @@ def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], step
     total, products = np.zeros((ROWS, separation.size)), 0
     chosen = np.zeros(separation.size, dtype=np.bool_)
     chosen[steps] = True
-    for share, contact, (first, foot, table), (heights, _), held, _ in nodes:
+    for share, contact, (first, foot, table), (heights, *_), held, _ in nodes:
         asked = chosen[held.step]
         found, error = np.zeros((len(rows), separation.size)), np.zeros(separation.size)
         products += integrate(
