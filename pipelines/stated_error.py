@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from stated_error_picture import draw
 from stated_error_references import expected_force, force_of_draws
 from stated_error_scenes import ESTIMATORS, Drawn, scene
@@ -85,6 +84,11 @@ def judgement(drawn: list[Drawn], judged: list[Judged]) -> xr.Dataset:
         {
             "true_error": (over, [errors.true for _, errors in kept], named("true error over the largest force")),
             "stated_error": (over, [errors.stated for _, errors in kept], named("numerical_error")),
+            "honest": (
+                over,
+                [errors.honest for _, errors in kept],
+                named("whether the true error is within the other"),
+            ),
         },
         {
             "scene": (over, [one.number for one, _ in kept], named("number of the scene")),
@@ -96,11 +100,6 @@ def judgement(drawn: list[Drawn], judged: list[Judged]) -> xr.Dataset:
     )
 
 
-def honest(result: xr.Dataset) -> NDArray[np.bool_]:
-    """Whether the true error of each scene is within the stated one."""
-    return np.asarray(result.true_error <= result.stated_error)
-
-
 def tell(result: xr.Dataset) -> str:
     """The share of honest scenes, those that are not, and how pessimistic the bound is."""
     rows = []
@@ -108,7 +107,7 @@ def tell(result: xr.Dataset) -> str:
         own = result.isel(scene=np.flatnonzero(result.estimator == name))
         true, stated = own.true_error.to_numpy(), own.stated_error.to_numpy()
         most = float(np.max(true[stated > 0.0] / stated[stated > 0.0], initial=0.0))
-        cells = [name, f"{own.sizes['scene']}", f"{int(honest(own).sum())}"]
+        cells = [name, f"{own.sizes['scene']}", f"{int(own.honest.sum())}"]
         for values in (stated, stated[true > 0.0] / true[true > 0.0]):
             cells += [f"{q:.1g}" for q in np.quantile(values, [0.5, 0.95])] if values.size else ["", ""]
         rows.append([*cells, f"{most:.2g}"])
@@ -122,8 +121,8 @@ def tell(result: xr.Dataset) -> str:
         "95 %",
         "true/stated: most",
     ]
-    false = [f"- {_described(int(number))}" for number in result.scene[~honest(result)]]
-    share = 100.0 * float(honest(result).mean())
+    false = [f"- {_described(int(number))}" for number in result.scene[~result.honest.astype(bool)]]
+    share = 100.0 * float(result.honest.mean())
     return "\n\n".join(
         [
             f"The true error is within the stated one in {share:.1f} % of {result.sizes['scene']} random scenes "

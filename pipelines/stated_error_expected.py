@@ -23,7 +23,7 @@ from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.ensemble.random import RandomAsperities
-from roughmdr.kernels import row as places
+from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, Curved, FlatPunch
@@ -81,12 +81,21 @@ class Expected:
             total += share * Tip(self, nodes, number).force(order)
         return self.scene.asperities.expected_count * total
 
+    @cached_property
+    def _tried(self) -> int:
+        """How many nodes there are with three scores for each parameter."""
+        return self.nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).share.size
+
+    @property
+    def several(self) -> bool:
+        """Whether more than one parameter of a population is drawn: kinks are curves then."""
+        return self._tried > 3 * _POPULATIONS
+
     def _scores(self, order: int) -> Rule:
-        """Gauss's rule on panels that end where any step has a kink."""
-        three = self.nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).share.size
-        if three <= _POPULATIONS:  # nothing is drawn
+        """Gauss's rule on panels that end where any step has a kink; plainly where there are many."""
+        if self._tried <= _POPULATIONS:  # nothing is drawn
             return Rule(np.zeros(1), np.ones(1))
-        if three > 3 * _POPULATIONS:  # several: the kinks are curves
+        if self.several:
             plain, step = np.linspace(-_FARTHEST, _FARTHEST, order + order // 2, retstep=True)
             return Rule(plain, float(step) * np.exp(-0.5 * plain**2) / math.sqrt(2.0 * math.pi))
         edges = np.linspace(-_FARTHEST, _FARTHEST, math.ceil(2.0 * _FARTHEST / _WIDEST) + 1)
@@ -133,11 +142,11 @@ class Tip:
         self.contact = Contact.of(self.shape, scene.modulus, scene.law)
         self.heights: Heights = nodes.heights[number]
         self.separation = of.separation
-        self.feet, tops = _branches(self.contact)
+        self.feet, tops = branch_ends(self.contact)
         depth = self.contact.depth[0] if self.contact.law.adhesive else 0.0
         self.arcs = [
             (x * self.contact.depth[0] - depth, top * self.contact.depth[0] - depth)
-            for x, top in zip(self.feet, tops, strict=True)
+            for x, top in zip(self.feet, [*tops, math.inf], strict=True)
         ]
         self.touch = -self.contact.adhesion.reach
         marks = [self.touch, *(end for arc in self.arcs for end in arc if end < math.inf)]
@@ -231,13 +240,3 @@ class Tip:
             state = apply(law.state, x, form)
         force = apply(law.force, state, form) if law.answer is None else apply_all(law.answer, state, form)[1]
         return self.contact.force * force
-
-
-def _branches(contact: Contact) -> tuple[list[float], list[float]]:
-    """Where each stable branch begins, and ends, over the natural depth of the contact."""
-    row = contact.form
-    if not contact.law.branched or row.size < -places.TOP_X:  # the row of a punch has no place for others
-        return [0.0], [math.inf]
-    count = int(row[places.COUNT])
-    feet = np.maximum(row[places.FOOT_X : places.FOOT_X + count], 0.0).tolist()
-    return feet, [*row[places.TOP_X : places.TOP_X + count - 1].tolist(), math.inf]

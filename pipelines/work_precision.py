@@ -3,7 +3,7 @@
     python pipelines/work_precision.py -o results/studies
 
 Errors are those against many digits, of the force at given separations, the contact area and the pull-off force; run
-times are those of a curve of 100 to 200 states. A method joins by a line in ``work_precision_tip.METHODS`` or
+times are those of a curve of 50 to 200 states. A method joins by a line in ``work_precision_tip.METHODS`` or
 ``work_precision_rough.METHODS``. Writes work_precision.nc and work_precision.png.
 """
 

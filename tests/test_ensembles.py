@@ -116,6 +116,10 @@ def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
         ({"height": {"distribution": "normal", "std": 0}}, "height.std = 0: must be above 0"),
         ({"height": {"distribution": "gamma", "std": 1}}, "gamma needs a"),
         ({"height": {"distribution": "gamma", "a": -1, "std": 1}}, "not defined for a = -1"),
+        (
+            {"height": {"distribution": "lognormal", "mean": 5e-324, "std": 1.0, "max": 10.0}},
+            "lognormal has no finite mean and standard deviation",
+        ),
         ({"height": {"distribution": "invgauss", "mu": 1e-310, "std": 1}}, r"height\.mu.*1e-12 to 1e\+12 in magnitude"),
         ({"height": {"distribution": "normal", "std": 1, "scale": 1}}, "std or scale, not both"),
         ({"radius": {"distribution": "lognormal", "mean": 1e-200, "std": 1}}, "asperities.radius"),

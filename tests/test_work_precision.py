@@ -1,7 +1,10 @@
 """The study of error against run time in its quick form: errors and counted work, never what it times."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import studies
 import work_precision
 import work_precision_tip
 import xarray as xr
@@ -11,14 +14,29 @@ from work_precision_rough import SURFACES, law
 
 
 @pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    folder = tmp_path_factory.mktemp("study")
-    done = CliRunner().invoke(work_precision.STUDY.command, ["-o", str(folder), "--quick"], catch_exceptions=False)
-    assert done.exit_code == 0
-    assert done.output.startswith("## Error against run time\n")
-    assert sorted(path.name for path in folder.iterdir()) == ["work_precision.nc", "work_precision.png"]
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the studies leave behind, of which one fails."""
+    folder = tmp_path_factory.mktemp("studies")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(studies, "NAMES", ("no_such_study", "work_precision"))
+        done = CliRunner().invoke(studies.main, ["-o", str(folder), "--quick"])
+    assert done.exit_code == 1
+    assert "failed: no_such_study" in done.output
+    return folder
+
+
+@pytest.fixture(scope="module")
+def result(folder: Path) -> xr.Dataset:
     with xr.open_dataset(folder / "work_precision.nc") as stored:
         return stored.load()
+
+
+def test_a_study_that_fails_keeps_no_other_from_the_report(folder: Path) -> None:
+    assert sorted(path.name for path in folder.iterdir()) == ["report.md", "work_precision.nc", "work_precision.png"]
+    report = (folder / "report.md").read_text()
+    assert "## no_such_study\n\nfailed\n" in report
+    assert "## Error against run time\n" in report
+    assert "![work_precision](work_precision.png)" in report
 
 
 def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:

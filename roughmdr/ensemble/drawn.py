@@ -140,7 +140,7 @@ def _located(
         if not mean > 0.0:
             raise EntryError("mean", mean, "must be above 0 in a lognormal distribution")
         variance = math.log1p((std / mean) ** 2)
-        return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
+        return _finite(given, numbers, (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance))
     missing = [shape for shape in family.shapes if shape not in numbers]
     if missing:
         raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {', '.join(_parameters(family))}")
@@ -157,9 +157,15 @@ def _located(
         mean = default_mean
     scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
     loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean
+    return _finite(given, numbers, tuple(own.values()), loc, scale)
+
+
+def _finite(
+    given: str, numbers: dict[str, float], own: tuple[float, ...], loc: float, scale: float
+) -> tuple[tuple[float, ...], float, float]:
     if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
         raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
-    return tuple(own.values()), loc, scale
+    return own, loc, scale
 
 
 def _listed(numbers: dict[str, float]) -> str:

@@ -10,8 +10,9 @@ from roughmdr.expected.integral import mass
 from roughmdr.expected.table import ORDER, Table
 
 _TOLERANCE, _RATIO = np.array([1e-13]), 1e3  # how right it is on each piece, and how much it may vary there
-_LAST_BITS, _FLOATS = 2.0**-44, 2.0**8  # of the width of the distribution, of floats: narrower pieces are not halved
-_INSIDE = 2.0**-7  # of such a piece: so near to an end heights can just be told from it, where there may be a pole
+_LAST_BITS = 2.0**-44  # of the width of the distribution: narrower pieces are not halved
+_INSIDE = 2.0**-51  # of the width: so near to an end heights can just be told from it, where there may be a pole
+_FLOATS = 2.0  # neighbouring floats that are as near
 
 # What ∫ T_n du from -1 to 1 comes to.
 _INTEGRALS = np.array([2.0 / (1.0 - n * n) if n % 2 == 0 else 0.0 for n in range(ORDER)])
@@ -30,10 +31,10 @@ class HeightTable(NamedTuple):
     def of(cls, heights: Heights) -> "HeightTable":
         """The table of heights."""
         edges = np.array([heights.low, heights.high])
-        narrowest = max(_LAST_BITS * heights.scale, _FLOATS * float(np.spacing(np.abs(edges).max())))
+        apart = _FLOATS * float(np.spacing(np.abs(edges).max()))
+        narrowest, inside = max(_LAST_BITS * heights.scale, 4.0 * apart), max(_INSIDE * heights.scale, apart)
 
         def density(z: Floats) -> Floats:
-            inside = _INSIDE * narrowest
             return heights.density(z.clip(edges[0] + inside, edges[1] - inside))[None]
 
         def narrow(low: Floats, high: Floats) -> Floats:
