@@ -129,6 +129,9 @@ def check(result: xr.Dataset, scene: Scene) -> Claims:
             _hold_without_adhesion(claims, law)
     if scene.accuracy is None:
         _hold_over_work(claims, scene, laws)
+    else:
+        missed = result.variables["accuracy_reached"].values > scene.accuracy.relative
+        claims.hold("an error that is missed is told of", ~missed | ("was not reached" in str(result.attrs)))
     return claims
 
 

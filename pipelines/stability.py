@@ -22,7 +22,7 @@ from study import Study, named, table
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """How many cases of each law; the first of one sequence."""
-COUNTED, COUNTED_QUICKLY = 128, 4
+COUNTED, COUNTED_QUICKLY = 128, 16
 """In how many cases of each law with adhesion equilibria are counted."""
 WORKERS = 2
 _PORTION = 4  # cases that a worker takes at a time

@@ -79,16 +79,12 @@ def measure(quick: bool) -> xr.Dataset:
 def judgement(drawn: list[Drawn], judged: list[Judged]) -> xr.Dataset:
     """What was found of each scene that was not refused."""
     kept = [(one, errors) for one, errors in zip(drawn, judged, strict=True) if not errors.refused]
-    over = "scene"
+    over, within = "scene", [errors.honest for _, errors in kept]
     return xr.Dataset(
         {
             "true_error": (over, [errors.true for _, errors in kept], named("true error over the largest force")),
             "stated_error": (over, [errors.stated for _, errors in kept], named("numerical_error")),
-            "honest": (
-                over,
-                [errors.honest for _, errors in kept],
-                named("whether the true error is within the other"),
-            ),
+            "honest": (over, np.array(within, dtype=np.int8), named("1 where the true error is within")),
         },
         {
             "scene": (over, [one.number for one, _ in kept], named("number of the scene")),
@@ -121,7 +117,7 @@ def tell(result: xr.Dataset) -> str:
         "95 %",
         "true/stated: most",
     ]
-    false = [f"- {_described(int(number))}" for number in result.scene[~result.honest.astype(bool)]]
+    false = [f"- {_described(int(number))}" for number in result.scene[result.honest == 0]]
     share = 100.0 * float(result.honest.mean())
     return "\n\n".join(
         [

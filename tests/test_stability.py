@@ -29,8 +29,8 @@ KNOWN = {
     *(f"{control} is ..." for control in CONTROLS),
 }
 """Why answers are refused: floats do not hold a scale of the contact, or what is asked for."""
-TYPICALLY, AT_MOST = 6, 100
-"""Equilibria that are tried to find a contact under Dugdale's law."""
+TYPICALLY, AT_MOST = 20, 100
+"""Equilibria that are tried to find a contact under Dugdale's law; to halve an interval takes 50."""
 MILD = Case(3e6, 2e-5, 0.04, 2.6, 1.5, 0.02, 1.0, 0.05, (0.5, 3.0))
 
 
