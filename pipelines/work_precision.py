@@ -91,7 +91,8 @@ def _in_words(point: xr.Dataset | None) -> str:
     """A point: the method, its run time and its counted evaluations."""
     if point is None:
         return "none"
-    setting = "" if str(point.setting_of.item()) == "-" else f", {float(point.setting):g} {point.setting_of.item()}"
+    value, of = float(point.setting), str(point.setting_of.item())
+    setting = "" if of == "-" else f", {value:g} {of.removesuffix('s') if value == 1.0 else of}"
     return f"{point.method.item()}{setting}: {1e3 * float(point.seconds):.2g} ms ({float(point.evaluations):,.0f})"
 
 
