@@ -14,6 +14,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
+from roughmdr.scene import read
 
 UM = 1e-6
 
@@ -213,4 +214,19 @@ def test_scipy_does_not_warn_where_roughmdr_has_looked() -> None:
     drawn = Drawn("m")({"distribution": "invgauss", "mu": 0.3541, "scale": 1e-6, "mean": 314.0})
     assert (np.diff(drawn.quantile(np.linspace(0.01, 0.99, 50))) >= 0.0).all()
     with pytest.raises(rm.RoughmdrError, match="cannot be drawn from"):
-        Drawn("m")({"distribution": "weibull", "c": 1e-310, "scale": 1e-6})
+        Drawn("m")({"distribution": "weibull", "c": 1e-4, "scale": 1e-6})
+
+
+@pytest.mark.parametrize("mu", [0.02, 0.1, 0.3, 1.0])
+@pytest.mark.parametrize("unit", [1e-9, 1.0])
+def test_moments_of_a_family_whose_inverse_is_lost_far_out(mu: float, unit: float) -> None:
+    """scipy's inverse of invgauss is wrong by up to 200 orders for fractions below 1e-16 to 1e-50."""
+    law = Distribution("invgauss", (mu,), 0.0, unit, min=-unit)  # which cuts nothing off
+    assert law.mean == pytest.approx(mu * unit, rel=1e-11, abs=0.0)
+    assert law.std == pytest.approx(mu**1.5 * unit, rel=1e-11, abs=0.0)
+
+
+def test_populations_so_far_apart_that_squares_overflow_have_a_spread() -> None:
+    far = {"height": {"distribution": "normal", "mean": 1e200, "std": 1.0}, "share": 0.5}
+    section = read(scene(asperities={**ASPERITIES, "second": far})).asperities
+    assert section.sigma == pytest.approx(0.5e200, rel=1e-12, abs=0.0)

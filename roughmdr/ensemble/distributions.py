@@ -12,6 +12,7 @@ from roughmdr.ensemble.families import Family, find_family
 
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
+_FAR_OUT = 1e-15  # fractions beyond which some inverses of scipy are wrong by many orders, as that of invgauss
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,8 @@ class Distribution:
 
     def _fractions(self, values: Floats) -> tuple[Floats, Floats]:
         """The fractions of the uncut distribution below and above values."""
-        reduced = (values - self.loc) / self.scale
         with np.errstate(all="ignore"):
+            reduced = (values - self.loc) / self.scale
             return self._standard.below(reduced, *self.own), self._standard.above(reduced, *self.own)
 
     @cached_property
@@ -114,10 +115,16 @@ class Distribution:
         """Mean and standard deviation where it is cut."""
         from scipy.special import ndtr
 
-        values = self._between(ndtr(_SCORES), ndtr(-_SCORES))
+        lower, upper = ndtr(_SCORES), ndtr(-_SCORES)
+        values = self._between(lower, upper)
         weights = np.exp(-0.5 * _SCORES**2) * (_SCORE_STEP / math.sqrt(2.0 * math.pi))
         middle = float(values[_SCORES.size // 2])
-        values = np.where(np.isfinite(values), values, middle)  # so far out that no fraction is left of the uncut one
+        below, above = self._fractions(values)
+        near, back = np.where(upper < lower, (upper, above), (lower, below))
+        with np.errstate(all="ignore"):
+            lost = (near < _FAR_OUT) & ~(np.abs(back / near - 1.0) < 0.5)
+        # So far out that no fraction is left of the uncut one, or that the family's inverse does not lead there.
+        values = np.where(np.isfinite(values) & ~lost, values, middle)
         with np.errstate(all="ignore"):  # a cut at one end may leave no moments
             mean = middle + float(weights @ (values - middle))
             return mean, math.sqrt(float(weights @ (values - mean) ** 2))

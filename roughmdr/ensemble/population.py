@@ -52,11 +52,8 @@ class AsperityLaw:
         middle = self.populations[0].height.mean
         means = [each.height.mean - middle for each in self.populations]
         mean = sum(each.share * own for each, own in zip(self.populations, means, strict=True))
-        variance = sum(
-            each.share * (each.height.std**2 + (own - mean) ** 2)
-            for each, own in zip(self.populations, means, strict=True)
-        )
-        return math.sqrt(variance)
+        spreads = [math.hypot(each.height.std, own - mean) for each, own in zip(self.populations, means, strict=True)]
+        return math.hypot(*(math.sqrt(each.share) * own for each, own in zip(self.populations, spreads, strict=True)))
 
     @property
     def varied(self) -> tuple[int, ...]:
