@@ -89,17 +89,19 @@ def test_killed_again_and_again_it_comes_to_the_same_bits(
         elif chosen.random() < 0.15:
             time.sleep(chosen.uniform(0.0, 2.0))  # anywhere, also before anything is computed
         else:
-            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), shards - 1))
+            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), shards - 4))
             time.sleep(chosen.uniform(0.0, 0.03))
         survived += batch.process.poll() is None
         batch.kill()
         if (folder / "out.nc").exists():  # whole, from the first moment
             assert_result(folder, base)
+            (folder / "out.nc").unlink()  # so that the next has something to do
+            before = 0
         else:
             now = kept(folder)
             assert now >= before
             before = now
-    assert survived > 0.8 * kills
+    assert survived > 0.7 * kills
     last = Batch(folder)
     assert last.succeed() <= RUNS - before
     assert_result(folder, base)
