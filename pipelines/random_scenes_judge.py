@@ -3,7 +3,6 @@
 import math
 import re
 import warnings
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -11,18 +10,15 @@ import numpy as np
 import tomli_w
 import xarray as xr
 from numpy.typing import NDArray
+from random_scenes_laws import DONE, PUSHING, ROUNDING, Law, excursions, laws_of
 
 import roughmdr as rm
 from roughmdr import errors
-from roughmdr.arguments import Floats
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
-DONE, _EXPECTED = 0, 2
-_ROUNDING = 1e-12  # of a sum, as the kernels are tested
 _GROWING = ("contact_area", "contact_count", "contact_radius_sum")
-_PUSHING = ("force", "pressure")
 _FOLDERS = re.compile(r"/\S*/|\bscene: ")
 _NUMBERS = re.compile(r"[-+]?\d[\w.+-]*|'[^']*'|\([^)]*\)")
 
@@ -38,34 +34,6 @@ class Verdict(NamedTuple):
     reason: str = ""
     comparisons: int = 0
     """How many pairs of numbers were held against each other."""
-
-
-class Law(NamedTuple):
-    """The curves of one cell."""
-
-    scene: Scene
-    separation: Floats
-    """[step]"""
-    curves: dict[str, Floats]
-    """[row, step]: each realisation that is done, or mean, least and greatest."""
-    error: Floats
-    """[row], over the largest force."""
-    drawn: bool
-    """Whether a row is one realisation."""
-    expected: bool
-    """Whether it is the expected law, whose error is that of an integral."""
-
-    @property
-    def far_reaching(self) -> bool:
-        """Whether there may be a force without a touch."""
-        return self.scene.work > 0.0 and "dugdale" in self.scene.law.candidates
-
-    def slack(self, name: str) -> Floats:
-        """By how much values may be off: [row, 1]."""
-        largest = np.abs(self.curves[name]).max(axis=1, keepdims=True)
-        if name in _PUSHING or self.expected:
-            return np.asarray(np.maximum(self.error[:, None], _ROUNDING if name not in _PUSHING else 0.0) * largest)
-        return np.asarray(_ROUNDING * largest)
 
 
 class Claims:
@@ -153,33 +121,6 @@ def _hold_numbers(claims: Claims, result: xr.Dataset) -> None:
         claims.hold(f"a run fails for a reason, not with {remark}", expected)
 
 
-def laws_of(result: xr.Dataset, scene: Scene) -> Iterator[Law]:
-    """The curves of each cell, in the order of the cells."""
-    sizes = scene.sweep.sizes
-    separation = result.variables["separation"]
-    over = [result.sizes[name] if name in separation.dims else 1 for name in (*sizes, "step")]
-    way = np.broadcast_to(separation.values.reshape(over), (*sizes.values(), result.sizes["step"]))
-
-    def values(name: str, place: tuple[int, ...]) -> np.ndarray:
-        return np.asarray(result.variables[name].values[place])
-
-    for place, cell in zip(np.ndindex(*sizes.values()), scene.cells, strict=True):
-        expected = cell.batch.estimator == "expected"
-        if "accuracy_method" in result:
-            expected = int(values("accuracy_method", place)) == _EXPECTED
-        error, done = values("numerical_error", place), values("status", place) == DONE
-        names = scene.output.variables
-        if scene.output.keep == "curves":
-            curves = {name: values(name, place)[done] for name in names}
-            yield Law(cell, way[place], curves, error[done], drawn=not expected, expected=expected)
-        else:
-            of = ("mean", "min", "max") if done else ()
-            curves = {name: np.array([values(f"{name}_{row}", place) for row in of]) for name in names}
-            curves = curves if done else {name: np.empty((0, result.sizes["step"])) for name in names}
-            errors_of_all = np.repeat(error, len(of))
-            yield Law(cell, way[place], curves, errors_of_all, drawn=False, expected=expected)
-
-
 def _hold_identities(claims: Claims, law: Law) -> None:
     """What holds at every step of its own."""
     curves = law.curves
@@ -199,7 +140,7 @@ def _hold_identities(claims: Claims, law: Law) -> None:
     for ratio, whole in (("pressure", "force"), ("contact_fraction", "contact_area")):
         if ratio in curves and whole in curves and area:
             with np.errstate(under="ignore"):
-                same = np.isclose(curves[ratio], curves[whole] / area, rtol=_ROUNDING, atol=1e-300)
+                same = np.isclose(curves[ratio], curves[whole] / area, rtol=ROUNDING, atol=1e-300)
             claims.hold(f"{ratio} is {whole} over the nominal area", same)
     if not law.drawn and not law.expected:
         for name, (mean, least, most) in ((name, rows) for name, rows in curves.items() if len(rows)):
@@ -209,7 +150,7 @@ def _hold_identities(claims: Claims, law: Law) -> None:
         one = np.sqrt(curves["contact_area"] / math.pi)
         total, count = curves["contact_radius_sum"], curves["contact_count"]
         known = curves["contact_area"] > 1e-290
-        inside = (one * (1.0 - _ROUNDING) <= total) & (total <= one * np.sqrt(count) * (1.0 + _ROUNDING))
+        inside = (one * (1.0 - ROUNDING) <= total) & (total <= one * np.sqrt(count) * (1.0 + ROUNDING))
         claims.hold("radii and areas go together", inside[known])
 
 
@@ -239,7 +180,7 @@ def _hold_without_adhesion(claims: Claims, law: Law) -> None:
     if {"contact_radius_sum", "stiffness"} <= curves.keys():
         exact = 2.0 * law.scene.modulus * curves["contact_radius_sum"]
         same = np.abs(curves["stiffness"] - exact) <= np.maximum(
-            2.0 * _ROUNDING * exact, law.expected * 2.0 * law.slack("stiffness")
+            2.0 * ROUNDING * exact, law.expected * 2.0 * law.slack("stiffness")
         )
         claims.hold("stiffness is 2 E* times the sum of the radii", same)
 
@@ -256,29 +197,14 @@ def _hold_with_adhesion(claims: Claims, law: Law) -> None:
         # A loss is a difference of energies, and no more right than they are.
         spent, held, force = (law.curves[name] for name in ("dissipated_energy", "energy", "force"))
         whole = np.abs(held).max(axis=1) + np.abs(force).max(axis=1) * np.ptp(law.separation)
-        slack = 2.0 * law.slack("dissipated_energy") + _ROUNDING * whole[:, None]
+        slack = 2.0 * law.slack("dissipated_energy") + ROUNDING * whole[:, None]
         claims.hold("what is lost is lost", np.diff(spent, axis=1, prepend=0.0) >= -slack)
     for earlier, later in excursions(law.separation):
-        for name in (*_GROWING, "contact_fraction", *_PUSHING):
+        for name in (*_GROWING, "contact_fraction", *PUSHING):
             if name in law.curves:
-                less, more = (later, earlier) if name in _PUSHING else (earlier, later)
+                less, more = (later, earlier) if name in PUSHING else (earlier, later)
                 gain, slack = law.curves[name][:, more] - law.curves[name][:, less], 2.0 * law.slack(name)[:, 0]
                 claims.hold(f"{name} after the flat was lower, against before", gain >= -slack)
-
-
-def excursions(separation: Floats) -> list[tuple[int, int]]:
-    """Pairs of steps at the same separation: between them the flat was lower only, or higher only with them swapped."""
-    last: dict[float, int] = {}
-    pairs = []
-    for step, h in enumerate(separation.tolist()):
-        if h in last:
-            between = separation[last[h] : step]
-            if (between <= h).all():
-                pairs.append((last[h], step))
-            elif (between >= h).all():
-                pairs.append((step, last[h]))
-        last[h] = step
-    return pairs
 
 
 def _hold_over_work(claims: Claims, scene: Scene, laws: list[Law]) -> None:
@@ -294,8 +220,8 @@ def _hold_over_work(claims: Claims, scene: Scene, laws: list[Law]) -> None:
         for weak, strong in pairwise(ordered):
             if strong.scene.law.model == "auto" or len(weak.error) != len(strong.error):
                 continue
-            for name in (*_GROWING, *_PUSHING):
+            for name in (*_GROWING, *PUSHING):
                 if name in weak.curves:
                     gain = strong.curves[name] - weak.curves[name]
                     slack = weak.slack(name) + strong.slack(name)
-                    claims.hold(f"{name} with more work", (-gain if name in _PUSHING else gain) >= -slack)
+                    claims.hold(f"{name} with more work", (-gain if name in PUSHING else gain) >= -slack)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from random_scenes_judge import COMPUTED, Defect, check, excursions
+from random_scenes_judge import COMPUTED, Defect, check
+from random_scenes_laws import excursions
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
