@@ -23,6 +23,11 @@ class Route(NamedTuple):
         separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
+    def seen_from(self, origin: float) -> "Route":
+        """The path with separations and memory as differences to ``origin`` [m]."""
+        first, bottom, top = self.memory
+        return Route(self.separation - origin, Staircase(first, bottom - origin, top - origin))
+
     def branch(self) -> Array:
         """The branch of each step."""
         return Array(("step",), branches(self.separation), {"long_name": COORDINATES["branch"].long_name})

@@ -1,7 +1,7 @@
 """Distributions, sampled through their inverse, so that draws can be shared and compared."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -92,17 +92,28 @@ class Distribution:
 
         return self._between(ndtr(scores), ndtr(-scores)) if self.family else np.full_like(scores, self.loc)
 
-    def scores(self, values: Floats) -> Floats:
-        """The standard normal scores of values; the inverse of ``of_scores``."""
-        from scipy.special import ndtri
-
+    def fractions(self, values: Floats) -> tuple[Floats, Floats]:
+        """The fractions of all draws below values, and above them."""
         below, above = self._fractions(values)
+        if not self.cut:
+            return below, above
         (below_min, below_max), (above_min, above_max) = self._fractions(np.array([self.min, self.max]))
         low = below < above  # differences of the nearer tail keep their digits
         lower = np.where(low, below - below_min, above_min - above) / self.share
         upper = np.where(low, below_max - below, above - above_max) / self.share
-        scores = np.where(lower < upper, ndtri(lower.clip(0.0, 1.0)), -ndtri(upper.clip(0.0, 1.0)))
-        return np.asarray(scores)
+        return lower.clip(0.0, 1.0), upper.clip(0.0, 1.0)
+
+    def scores(self, values: Floats) -> Floats:
+        """The standard normal scores of values; the inverse of ``of_scores``."""
+        from scipy.special import ndtri
+
+        lower, upper = self.fractions(values)
+        return np.asarray(np.where(lower < upper, ndtri(lower), -ndtri(upper)))
+
+    @property
+    def from_loc(self) -> "Distribution":
+        """The distribution of the differences to ``loc``, which keep their digits however near to it they are."""
+        return replace(self, loc=0.0, min=self.min - self.loc, max=self.max - self.loc)
 
     def density(self, values: Floats) -> Floats:
         """The density at values, over the unit of the quantity; 0 where there is none, inf where it has a pole."""

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, ValidationInfo, field_validator, model_val
 from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import END as HEIGHT_END
-from roughmdr.ensemble.nodes import Heights, Nodes, Rule
+from roughmdr.ensemble.nodes import Heights, Nodes, Rule, UpperTail
 from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.summit_law import SummitLaw, product_of_score
 from roughmdr.errors import RoughmdrError
@@ -157,7 +157,8 @@ class NayakAsperities(PatchSource):
     def _heights(self, v: float) -> Heights:
         """The heights of the summits that have a product of curvatures v."""
         low, high = self.law.height_range(v, HEIGHT_END)
-        return Heights(partial(self.law.height_density, v=v), low, high, self.law.height_spread)
+        tail = UpperTail(0.0, 0.0)  # lighter than the normal one
+        return Heights(partial(self.law.height_density, v=v), None, (low, high), self.law.height_spread, tail, 0.0)
 
     def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
         """The asperities of one realization."""

@@ -12,43 +12,115 @@ from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.population import AsperityLaw, Population
 
 END = 10.0
-"""The normal score beyond which heights are left out: their share is 1e-23."""
+"""The normal score beyond which heights are left out where tails are light: their share is 1e-23."""
+_NEARER_ENDS = (END, 8.0, 6.5, 5.0)  # of these the first that the inverse of a distribution leads to
+_FARTHER_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)  # where the upper tail is heavy; 37 is the last
+_BULK = 3.0  # normal scores between which most heights lie: 99.7 %
 _LAST = 8.5  # normal score beyond which parameters are left out: their share is 1e-17
 _QUARTER = 0.6745  # normal score that a quarter of all heights lie above
+_STEEPEST = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
+_NEGLIGIBLE = 1e-16  # of the force that the bulk bears
+_WIDEST = 1e100  # of the scale: farther heights are not integrated
+
+
+class UpperTail(NamedTuple):
+    """The heights that are left out above."""
+
+    share: float
+    """Of all heights."""
+    index: float
+    """xi, where heights grow as share^-xi (the index of extreme values)."""
+
+    def over_edge(self, growth: float) -> float:
+        """What the tail bears over what one height at its edge bears, where that grows as the height^growth.
+
+        The integral of (p/share)^(-growth index) dp from 0 to share; inf where it has no bound.
+        """
+        return self.share / (1.0 - growth * self.index) if growth * self.index < 1.0 else math.inf
 
 
 class Heights(NamedTuple):
-    """The heights of the summits of one node."""
+    """The heights of the summits of one node, as differences y = z - origin: near a pole they keep their digits."""
 
     density: Callable[[Floats], Floats]
-    """z [m] -> the density [1/m]."""
-    low: float
-    """[m]; next to no summit is lower."""
-    high: float
-    """[m]; next to no summit is higher."""
+    """y [m] -> the density [1/m]; inf at a pole."""
+    fractions: Callable[[Floats], tuple[Floats, Floats]] | None
+    """y [m] -> the fractions of all heights below and above; None where the density is smooth and its integral 1."""
+    edges: tuple[float, ...]
+    """y [m], rising; next to no summit is lower than the first, ``tail`` are those above the last."""
     scale: float
-    """[m]; half of the summits lie so near to each other."""
+    """[m]; half of the summits lie so near to each other, or nearly all within six times that."""
+    tail: UpperTail
+    origin: float
+    """[m]"""
+
+    @property
+    def low(self) -> float:
+        """[m]; next to no summit is lower."""
+        return self.origin + self.edges[0]
+
+    @property
+    def high(self) -> float:
+        """[m]; next to no summit is higher."""
+        return self.origin + self.edges[-1]
 
     @classmethod
     def of(cls, distribution: Distribution) -> "Heights":
         """Heights that have a distribution of their own."""
-        low, lower, upper, high = distribution.of_scores(np.array([-END, -_QUARTER, _QUARTER, END]))
-        return cls(distribution.density, float(low), float(high), float(upper - lower))
+        own = distribution.from_loc
+        return cls(own.density, own.fractions, *_extent(own.of_scores), distribution.loc)
 
     @classmethod
     def given(cls, distribution: Distribution, score: float, correlation: float) -> "Heights":
         """Those that go with the normal score of another quantity, by a normal copula."""
-        spread = math.sqrt((1.0 - correlation) * (1.0 + correlation))
-        scores = correlation * score + spread * np.array([-END, -_QUARTER, _QUARTER, END])
-        low, lower, upper, high = distribution.of_scores(scores)
+        own = distribution.from_loc
+        middle, spread = correlation * score, math.sqrt((1.0 - correlation) * (1.0 + correlation))
 
-        def density(z: Floats) -> Floats:
-            own = distribution.scores(z)
+        def of_scores(scores: Floats) -> Floats:
+            return own.of_scores(middle + spread * scores)
+
+        def fractions(y: Floats) -> tuple[Floats, Floats]:
+            from scipy.special import ndtr
+
+            scores = (own.scores(y) - middle) / spread
+            return np.asarray(ndtr(scores)), np.asarray(ndtr(-scores))
+
+        def density(y: Floats) -> Floats:
+            scores = own.scores(y)
             with np.errstate(all="ignore"):
-                lean = np.exp(0.5 * own**2 - 0.5 * ((own - correlation * score) / spread) ** 2) / spread
-            return np.where(np.isfinite(own), distribution.density(z) * lean, 0.0)
+                lean = np.exp(0.5 * scores**2 - 0.5 * ((scores - middle) / spread) ** 2) / spread
+            return np.where(np.isfinite(scores), own.density(y) * lean, 0.0)
 
-        return cls(density, float(low), float(high), float(upper - lower))
+        return cls(density, fractions, *_extent(of_scores), distribution.loc)
+
+
+def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], float, UpperTail]:
+    """Edges and scale of heights, and the tail beyond, from the heights y [m] that have some normal scores."""
+    low_bulk, lower, upper, bulk = of_scores(np.array([-_BULK, -_QUARTER, _QUARTER, _BULK])).tolist()
+    scale = max(upper - lower, (bulk - low_bulk) / (2.0 * _BULK))
+    ends = np.array(_NEARER_ENDS)
+    low = next((y for y in of_scores(-ends).tolist() if math.isfinite(y)), low_bulk)
+    score, high = next(
+        ((t, y) for t, y in zip(_NEARER_ENDS, of_scores(ends).tolist(), strict=True) if math.isfinite(y)), (_BULK, bulk)
+    )
+    edges, before = [low, low_bulk, bulk, high], (_BULK, bulk)
+    if low < 0.0 < high:
+        edges.append(0.0)  # where families that have a pole within have it
+    for farther, y in zip(_FARTHER_ENDS, of_scores(np.array(_FARTHER_ENDS)).tolist(), strict=True):
+        if score < END or not high < y < _WIDEST * scale or _share(score) * (high / scale) ** _STEEPEST < _NEGLIGIBLE:
+            break
+        before, (score, high) = (score, high), (farther, y)
+        edges.append(y)
+    rising = before[1] > 0.0 and high > before[1]
+    index = math.log(high / before[1]) / math.log(_share(before[0]) / _share(score)) if rising else 0.0
+    return tuple(sorted(set(edges))), scale, UpperTail(_share(score), index)
+
+
+def _share(score: float) -> float:
+    """Of all heights, those above a normal score."""
+    from scipy.special import ndtr
+
+    return float(ndtr(-score))
 
 
 class Rule(NamedTuple):

@@ -1,7 +1,7 @@
 """What one contact bears on each of its stable branches, as tables over the root of the distance to where it begins.
 
-With x the reduced distance to the onset of contact and x = foot + s^2, every quantity times 2 s is smooth in s even at
-a fold, where the stiffness runs off as 1/s; and 2 s ds is dx.
+With x the reduced distance to the onset of contact and x = foot + s^2, every quantity is smooth in s even at a fold,
+but for the stiffness, which runs off as 1/s: of that 2 s times it is tabulated.
 """
 
 import math
@@ -30,7 +30,9 @@ _WIDER, _MOST_EDGES = 4.0, 100  # how much wider than the one before it a piece 
 
 
 class Curve(NamedTuple):
-    """The tables of all branches of one contact, one after the other; rows over their natural scales, times 2 s."""
+    """The tables of all branches of one contact, one after the other; rows over their natural scales, the stiffness
+    times 2 s.
+    """
 
     first: NDArray[np.int64]
     """The first piece of each branch, and the number of all: [branch + 1]."""
@@ -61,7 +63,7 @@ def curves_of(
     """
     ranges = np.array(
         [
-            (max(own.high - deepest, own.scale) / contact.depth[0], own.scale / contact.depth[0])
+            (max(own.edges[-1] - (deepest - own.origin), own.scale) / contact.depth[0], own.scale / contact.depth[0])
             for contact, own in zip(contacts, heights, strict=True)
         ]
     )
@@ -84,7 +86,7 @@ def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, .
     def narrow(low: Floats, high: Floats) -> Floats:
         return np.where(low <= least, least, _LAST_BITS * high)
 
-    def weight(low: Floats, high: Floats) -> Floats:
+    def weight(low: Floats, high: Floats, _: Floats) -> Floats:
         return (high - low) / high
 
     feet, tops = branch_ends(contact)
@@ -120,7 +122,7 @@ def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
 
 
 def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple[int, ...]) -> Floats:
-    """The wanted quantities at s: [row, s]."""
+    """The wanted quantities at s, the stiffness times 2 s: [row, s]."""
     law, form = contact.law, contact.form
     x = foot + s * s
     if law.branched and law.state_on is not None:
@@ -135,9 +137,9 @@ def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple
         FORCE: force,
         RADIUS: radius,
         AREA: radius * radius,
-        STIFFNESS: stiffness,
+        STIFFNESS: 2.0 * s * stiffness,
         COUNT: np.where(radius > 0.0, 1.0, 0.0),
     }
     if ENERGY in rows:
         found[ENERGY] = apply(law.energy, state, form)
-    return np.array([2.0 * s * found[row] for row in rows])
+    return np.array([found[row] for row in rows])

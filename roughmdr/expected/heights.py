@@ -1,67 +1,95 @@
-"""The density of heights as a table, and what part of them lies below a height."""
+"""The density of heights as a table of polynomials, and the fraction of all heights below a height.
+
+Next to a pole no polynomial holds the density: there the fractions of the heights tell how many stand on a piece, and
+the piece is so narrow that it hardly matters where on it they do.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.ensemble.nodes import Heights
+from roughmdr.ensemble.nodes import Heights, UpperTail
+from roughmdr.errors import OutOfRange
 from roughmdr.expected.integral import mass
 from roughmdr.expected.table import ORDER, Table
 
-_TOLERANCE, _RATIO = np.array([1e-13]), 1e3  # how right it is on each piece, and how much it may vary there
-_LAST_BITS = 2.0**-44  # of the width of the distribution: narrower pieces are not halved
-_INSIDE = 2.0**-51  # of the width: so near to an end heights can just be told from it, where there may be a pole
-_FLOATS = 2.0  # neighbouring floats that are as near
+_TOLERANCE, _RATIO = 1e-13, 1e3  # how right it is on each piece, of all heights, and how much it may vary there
+_NARROWEST = 2.0**-44  # of the scale of the heights, or of the height itself: narrower pieces are not halved
+_ROUNDING = 2.0**-51  # of a height
+_SCALED = 2.0  # a polynomial that has more than so many times its heights, or less than that part, is none
 
 # What ∫ T_n du from -1 to 1 comes to.
 _INTEGRALS = np.array([2.0 / (1.0 - n * n) if n % 2 == 0 else 0.0 for n in range(ORDER)])
 
 
 class HeightTable(NamedTuple):
-    """The density over pieces from the lowest summit to the highest."""
+    """The density over pieces from the lowest summit to the highest, as differences y [m] to ``origin``."""
 
-    table: Table
+    low: Floats
+    """[piece]"""
+    high: Floats
+    """[piece]"""
+    coefficients: Floats
+    """Of the density [1/m]: [piece, 1, order]."""
+    doubt: Floats
+    """How far the density may be off [1/m]; the part of all heights that stands anywhere on the piece; the part that may
+    stand on it or not: [piece, 3]."""
     below: Floats
     """The part of all heights below each edge: [piece + 1]; the last is 1 but for errors."""
-    poles: Floats
-    """Heights next to which the density may have a pole, or a kink."""
+    origin: float
+    """[m]"""
+    tail: UpperTail
 
     @classmethod
     def of(cls, heights: Heights) -> "HeightTable":
-        """The table of heights."""
-        edges = np.array([heights.low, heights.high])
-        apart = _FLOATS * float(np.spacing(np.abs(edges).max()))
-        narrowest, inside = max(_LAST_BITS * heights.scale, 4.0 * apart), max(_INSIDE * heights.scale, apart)
+        """The table of heights; OutOfRange where no float holds their density."""
 
-        def density(z: Floats) -> Floats:
-            return heights.density(z.clip(edges[0] + inside, edges[1] - inside))[None]
+        def density(y: Floats) -> Floats:
+            return heights.density(y)[None]
 
         def narrow(low: Floats, high: Floats) -> Floats:
-            return np.full_like(low, narrowest)
+            return _NARROWEST * np.maximum(heights.scale, np.maximum(np.abs(low), np.abs(high)))
 
-        def weight(low: Floats, high: Floats) -> Floats:
-            return np.minimum((high - low) / heights.scale, 1.0)
+        def weight(low: Floats, high: Floats, greatest: Floats) -> Floats:
+            return np.minimum((high - low) * np.maximum(1.0 / heights.scale, greatest), 1.0)
 
-        table = Table.of(density, edges, _TOLERANCE, narrow, weight, _RATIO)
-        pieces = 0.5 * (table.high - table.low) * (table.coefficients[:, 0] @ _INTEGRALS)
-        poles = table.high[table.high - table.low <= narrowest]
-        return cls(table, np.concatenate([[0.0], np.cumsum(pieces)]), poles)
-
-    @property
-    def defect(self) -> float:
-        """By how much all heights are not 1."""
-        return abs(float(self.below[-1]) - 1.0)
+        edges = np.array(heights.edges)
+        table = Table.of(density, edges, np.array([_TOLERANCE]), narrow, weight, _RATIO, _ROUNDING)
+        width, slack, coefficients = table.high - table.low, table.slack[:, 0], table.coefficients
+        parts = 0.5 * width * (coefficients[:, 0] @ _INTEGRALS)
+        loose, unknown = np.zeros_like(parts), np.zeros_like(parts)
+        if heights.fractions is not None:
+            below, above = heights.fractions(np.append(table.low, table.high[-1]))
+            counted = np.where(below[1:] < above[1:], below[1:] - below[:-1], above[:-1] - above[1:])
+            counted = np.where(np.isfinite(counted), counted.clip(min=0.0), 0.0)
+            vague = ~(slack * width <= _TOLERANCE)
+            ratio = np.divide(counted, parts, out=np.zeros_like(parts), where=vague & (parts > 0.0))
+            scaled = vague & (ratio < _SCALED) & (ratio > 1.0 / _SCALED)
+            even = vague & ~scaled
+            coefficients[scaled] *= ratio[scaled, None, None]
+            coefficients[even] = 0.0
+            coefficients[even, 0, 0] = (counted / width)[even]
+            loose[even], loose[scaled] = counted[even], np.minimum(counted, slack * width)[scaled]
+            unknown[~vague] = np.abs(counted - parts)[~vague]
+            unknown[0] += np.nan_to_num(below[0])
+            parts = np.where(vague, counted, parts)
+            slack = np.where(vague, 0.0, slack)
+        unknown[-1] += heights.tail.share
+        doubt = np.column_stack([slack, loose, unknown])
+        if not (np.isfinite(coefficients).all() and np.isfinite(doubt).all()):
+            raise OutOfRange(f"no float holds the density of the heights, about {heights.origin:g} m and {heights.scale:g} m wide")
+        share = np.concatenate([[0.0], np.cumsum(parts)])
+        return cls(table.low, table.high, coefficients, doubt, share, heights.origin, heights.tail)
 
     def between(self, begin: Floats, end: Floats) -> Floats:
-        """The part of all heights from ``begin`` to ``end``."""
-        table = self.table
+        """The part of all heights from ``begin`` to ``end``, as differences to the origin [m]."""
         ends = np.array([begin, end])
-        parts = np.array([mass(self.below, table.low, table.high, table.coefficients, z) for z in ends.ravel()])
+        parts = np.array([mass(self.below, self.low, self.high, self.coefficients, y) for y in ends.ravel()])
         low, high = parts.reshape(ends.shape)
         return np.asarray(high - low)
 
     def highest(self, count: float) -> float:
-        """A height that about one of ``count`` summits reaches."""
+        """A height [m] that about one of ``count`` summits reaches."""
         rest = self.below[-1] - self.below[1:]
-        return float(self.table.high[np.argmax(rest <= 1.0 / max(count, 1.0))])
+        return self.origin + float(self.high[np.argmax(rest <= 1.0 / max(count, 1.0))])

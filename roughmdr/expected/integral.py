@@ -9,6 +9,8 @@ from roughmdr.arguments import Floats
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 # The last two coefficients of Legendre's polynomials in a product, which tell how far its integral may be off.
 _LAST = np.array([(n + 0.5) * _WEIGHTS * np.polynomial.legendre.Legendre.basis(n)(_NODES) for n in (14, 15)])
+_NARROW = 2.0**-5  # of the distance to where contact begins
+_ENDS = 1.1  # the nodes stand that much within the ends of a piece, at most
 
 
 @njit
@@ -61,18 +63,24 @@ def integrate(
     z_low: Floats,
     z_high: Floats,
     density: Floats,
-    density_slack: Floats,
+    density_doubt: Floats,
+    rooted: int,
     total: Floats,
     error: Floats,
 ) -> int:
     """Add to total[row, step] what summits from ``begin`` to ``end`` [m] bear on branch ``rung``, for each interval.
 
-    x = (z - separation)/depth + lift, in [m] but x and lift. ``first``, ``foot`` and the four after them are a
-    ``Curve``, the four from ``z_low`` on the table of the density of heights [1/m]. Rows are over their natural scales;
-    ``error`` [step] takes up how far the first row may be off. Returns how often the tables were evaluated.
+    x = (z - separation)/depth + lift, in [m] but x and lift, all heights as differences to one origin. ``first``,
+    ``foot`` and the four after them are a ``Curve``, the four from ``z_low`` on a ``HeightTable``. Rows are over their
+    natural scales, and row ``rooted`` (-1 for none) is times 2 s; ``error`` [step] takes up how far the first row may be off. Returns how often the tables were
+    evaluated.
+
+    Of each piece the variable is s, in which what a contact bears is smooth. Far from where contact begins, though, the
+    roundings of s are seen on pieces that are narrow beside that distance: there the variable is z.
     """
     n = _NODES.size
-    s, u, phi, value = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    s, u, phi, value, weight = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    weight_of_s = np.empty(n)
     before, earlier = np.empty(n), np.empty(n)
     pieces = 0
     for i in range(step.size):
@@ -81,44 +89,68 @@ def integrate(
         if not start < stop:
             continue
         base = lift - foot[b]
-        at = np.sqrt(max((start - h) / depth + base, 0.0))
-        last = min(np.sqrt(max((stop - h) / depth + base, 0.0)), high[first[b + 1] - 1])
-        k = first[b] + _place(high[first[b] : first[b + 1]], at)
+        k = first[b] + _place(high[first[b] : first[b + 1]], np.sqrt(max((start - h) / depth + base, 0.0)))
+        k = min(k, first[b + 1] - 1)
         j = _place(z_high, start)
-        while at < last and j < z_high.size and k < first[b + 1]:
-            z_edge = np.sqrt(max((z_high[j] - h) / depth + base, 0.0))
-            to = min(last, z_edge, high[k])
+        at = start
+        while at < stop and j < z_high.size:
+            last = k == first[b + 1] - 1
+            edge = np.inf if last else h + (high[k] * high[k] - base) * depth
+            to = max(min(stop, z_high[j], edge), at)
             if to > at:
-                half, middle = 0.5 * (to - at), 0.5 * (to + at)
-                for m in range(n):
-                    s[m] = middle + half * _NODES[m]
-                    z = h + (s[m] * s[m] - base) * depth
-                    u[m] = (2.0 * z - z_low[j] - z_high[j]) / (z_high[j] - z_low[j])
+                wide, reach = z_high[j] - z_low[j], (to - h) + base * depth
+                if to - at < _NARROW * reach:
+                    half, middle = 0.5 * (to - at), 0.5 * (to + at)
+                    for m in range(n):
+                        z = middle + half * _NODES[m]
+                        s[m] = np.sqrt(max((z - h) / depth + base, 0.0))
+                        u[m] = (((at - z_low[j]) - (z_high[j] - to)) + (to - at) * _NODES[m]) / wide
+                        weight[m] = _WEIGHTS[m] * half
+                        weight_of_s[m] = weight[m] / (2.0 * s[m])
+                else:
+                    s_at = np.sqrt(max((at - h) / depth + base, 0.0))
+                    s_to = np.sqrt(max(reach / depth, 0.0))
+                    half, middle = 0.5 * (s_to - s_at), 0.5 * (s_to + s_at)
+                    for m in range(n):
+                        s[m] = middle + half * _NODES[m]
+                        z = h + (s[m] * s[m] - base) * depth
+                        u[m] = ((z - z_low[j]) - (z_high[j] - z)) / wide
+                        weight_of_s[m] = _WEIGHTS[m] * half * depth
+                        weight[m] = weight_of_s[m] * 2.0 * s[m]
                 evaluate(density[j, 0], u, phi, before, earlier)
                 for m in range(n):
                     u[m] = (2.0 * s[m] - low[k] - high[k]) / (high[k] - low[k])
-                mass, most = 0.0, 0.0
                 for row in range(total.shape[0]):
                     evaluate(coefficients[k, row], u, value, before, earlier)
                     found = 0.0
-                    for m in range(n):
-                        found += _WEIGHTS[m] * value[m] * phi[m]
-                    total[row, step[i]] += half * depth * found
-                    if row == 0:
-                        off, odd, largest = 0.0, 0.0, 0.0
+                    if row == rooted:
                         for m in range(n):
-                            off += _LAST[0, m] * value[m] * phi[m]
-                            odd += _LAST[1, m] * value[m] * phi[m]
-                            largest = max(largest, abs(value[m] * phi[m]))
-                            mass += _WEIGHTS[m] * abs(phi[m])
-                            most += _WEIGHTS[m] * abs(value[m])
+                            found += weight_of_s[m] * value[m] * phi[m]
+                    else:
+                        for m in range(n):
+                            found += weight[m] * value[m] * phi[m]
+                    total[row, step[i]] += found
+                    if row == 0:
+                        off, odd, largest, mass, most, greatest = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+                        for m in range(n):
+                            scaled = value[m] * phi[m] * (weight[m] / _WEIGHTS[m])
+                            off += _LAST[0, m] * scaled
+                            odd += _LAST[1, m] * scaled
+                            largest = max(largest, abs(scaled))
+                            mass += weight[m] * abs(phi[m])
+                            most += weight[m] * abs(value[m])
+                            greatest = max(greatest, abs(value[m]))
                         tail = max(abs(off), abs(odd)) / largest if largest > 0.0 else 0.0
-                        doubt = largest * tail**1.5 + slack[k, 0] * mass + density_slack[j, 0] * most
-                        error[step[i]] += half * depth * doubt
+                        spread = abs(value[n - 1] - value[0])
+                        if start > z_low[j] or stop < z_high[j]:
+                            spread += greatest
+                        doubt = density_doubt[j, 0] * most + _ENDS * density_doubt[j, 1] * spread
+                        doubt += _ENDS * density_doubt[j, 2] * greatest
+                        error[step[i]] += largest * tail**1.5 + slack[k, 0] * mass + doubt
                 pieces += 1
-            if to == high[k]:
+            if edge <= to:
                 k += 1
-            if to == z_edge:
+            if to == z_high[j]:
                 j += 1
             at = to
     return pieces

@@ -29,6 +29,7 @@ _SLOWEST = 0.9  # as if each difference were at most so much of the one before
 _PROBES = 5  # steps at which they are compared where all are alike: where nothing lets go
 _DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
+_HEAVY = 0.05  # index of a tail: of lighter ones all is borne by their lowest heights
 
 
 @np.errstate(all="ignore")  # what no float can hold is refused at the end
@@ -57,7 +58,7 @@ def compute(
     total *= count
     largest = float(np.abs(total[FORCE]).max())
     closest = float(route.separation.min())
-    total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _missing(nodes, closest)
+    total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _beyond(nodes, closest)
     if not np.isfinite(total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {asked.law.name} with modulus {modulus:g} Pa, "
@@ -156,11 +157,16 @@ def _reached(nodes: list[Node], closest: float, count: float) -> Floats:
     return np.array([node.contact.at_indentation(np.array([depth]))["contact_radius"][0] for node, depth in pairs])
 
 
-def _missing(nodes: list[Node], closest: float) -> float:
-    """What the heights next to poles that no table holds bear [N], of an asperity, with the flat at ``closest``."""
+def _beyond(nodes: list[Node], closest: float) -> float:
+    """What the heights that are left out above bear [N], of an asperity, with the flat at ``closest`` [m].
+
+    inf where their mean force has no bound.
+    """
     lost = 0.0
     for share, contact, heights in ((node.share, node.contact, node.heights) for node in nodes):
-        if heights.defect > _KERNEL_ERROR and heights.poles.size:
-            force = contact.at_indentation(heights.poles - closest)["force"]
-            lost += share * heights.defect * float(np.abs(force).max())
+        edge = np.array([heights.high[-1] - (closest - heights.origin)])
+        if heights.tail.index > _HEAVY and edge[0] > 0.0:
+            top = contact.at_indentation(edge)
+            force, growth = abs(float(top["force"][0])), float((top["stiffness"] * edge / top["force"])[0])
+            lost += share * force * heights.tail.over_edge(growth)
     return lost

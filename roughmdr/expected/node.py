@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route
-from roughmdr.aggregate.totals import ERROR, ROWS
+from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
 from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
 from roughmdr.ensemble import Source
@@ -48,7 +48,9 @@ class Node(NamedTuple):
     curve: Curve
     heights: HeightTable
     held: Intervals
+    """Of heights as differences to the origin of ``heights``."""
     moved: Intervals
+    """Likewise."""
 
 
 def contacts_of(asked: Asked, nodes: Nodes) -> list[Contact]:
@@ -69,7 +71,7 @@ def set_up(asked: Asked, rule: Rule) -> list[Node]:
     tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
     curves = curves_of(contacts, nodes.heights, float(asked.route.separation.min()), asked.rows)
     return [
-        Node(float(share), contact, curve, tables[heights], *remember(contact, asked.route))
+        Node(float(share), contact, curve, tables[heights], *remember(contact, asked.route.seen_from(heights.origin)))
         for share, contact, curve, heights in zip(nodes.share, contacts, curves, nodes.heights, strict=True)
     ]
 
@@ -82,7 +84,7 @@ def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], step
     total, products = np.zeros((ROWS, separation.size)), 0
     chosen = np.zeros(separation.size, dtype=np.bool_)
     chosen[steps] = True
-    for share, contact, (first, foot, table), (heights, *_), held, _ in nodes:
+    for share, contact, (first, foot, table), heights, held, _ in nodes:
         asked = chosen[held.step]
         found, error = np.zeros((len(rows), separation.size)), np.zeros(separation.size)
         products += integrate(
@@ -90,7 +92,7 @@ def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], step
             held.rung[asked],
             held.begin[asked],
             held.end[asked],
-            separation,
+            separation - heights.origin,
             contact.depth[0],
             1.0 if contact.law.adhesive else 0.0,
             first,
@@ -102,7 +104,8 @@ def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], step
             heights.low,
             heights.high,
             heights.coefficients,
-            heights.slack,
+            heights.doubt,
+            rows.index(STIFFNESS) if STIFFNESS in rows else -1,
             found,
             error,
         )

@@ -9,7 +9,7 @@ from roughmdr.arguments import Floats
 
 ORDER = 16
 """Coefficients of each polynomial."""
-_MOST_HALVINGS = 60
+_MOST_HALVINGS = 400  # as many as a tail as heavy as any needs
 _MOST_AT_ONCE = 2**12  # pieces: of a function that no polynomial fits, halving would make more and more
 _NOISE, _BETTER = 1e-8, 0.25  # tails so small that halving does not lessen are the function's own roundings
 _NOTHING = 1e-16  # of the greatest value: such coefficients are roundings, and cost time
@@ -43,19 +43,21 @@ class Table(NamedTuple):
         edges: Floats,
         tolerance: Floats,
         narrow: Callable[[Floats, Floats], Floats],
-        weight: Callable[[Floats, Floats], Floats],
+        weight: Callable[[Floats, Floats, Floats], Floats],
         ratio: float = np.inf,
+        rounding: float = 0.0,
     ) -> "Table":
         """The table of ``function``, points -> [row, point], between ``edges``.
 
-        A piece is held where its last coefficients and what it is off at its ends, times the ``weight`` of the piece,
-        are below ``tolerance`` [row] of the greatest value on it, or are roundings, and the first row's values do not
-        vary by more than ``ratio``; or where it is ``narrow`` (its ends -> how narrow).
+        A piece is held where its last coefficients and what it is off at its ends, times the ``weight`` of the piece
+        (its ends, the greatest value of the first row -> weight), are below ``tolerance`` [row] of the greatest value on
+        it, or are roundings, and the first row's values do not vary by more than ``ratio``; or where it is ``narrow``
+        (its ends -> how narrow). The function may be off as if its points were, by ``rounding`` relative to themselves.
         """
         low, high = edges[:-1], edges[1:]
         held: list[tuple[Floats, ...]] = []
         before = np.full((low.size, tolerance.size), np.inf)
-        for _ in range(_MOST_HALVINGS):
+        for halvings in range(_MOST_HALVINGS + 1):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
             values = function((middle[:, None] + half[:, None] * _POINTS).ravel())
             values = values.reshape(values.shape[0], -1, _POINTS.size).swapaxes(0, 1)
@@ -67,11 +69,11 @@ class Table(NamedTuple):
             coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
             least = np.abs(values[:, 0]).min(axis=-1)
             noise = (tail <= _NOISE * greatest) & (tail > _BETTER * before)
-            fine = ((weight(low, high)[:, None] * tail <= tolerance * greatest) | noise).all(axis=-1) & (
-                greatest[:, 0] / ratio <= least
-            )
+            noise |= tail <= (rounding * np.maximum(np.abs(low), np.abs(high)) / half)[:, None] * greatest
+            small = weight(low, high, greatest[:, 0])[:, None] * tail <= tolerance * greatest
+            fine = (small | noise).all(axis=-1) & (greatest[:, 0] / ratio <= least)
             done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
-            done |= low.size > _MOST_AT_ONCE
+            done |= (low.size > _MOST_AT_ONCE) | (halvings == _MOST_HALVINGS)
             held.append((low[done], high[done], coefficients[done], tail[done]))
             low, middle, high, tail = low[~done], middle[~done], high[~done], tail[~done]
             if low.size == 0:
