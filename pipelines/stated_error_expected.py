@@ -181,7 +181,7 @@ class Tip:
         if not parts:
             return np.zeros_like(self.separation)
         step, branch, foot, above, weight = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-        density = self.heights.density(self.separation[step] + (foot + above))
+        density = self.heights.density((self.separation[step] - self.heights.origin) + (foot + above))
         force = np.zeros_like(above)
         for one in np.unique(branch).tolist():
             force[branch == one] = self._bears(one, above[branch == one])

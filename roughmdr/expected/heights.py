@@ -17,7 +17,7 @@ from roughmdr.expected.table import ORDER, Table
 _TOLERANCE, _RATIO = 1e-13, 1e3  # how right it is on each piece, of all heights, and how much it may vary there
 _NARROWEST = 2.0**-44  # of the scale of the heights, or of the height itself: narrower pieces are not halved
 _ROUNDING = 2.0**-51  # of a height
-_SCALED = 2.0  # a polynomial that has more than so many times its heights, or less than that part, is none
+_NOISY = 1e-2  # polynomials that are off by less than this part are those of a smooth density with roundings
 
 # What ∫ T_n du from -1 to 1 comes to.
 _INTEGRALS = np.array([2.0 / (1.0 - n * n) if n % 2 == 0 else 0.0 for n in range(ORDER)])
@@ -64,10 +64,9 @@ class HeightTable(NamedTuple):
             counted = np.where(below[1:] < above[1:], below[1:] - below[:-1], above[:-1] - above[1:])
             counted = np.where(np.isfinite(counted), counted.clip(min=0.0), 0.0)
             vague = ~(slack * width <= _TOLERANCE)
-            ratio = np.divide(counted, parts, out=np.zeros_like(parts), where=vague & (parts > 0.0))
-            scaled = vague & (ratio < _SCALED) & (ratio > 1.0 / _SCALED)
+            scaled = vague & (slack * width < _NOISY * parts) & (np.abs(counted - parts) < _NOISY * parts)
             even = vague & ~scaled
-            coefficients[scaled] *= ratio[scaled, None, None]
+            coefficients[scaled] *= (counted[scaled] / parts[scaled])[:, None, None]
             coefficients[even] = 0.0
             coefficients[even, 0, 0] = (counted / width)[even]
             loose[even], loose[scaled] = counted[even], np.minimum(counted, slack * width)[scaled]
