@@ -209,7 +209,7 @@ def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> Non
         np.array([0.0, 4.0]),
         np.array([1e-13]),
         lambda low, high: np.full_like(low, 2.0**-40),
-        lambda low, high: (high - low) / high,
+        lambda low, high, _: (high - low) / high,
     )
     np.testing.assert_array_equal(table.low[1:], table.high[:-1])
     points = np.random.default_rng(1).uniform(0.0, 4.0, 2000)
@@ -230,7 +230,7 @@ def test_what_a_function_does_at_the_end_of_a_piece_alone_is_seen() -> None:
             np.array([0.0, 1.0]),
             np.array([1e-13]),
             lambda low, high: np.full_like(low, 2.0**-40),
-            lambda low, high: (high - low) / high,
+            lambda low, high, _: (high - low) / high,
         )
         u = 2.0 * (1.0 - table.low[-1]) / (table.high[-1] - table.low[-1]) - 1.0
         at_end = np.polynomial.chebyshev.chebval(u, table.coefficients[-1, 0])

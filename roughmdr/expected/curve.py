@@ -26,6 +26,7 @@ _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it 
 _LAST_BITS = 2.0**-44
 # Of the width of the heights: where what is less deep adds nothing, and where without adhesion the first piece ends.
 _NEAREST, _SHALLOW = 1e-7, 1e-2
+_ALIKE = math.log(1e6)  # heights that differ less beside the depths of their contacts
 _WIDER, _MOST_EDGES = 4.0, 100  # how much wider than the one before it a piece may be at first
 
 
@@ -59,21 +60,21 @@ def curves_of(
 ) -> list[Curve]:
     """The curve of each contact, as far as the flat at ``deepest`` [m] presses its highest summit.
 
-    Contacts that differ in their scales alone share one.
+    Contacts that differ in their scales alone share one, unless the heights differ much beside them.
     """
-    ranges = np.array(
-        [
-            (max(own.edges[-1] - (deepest - own.origin), own.scale) / contact.depth[0], own.scale / contact.depth[0])
-            for contact, own in zip(contacts, heights, strict=True)
-        ]
-    )
-    forms = [np.asarray(contact.form).tobytes() for contact in contacts]
-    curves = {}
-    for form in dict.fromkeys(forms):
-        alike = [number for number, other in enumerate(forms) if other == form]
-        farthest, typical = float(ranges[alike, 0].max()), float(ranges[alike, 1].min())
-        curves[form] = _curve(contacts[alike[0]], farthest, typical, rows)
-    return [curves[form] for form in forms]
+    ranges = [
+        (max(own.edges[-1] - (deepest - own.origin), own.scale) / contact.depth[0], own.scale / contact.depth[0])
+        for contact, own in zip(contacts, heights, strict=True)
+    ]
+    groups: dict[tuple[bytes, int], list[int]] = {}
+    for number, (contact, (_, typical)) in enumerate(zip(contacts, ranges, strict=True)):
+        decade = round(math.log(typical) / _ALIKE) if 0.0 < typical < math.inf else 0
+        groups.setdefault((np.asarray(contact.form).tobytes(), decade), []).append(number)
+    curves: dict[int, Curve] = {}
+    for alike in groups.values():
+        farthest, typical = max(ranges[number][0] for number in alike), min(ranges[number][1] for number in alike)
+        curves |= dict.fromkeys(alike, _curve(contacts[alike[0]], farthest, typical, rows))
+    return [curves[number] for number in range(len(contacts))]
 
 
 def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, ...]) -> Curve:

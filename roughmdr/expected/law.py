@@ -19,14 +19,9 @@ from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
+from roughmdr.expected.converge import FIRST_ORDER, converge
 from roughmdr.expected.parted import Parted
 
-_ORDERS = (8, 12, 18, 27, 40, 60, 90, 135)
-_MOST_NODES = 6_000
-_AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
-_SLOW = 0.3  # a higher order that leaves so much of the difference does not help
-_SLOWEST = 0.9  # as if each difference were at most so much of the one before
-_PROBES = 5  # steps at which they are compared where all are alike: where nothing lets go
 _DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
 _HEAVY = 0.05  # index of a tail: of lighter ones all is borne by their lowest heights
@@ -43,11 +38,11 @@ def compute(
     """
     names, steps = list(variables), route.separation.size
     rows, dissipating = _rows(names), any(ROW[name] == DISSIPATED for name in names)
-    coarse = _stand_ins(source, source.nodes(Rule.smooth(_ORDERS[0])))
+    coarse = _stand_ins(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
     asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
     parted = Parted.of(asked)
-    rule, nodes, doubt = _enough(asked, parted, dissipating=dissipating)
+    rule, nodes, doubt, doubt_of_others = converge(asked, parted, dissipating=dissipating)
     total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
     if dissipating:
         total[DISSIPATED] = dissipated_of(nodes, steps)
@@ -66,7 +61,7 @@ def compute(
         )
     extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, closest, count))
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
-    return law._replace(doubts=_doubts(law.numerical_error))
+    return law._replace(doubts=_doubts(law.numerical_error, doubt_of_others))
 
 
 @np.errstate(all="ignore")  # nothing is made of its numbers
@@ -83,9 +78,9 @@ def _rows(variables: Iterable[str]) -> tuple[int, ...]:
     return tuple(dict.fromkeys([FORCE, *(ROW[name] for name in variables if ROW[name] != DISSIPATED)]))
 
 
-def _doubts(error: float) -> tuple[str, ...]:
-    """What to say of an error over the largest force; OutOfRange where it leaves nothing."""
-    if error > _WORTHLESS:
+def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
+    """What to say of errors over the largest force, and of other variables; OutOfRange where that leaves nothing."""
+    if not error <= _WORTHLESS:
         raise OutOfRange(
             f"the expected law of these asperities is right only to {error:.1g} of its largest force: the integral "
             "over the shape parameters does not converge; estimator 'stratified' or 'sampled' has no such limit"
@@ -95,59 +90,17 @@ def _doubts(error: float) -> tuple[str, ...]:
             f"an expected law that is right only to {error:.1g} of its largest force, other variables perhaps to less: "
             "estimator 'stratified' or 'sampled' has no such limit",
         )
+    if error_of_others > _DOUBTFUL:
+        return (
+            f"an expected law whose force is right to {error:.1g} of its largest, but other variables only to "
+            f"{error_of_others:.1g} of theirs: estimator 'stratified' or 'sampled' has no such limit",
+        )
     return ()
 
 
 def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
     """The nodes as if they were asperities."""
     return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
-
-
-def _enough(asked: Asked, parted: Parted | None, *, dissipating: bool) -> tuple[Rule, list[Node], float]:
-    """A rule with so many nodes that more change nothing, they, and how far the force over its largest is off.
-
-    Of all that is asked for, but for the stiffness, which runs off where contacts let go. Steps at which the rule is
-    parted do not count.
-    """
-    separation = asked.route.separation
-    steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
-    if not asked.hysteretic:
-        steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
-    rows = tuple(row for row in asked.rows if row != STIFFNESS)
-
-    def curves(nodes: list[Node]) -> Floats:
-        found = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
-        return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
-
-    rule = Rule.smooth(_ORDERS[0])
-    nodes = set_up(asked, rule)
-    found = curves(nodes)
-    before = doubts = np.full(len(found), math.inf)
-    for order in _ORDERS[1:]:
-        finer_rule = Rule.smooth(order)
-        count = asked.source.nodes(finer_rule).share.size
-        if count == len(nodes):  # no parameter is drawn
-            return rule, nodes, 0.0
-        if count > _MOST_NODES:
-            break
-        finer = set_up(asked, finer_rule)
-        again = curves(finer)
-        largest, apart = (np.abs(values).max(axis=1, initial=0.0) for values in (again, again - found))
-        before, doubts = doubts, apart / np.where(largest > 0.0, largest, 1.0)
-        wanting = doubts > _AGREE
-        if not wanting.any():
-            break
-        rule, nodes, found = finer_rule, finer, again
-        if (doubts > _SLOW * before)[wanting].all():
-            break
-    doubt, last = float(doubts[0]), float(before[0])  # of the force
-    if doubt <= _AGREE or last == math.inf:
-        return rule, nodes, doubt
-    # What is left is the sum of all differences to come: they fall as the last two did, or more slowly.
-    fall = min(doubt / last, _SLOWEST) if last > 0.0 else _SLOWEST
-    if asked.hysteretic or doubt > _SLOW * last:  # between kinks two orders may agree by chance
-        doubt = max(doubt, last)
-    return rule, nodes, doubt * max(fall / (1.0 - fall), 1.0)
 
 
 def _reached(nodes: list[Node], closest: float, count: float) -> Floats:
