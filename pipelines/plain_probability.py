@@ -6,14 +6,18 @@ integrated as far as doubles can tell a probability from 0.
 """
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtr, ndtri
+from scipy.stats import rv_continuous
 
 from roughmdr.arguments import Floats
 
 _END = 37.0  # normal score beyond which no double holds the probability
+_END_NUMERICAL = 8.0  # where scipy finds the inverse by numbers: from 1 - p, which has no digits beyond
+_HALVINGS, _AGREE = 40, 1e-14  # of a panel; of the mean
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -23,25 +27,60 @@ def quantiles(frozen: Any, scores: Floats) -> Floats:
         return np.where(scores < 0.0, frozen.ppf(ndtr(np.minimum(scores, 0.0))), frozen.isf(ndtr(-np.maximum(scores, 0.0))))
 
 
-def _rule(begin: float, width: float) -> tuple[Floats, Floats]:
-    """Scores and weights from ``begin`` on, for what begins as a root there: panels of ``width``, the first graded."""
-    graded = begin + width * 4.0 ** np.arange(-12.0, 0.0)
-    edges = np.unique(np.concatenate([[begin], graded, np.arange(begin + width, _END, width), [_END]]))
-    low, high = edges[:-1, None], edges[1:, None]
-    scores, weights = 0.5 * (low + high) + 0.5 * (high - low) * _NODES, 0.5 * (high - low) * _WEIGHTS
-    return scores.ravel(), (weights * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi)).ravel()
+def _end(frozen: Any) -> float:
+    """The normal score as far as which a distribution has quantiles."""
+    numerical = type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
+    for end in np.arange(_END_NUMERICAL if numerical else _END, 4.0, -0.5).tolist():
+        tail = quantiles(frozen, np.array([-end, -end + 1.0, end - 1.0, end]))
+        if np.isfinite(tail).all() and (np.diff(tail) >= 0.0).all():
+            return end
+    return 4.0
 
 
-def mean_of_heights(frozen: Any, separation: float, exponent: float, width: float = 0.25) -> float:
+class Mean(NamedTuple):
+    """A mean and how far it may be off."""
+
+    value: float
+    doubt: float
+
+
+def _mean(frozen: Any, begin: float, quantity: Callable[[Floats], Floats]) -> Mean:
+    """The mean of a quantity that begins at a score; panels are halved until their halves agree with them."""
+    end = _end(frozen)
+    if not begin < end:
+        return Mean(0.0, 0.0)
+
+    def integral(low: Floats, high: Floats) -> Floats:
+        scores = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * _NODES
+        density = np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi)
+        values = quantity(quantiles(frozen, scores.ravel())).reshape(scores.shape)
+        return 0.5 * (high - low) * ((values * density) @ _WEIGHTS)
+
+    edges = np.unique(np.clip([begin, *np.arange(-_END, _END + 1.0)], max(begin, -end), end))
+    low, high = edges[:-1], edges[1:]
+    rough = integral(low, high)
+    value, doubt, last = 0.0, 0.0, 3.0 * abs(float(rough[high > end - 1.0].sum()))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        halves = np.array([integral(low, middle), integral(middle, high)])
+        apart = np.abs(halves.sum(axis=0) - rough)
+        right = ~(apart > _AGREE * (abs(value) + np.abs(halves).sum()))
+        value, doubt = value + float(halves[:, right].sum()), doubt + float(apart[right].sum())
+        low, middle, high = low[~right], middle[~right], high[~right]
+        rough = halves[:, ~right].ravel()
+        if low.size == 0:
+            break
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return Mean(value + float(rough.sum()), doubt + float(np.abs(rough).sum() if low.size else 0.0) + last)
+
+
+def mean_of_heights(frozen: Any, separation: float, exponent: float) -> Mean:
     """The mean of max(z - separation, 0)^exponent over heights z [m]."""
     below, above = float(frozen.cdf(separation)), float(frozen.sf(separation))
     begin = float(ndtri(below)) if below < above else -float(ndtri(above))
-    scores, weights = _rule(max(begin, -_END), width)
-    indentation = np.maximum(quantiles(frozen, scores) - separation, 0.0)
-    return float(weights @ indentation**exponent)
+    return _mean(frozen, begin, lambda z: np.maximum(z - separation, 0.0) ** exponent)
 
 
-def mean_of_radii(frozen: Any, exponent: float, width: float = 0.25) -> float:
+def mean_of_radii(frozen: Any, exponent: float) -> Mean:
     """The mean of R^exponent over radii R [m]."""
-    scores, weights = _rule(-_END, width)
-    return float(weights @ quantiles(frozen, scores) ** exponent)
+    return _mean(frozen, -math.inf, lambda R: np.maximum(R, 0.0) ** exponent)

@@ -16,6 +16,7 @@ from roughmdr.arguments import Floats
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
+_RAISED = (ArithmeticError, RuntimeError, ValueError)
 _ALONE = threading.Lock()  # the filters of warnings are those of all threads
 
 
@@ -121,12 +122,22 @@ def _from_scipy(family: Any) -> Family:
         () if family.shapes is None else tuple(family.shapes.split(", ")),
         _quiet(lambda *own: bool(family._argcheck(*own))),
         _quiet(lambda *own: tuple(float(moment) for moment in family.stats(*own, moments="mv"))),
-        _quiet(lambda u, *own: np.asarray(family.ppf(u, *own))),
-        _quiet(lambda u, *own: np.asarray(family.isf(u, *own))),
-        _quiet(lambda x, *own: np.asarray(family.cdf(x, *own))),
-        _quiet(lambda x, *own: np.asarray(family.sf(x, *own))),
-        _quiet(lambda x, *own: np.asarray(family.pdf(x, *own))),
+        *(_quiet(_one_by_one(function)) for function in (family.ppf, family.isf, family.cdf, family.sf, family.pdf)),
     )
+
+
+def _one_by_one(function: Callable[..., Floats]) -> Callable[..., Floats]:
+    """A function of scipy's that is NaN where it would raise, as some do far out."""
+
+    def call(x: Floats, *own: float) -> Floats:
+        try:
+            return np.asarray(function(x, *own))
+        except _RAISED:
+            if np.ndim(x) == 0:
+                return np.asarray(np.nan)
+            return np.array([call(one, *own) for one in np.ravel(x)]).reshape(np.shape(x))
+
+    return call
 
 
 def _quiet(function: Callable[_P, _T]) -> Callable[_P, _T]:

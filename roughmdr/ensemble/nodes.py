@@ -49,7 +49,7 @@ class Heights(NamedTuple):
     edges: tuple[float, ...]
     """y [m], rising; next to no summit is lower than the first, ``tail`` are those above the last."""
     scale: float
-    """[m]; half of the summits lie so near to each other, or nearly all within six times that."""
+    """[m]; half of the summits lie so near to each other, or nearly all of the upper half within three times that."""
     tail: UpperTail
     origin: float
     """[m]"""
@@ -96,8 +96,8 @@ class Heights(NamedTuple):
 
 def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], float, UpperTail]:
     """Edges and scale of heights, and the tail beyond, from the heights y [m] that have some normal scores."""
-    low_bulk, lower, upper, bulk = of_scores(np.array([-_BULK, -_QUARTER, _QUARTER, _BULK])).tolist()
-    scale = max(upper - lower, (bulk - low_bulk) / (2.0 * _BULK))
+    low_bulk, lower, median, upper, bulk = of_scores(np.array([-_BULK, -_QUARTER, 0.0, _QUARTER, _BULK])).tolist()
+    scale = max(upper - lower, (bulk - median) / _BULK)  # the highest count, where most heights are next to a pole
     ends = np.array(_NEARER_ENDS)
     low = next((y for y in of_scores(-ends).tolist() if math.isfinite(y)), low_bulk)
     score, high = next(

@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr.aggregate.totals import STIFFNESS
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Rule
-from roughmdr.errors import OutOfRange
+from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.panels import Curves, halve_panels
 from roughmdr.expected.parted import Parted
@@ -39,7 +39,7 @@ class Converged(NamedTuple):
 
 
 def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Converged:
-    """The rule for all that is asked for; OutOfRange where a contact is not representable.
+    """The rule for all that is asked for; RoughmdrError where a contact is not representable.
 
     Steps at which the rule is parted do not count.
     """
@@ -58,7 +58,7 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
         return _smooth(asked, curves)
     try:
         smooth = _smooth(asked, curves)
-    except OutOfRange:  # of parameters that next to no asperity has
+    except RoughmdrError:  # of parameters that next to no asperity has
         smooth = None
     if smooth is not None and max(smooth.doubt, smooth.doubt_of_others) <= _ROUGH:
         return smooth
@@ -97,9 +97,9 @@ def _smooth(asked: Asked, curves: Curves) -> Converged:
 
 def _left(doubt: float, last: float, hysteretic: bool) -> float:
     """The sum of all differences to come: they fall as the last two did, or more slowly."""
-    if doubt <= _AGREE or last == math.inf:
-        return doubt
     fall = min(doubt / last, _SLOWEST) if last > 0.0 else _SLOWEST
+    if doubt <= _AGREE or last == math.inf:  # either of the two may be nearer, and the coarser one is taken
+        return 2.0 * doubt
     if hysteretic or doubt > _SLOW * last:  # between kinks two orders may agree by chance
         doubt = max(doubt, last)
     return doubt * max(fall / (1.0 - fall), 1.0)

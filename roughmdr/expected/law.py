@@ -54,6 +54,11 @@ def compute(
     largest = float(np.abs(total[FORCE]).max())
     closest = float(route.separation.min())
     total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _beyond(nodes, closest)
+    if total[ERROR].max() == math.inf:
+        raise OutOfRange(
+            f"the mean force of these {asked.source.shape_name}s is not known to have a bound: too many of them are too "
+            "high or too large (their distribution has too heavy a tail)"
+        )
     if not np.isfinite(total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {asked.law.name} with modulus {modulus:g} Pa, "
@@ -82,8 +87,8 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
     """What to say of errors over the largest force, and of other variables; OutOfRange where that leaves nothing."""
     if not error <= _WORTHLESS:
         raise OutOfRange(
-            f"the expected law of these asperities is right only to {error:.1g} of its largest force: the integral "
-            "over the shape parameters does not converge; estimator 'stratified' or 'sampled' has no such limit"
+            f"the expected law of these asperities is right only to {error:.1g} of its largest force: the integrals "
+            "over the heights and shape parameters do not converge; estimator 'stratified' or 'sampled' has no such limit"
         )
     if error > _DOUBTFUL:
         return (
