@@ -1,11 +1,12 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
+# make test-all: the long random searches as well, some 20 minutes more.
 # make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
-.PHONY: demo test studies setup lint lock clean
+.PHONY: demo test test-all studies setup lint lock clean
 
 demo: setup
 	@mkdir -p results
@@ -15,6 +16,10 @@ demo: setup
 test: setup lint
 	$(BIN)/python -m pytest -n auto --dist loadfile
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto --dist loadfile tests/kernels tests/test_sum.py
+
+# The long forms of the random searches too.
+test-all: test
+	$(BIN)/python -m pytest -n auto -m large
 
 studies: setup
 	@$(BIN)/python pipelines/studies.py -o results/studies

@@ -28,13 +28,21 @@ def quantiles(frozen: Any, scores: Floats) -> Floats:
 
 
 def _end(frozen: Any) -> float:
-    """The normal score as far as which a distribution has quantiles."""
+    """The normal score as far as which the inverses of a distribution lead where they should."""
     numerical = type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
-    for end in np.arange(_END_NUMERICAL if numerical else _END, 4.0, -0.5).tolist():
-        tail = quantiles(frozen, np.array([-end, -end + 1.0, end - 1.0, end]))
-        if np.isfinite(tail).all() and (np.diff(tail) >= 0.0).all():
-            return end
-    return 4.0
+    end, before = 4.0, -math.inf
+    for score in np.arange(4.5, (_END_NUMERICAL if numerical else _END) + 0.5, 0.5).tolist():
+        try:
+            low, high = quantiles(frozen, np.array([-score, score]))
+            share, beyond = float(ndtr(-score)), float(frozen.sf(high))
+        except ArithmeticError:  # of Boost
+            break
+        if not (math.isfinite(low) and math.isfinite(high) and high >= before):
+            break
+        if score > _END_NUMERICAL and not 0.5 * share < beyond < 2.0 * share:
+            break
+        end, before = score, high
+    return end
 
 
 class Mean(NamedTuple):

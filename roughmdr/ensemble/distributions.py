@@ -12,6 +12,7 @@ from roughmdr.ensemble.families import Family, find_family
 
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
+_FAR_SCORE, _UNFELT = 8.0, 1e-14  # beyond so many normal scores values are checked if a mean cube feels that of them
 _FAR_OUT = 1e-15  # fractions beyond which some inverses of scipy are wrong by many orders, as that of invgauss
 
 
@@ -87,10 +88,30 @@ class Distribution:
         return self._between(uniform, 1.0 - uniform) if self.family else np.full_like(uniform, self.loc)
 
     def of_scores(self, scores: Floats) -> Floats:
-        """The values that lie as high in the distribution as ``scores`` do in the standard normal one."""
+        """The values that lie as high in the distribution as ``scores`` do in the standard normal one.
+
+        NaN so far out that the inverse of the family leads to values that are much too far.
+        """
         from scipy.special import ndtr
 
-        return self._between(ndtr(scores), ndtr(-scores)) if self.family else np.full_like(scores, self.loc)
+        if not self.family:
+            return np.full_like(scores, self.loc)
+        values = self._between(ndtr(scores), ndtr(-scores))
+        far = np.abs(scores) > _FAR_SCORE
+        if far.any():
+            values[far] = self._trusted(scores[far], values[far])
+        return values
+
+    def _trusted(self, scores: Floats, values: Floats) -> Floats:
+        """Values far out, NaN where too few lie beyond them and they would be felt in a mean all the same."""
+        from scipy.special import ndtr
+
+        below, above = self.fractions(values)
+        share, beyond = ndtr(-np.abs(scores)), np.where(scores > 0.0, above, below)
+        near = np.abs(self.of_scores(np.copysign(_FAR_SCORE, scores)) - self.loc)
+        with np.errstate(all="ignore"):
+            felt = ~(share * (np.abs(values - self.loc) / near) ** 3 <= _UNFELT)
+        return np.where(felt & ~(beyond > 0.5 * share), math.nan, values)
 
     def fractions(self, values: Floats) -> tuple[Floats, Floats]:
         """The fractions of all draws below values, and above them."""
