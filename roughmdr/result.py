@@ -89,15 +89,15 @@ def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tup
 
 
 def _warnings(plan: Plan, found: Found) -> list[str]:
-    """What makes the numbers doubtful: said of the ensembles, and of the most that any contact comes to."""
+    """What makes the numbers doubtful: said of the scene and the ensembles, and of the most that contacts come to."""
     beside = found.beside
     done = beside["status"] == DONE
-    doubts = dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)
+    said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]
     if not done.any():
-        return list(doubts)
+        return said
     jkr = done & (beside["law"] == LAWS.index("jkr"))
     tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
-    return [*doubts, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
+    return [*said, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
 
 
 def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[Choice]) -> dict[str, Array]:

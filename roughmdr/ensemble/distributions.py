@@ -1,7 +1,7 @@
 """Distributions, sampled through their inverse, so that draws can be shared and compared."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from roughmdr.ensemble.families import Family, find_family
 
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
+_CENTRED = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
 _FAR_OUT = 1e-15  # fractions beyond which some inverses of scipy are wrong by many orders, as that of invgauss
 
 
@@ -29,11 +30,22 @@ class Distribution:
     """Where it is cut off below."""
     max: float = math.inf
     """Where it is cut off above."""
+    placed: bool = field(default=True, repr=False, compare=False)  # it changes no number
+    """Whether whoever asked for it said where it lies; else ``loc`` is 0, as in scipy.stats."""
 
     @property
     def constant(self) -> float | None:
         """The value, where every draw has the same."""
         return None if self.family else self.loc
+
+    @property
+    def off_centre(self) -> bool:
+        """Whether its mean, before any cut, is another than 0 though nobody said where it lies."""
+        if self.placed:
+            return False
+        mean, variance = self._standard.moments(*self.own)
+        spread = math.sqrt(variance) if math.isfinite(variance) else 1.0
+        return math.isfinite(mean) and abs(mean) > _CENTRED * spread
 
     @property
     def cut(self) -> bool:

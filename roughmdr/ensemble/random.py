@@ -126,6 +126,18 @@ class RandomAsperities(PatchSource):
         return self.density * self.patch * self.patch if self.density is not None else float(self.count or 0)
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """Heights by scipy's own parameters whose place was left to scipy, and is not about z = 0."""
+        second = None if self.second is None else self.second.height
+        heights = {"height": self.height} | ({} if second is None else {"second.height": second})
+        return tuple(
+            f"asperities.{key}: {entry.family} with its own parameters is that of scipy.stats, loc = 0, and its mean "
+            "is not at z = 0; say loc = 0 if that is meant, or mean = 0 to move it there"
+            for key, entry in heights.items()
+            if entry.off_centre
+        )
+
+    @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]."""
         return self.law.sigma

@@ -44,6 +44,11 @@ class Source(Section):
         return ""
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """What of the section may not be what was meant, in words."""
+        return ()
+
+    @property
     def expected_count(self) -> float:
         """How many asperities there are, on average."""
         raise NotImplementedError
