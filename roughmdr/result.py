@@ -24,6 +24,7 @@ _REFERENCES = (
     "with and without adhesion (2012)"
 )
 _ESTIMATORS = ("sampled", "stratified", "expected")
+_MOSTLY_MET = 0.9  # of an error, what the draws alone show, where nothing need be said of what they have not met
 _ALWAYS = ("run_time", "numerical_error", "edge_slope", "profile_extent")
 
 
@@ -138,6 +139,12 @@ def _missed(accuracy: Accuracy, choices: Sequence[Choice], failed: NDArray[np.bo
         said.append(
             f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {len(choices)} cells "
             f"(up to {max(choice.error for choice in missed):.2g}): {why}"
+        )
+    rare = [choice for choice in missed if choice.met < _MOSTLY_MET * choice.error]
+    if rare:
+        said.append(
+            f"in {len(rare)} of {len(choices)} cells asperities too rare to be met by so many draws may bear much of "
+            f"the force: without them the error would seem to be {max(choice.met for choice in rare):.2g}"
         )
     without = [choice for choice, fails in zip(choices, failed, strict=True) if math.isnan(choice.error) and not fails]
     if without:

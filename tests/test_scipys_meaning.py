@@ -3,7 +3,7 @@
 import math
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -60,6 +60,45 @@ def generated(asperities: dict[str, Any], **options: int) -> tuple[Any, str]:
     return found, "\n".join(str(warning.message) for warning in caught)
 
 
+class Asked(NamedTuple):
+    """A distribution as a scene has it, and as scipy has it."""
+
+    entry: dict[str, Any]
+    twin: Any
+    below: float
+    """The level at which it is cut off."""
+    off_centre: bool
+    wrong: bool
+    """Whether scipy's moments cannot be right."""
+
+
+def asked_for(family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float) -> Asked:
+    """The family by some of its parameters; cut off at a low level where asked, so that radii are above 0."""
+    name, own = family
+    law, height = getattr(scipy.stats, name), "height" in of
+    mean, variance = map(float, quiet(law.stats, *own.values(), moments="mv"))
+    try:
+        wrong = contradicted(law, tuple(own.values()), mean, variance)
+    except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverse leads nowhere
+        assume(False)
+    middle, size = mean if math.isfinite(mean) else 0.0, math.sqrt(variance) if 0.0 < variance < math.inf else 1.0
+    moved = "mean" in by or "std" in by
+    assume(not moved or (math.isfinite(mean) and 0.0 < variance < math.inf))
+    scale = 2.5 * unit / size if "std" in by else 2.5 * unit
+    entry: dict[str, Any] = {"distribution": name, **own, "std" if "std" in by else "scale": 2.5 * unit}
+    loc = -scale * middle if by == "std" and height else 0.0
+    if "loc" in by:
+        entry["loc"] = loc = place * unit
+    elif "mean" in by:
+        entry["mean"], loc = place * unit, place * unit - scale * middle
+    twin, below = quiet(law, *own.values(), loc=loc, scale=scale), 0.0
+    if of == "radius cut off":
+        entry["min"] = max(float(quiet(twin.ppf, 0.1)), 1e-3 * scale)
+        below = float(quiet(twin.cdf, entry["min"]))
+        assume(below < 0.9)
+    return Asked(entry, twin, below, height and by == "own" and abs(middle) > 1e-9 * size, wrong)
+
+
 @settings(deadline=None, max_examples=60, phases=[Phase.generate])  # to shrink takes minutes
 @given(
     families(),
@@ -72,56 +111,30 @@ def test_any_distribution_is_that_of_scipy(
     family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float
 ) -> None:
     """By its quantiles, and by those of draws, as nearly as draws can tell."""
-    name, own = family
-    law = getattr(scipy.stats, name)
-    mean, variance = map(float, quiet(law.stats, *own.values(), moments="mv"))
-    middle, size = mean if math.isfinite(mean) else 0.0, math.sqrt(variance) if 0.0 < variance < math.inf else 1.0
-    wrong = contradicted(law, tuple(own.values()), mean, variance)
-    if "mean" in by or "std" in by:
-        assume(math.isfinite(mean) and 0.0 < variance < math.inf)
-    given_scale = 2.5 * unit if "own" in by or "scale" in by else None
-    scale = given_scale or 2.5 * unit / size
-    entry: dict[str, Any] = {"distribution": name, **own}
-    entry |= {"std": 2.5 * unit} if given_scale is None else {"scale": given_scale}
-    loc = 0.0
-    if "loc" in by:
-        entry["loc"] = loc = place * unit
-    elif "mean" in by:
-        entry["mean"] = place * unit
-        loc = place * unit - scale * middle
-    elif by == "std" and "height" in of:
-        loc = -scale * middle
-    twin = quiet(law, *own.values(), loc=loc, scale=scale)
-    below = 0.0
-    if of == "radius cut off":  # at a low level, so that radii are above 0
-        entry["min"] = max(float(quiet(twin.ppf, 0.1)), 1e-3 * scale)
-        below = float(quiet(twin.cdf, entry["min"]))
-        assume(below < 0.9)
+    asked, height = asked_for(family, by, of, unit, place), "height" in of
     section = {**ASPERITIES, "height": "1 um", "radius": "50 um", "count": 400}
     if of == "height of the second":
-        section["second"] = {"share": 1.0, "height": entry}
+        section["second"] = {"share": 1.0, "height": asked.entry}
     else:
-        section["height" if of == "height" else "radius"] = entry
+        section["height" if of == "height" else "radius"] = asked.entry
     try:
         found, warned = generated(section, seed=5)
     except rm.SceneError as error:
-        reasons = ["cannot be drawn from", "must be above 0", *(["no finite mean"] if wrong else [])]
+        reasons = ["cannot be drawn from", "must be above 0", *(["no finite mean"] if asked.wrong else [])]
         assert any(reason in str(error) for reason in reasons)  # noqa: PT017
         assume(False)
-    height = "height" in of
-    asperities = read(scene(asperities=section, path={"separation": [0.0]})).asperities
-    population = asperities.law.populations[-1]
+    population = read(scene(asperities=section, path={"separation": [0.0]})).asperities.law.populations[-1]
     mine = (population.height if height else population.parameters["radius"]).quantile(LEVELS)
     near = 6.0 * np.sqrt(LEVELS * (1.0 - LEVELS) / 400)
     fractions = np.clip([LEVELS - near, LEVELS, LEVELS + near], 0.0, 1.0)
-    least, known, most = quiet(twin.ppf, below + (1.0 - below) * fractions)
+    least, known, most = quiet(asked.twin.ppf, asked.below + (1.0 - asked.below) * fractions)
     tiny = 1e-6 * np.abs(known) + 1e-6 * float(np.ptp(known))
     assert (np.abs(mine - known) <= tiny).all()
     drawn = np.quantile(found.height if height else found.radius, LEVELS, method="inverted_cdf")
     assert (drawn >= least - tiny).all()
     assert (drawn <= most + tiny).all()
-    if not wrong:
-        assert (NOT_AT_ZERO in warned) == (height and by == "own" and abs(middle) > 1e-9 * size)
+    if not asked.wrong:
+        assert (NOT_AT_ZERO in warned) == asked.off_centre
 
 
 @pytest.mark.parametrize("estimator", ["sampled", "stratified", "expected"])

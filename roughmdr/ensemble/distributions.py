@@ -13,6 +13,9 @@ from roughmdr.ensemble.families import Family, find_family
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 _CENTRED = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
+_ENDS = np.arange(-8.0, 9.0)  # normal scores, as far as draws reach
+_SPREAD_OF_LOGS = 0.2  # up to it the spread of forces is known from few draws
+_LONG = 15.0  # times the two scores of a normal distribution: that is 4 of itself, 12 of an exponential one
 _FAR_OUT = 1e-15  # fractions beyond which some inverses of scipy are wrong by many orders, as that of invgauss
 
 
@@ -154,6 +157,19 @@ class Distribution:
         if not self.family:
             return 0.0
         return self._moments[1] if self.cut else self.scale * math.sqrt(self._standard.moments(*self.own)[1])
+
+    @cached_property
+    def many_sized(self) -> bool:
+        """Whether its values, all above 0, are of many sizes: anywhere more so than those of a narrow lognormal one."""
+        return bool(self.family) and float(np.max(np.diff(np.log(self.of_scores(_ENDS))))) > _SPREAD_OF_LOGS
+
+    @cached_property
+    def long_tailed(self) -> bool:
+        """Whether its upper tail is longer, beside what is usual, than an exponential one."""
+        if not self.family:
+            return False
+        middle, upper, far = self.of_scores(np.array([0.0, 2.0, _ENDS[-1]]))
+        return bool(far - middle > _LONG * (upper - middle))
 
     @property
     def least(self) -> float:

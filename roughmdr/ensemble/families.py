@@ -140,7 +140,10 @@ def _moments(family: Any, *own: float) -> tuple[float, float]:
     """
     mean, variance = (float(moment) for moment in family.stats(*own, moments="mv"))
     least, most = family.support(*own)
-    low, high = family.ppf(_TAILS, *own), family.isf(_TAILS, *own)
+    try:
+        low, high = family.ppf(_TAILS, *own), family.isf(_TAILS, *own)
+    except (ArithmeticError, RuntimeError, ValueError):  # its inverse leads nowhere
+        return mean, variance
     too_high = _TAILS * (high - least) > _ROOM * (mean - least)
     too_low = _TAILS * (most - low) > _ROOM * (most - mean)
     if not least <= mean <= most or too_high.any() or too_low.any():
