@@ -55,7 +55,7 @@ def test_what_has_not_been_met_is_what_the_law_has_beyond(spread: float, count: 
     parts = [ndtr(k * s - z) + ndtr(-k * s - z) for k in (0, 1, 2)]
     beyond = (1.0 + spread**2) * parts[2] - 2.0 * parts[1] + parts[0]  # over the square of the mean
     exact = count * beyond * mean_force(spread, 1) ** 2
-    found = Rare(make_plan(read(cones(spread, count, 0.1))).cells[0]).variance(realizations)
+    found = Rare(make_plan(read(cones(spread, count, 0.1))).cells[0]).spread(realizations) ** 2
     total = count * (spread * mean_force(spread, 1)) ** 2
     assert float(found[0]) == pytest.approx(exact, rel=0.1, abs=1e-3 * total)
 
@@ -115,6 +115,14 @@ def test_where_so_many_draws_cannot_promise_the_result_says_so() -> None:
     assert float(found.accuracy_reached) > 0.2
     assert "was not reached in 1 of 1 cells" in found.attrs["warnings"]
     assert float(found.accuracy_reached) > 2.0 * float((found.force_sem / found.force_mean).max())
+
+
+@pytest.mark.parametrize("modulus", [1e-200, 1e200])
+def test_forces_whose_squares_no_float_holds(modulus: float) -> None:
+    """The relative error is that of any modulus."""
+    table = cones(10.0, 20, 0.5)
+    count = [float(rm.run({**table, "material": {"effective_modulus": m}}).realization_count) for m in (4e6, modulus)]
+    assert count[0] == count[1]
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])

@@ -20,10 +20,10 @@ _FAR = 1e3  # times too large, an error asks for more than _GROWTH whatever it i
 def relative_error(tally: Tally, unmet: Floats | float = 0.0) -> float:
     """The largest standard error of the mean force [step] over its largest magnitude; inf without any force.
 
-    ``unmet`` is what asperities that were not met would add to the variance of a realisation [N2], [step].
+    ``unmet`` is the spread that asperities that were not met would add to that of a realisation [N], [step].
     """
     largest = float(np.max(np.abs(tally.mean)))
-    error = float(np.max(np.hypot(tally.standard_error, np.sqrt(unmet / tally.size))))
+    error = float(np.max(np.hypot(tally.standard_error, unmet / math.sqrt(tally.size))))
     return error / largest if largest > 0.0 else math.inf
 
 

@@ -28,26 +28,38 @@ class Rare:
 
     def __init__(self, cell: Cell) -> None:
         section = cell.scene.asperities
-        self._count = section.expected_count
-        self._squares = [_squares(cell, stream) for stream in section.far_reaching]
+        self._count, self._steps = section.expected_count, cell.route.separation.size
+        try:
+            found = [_squares(cell, stream) for stream in section.far_reaching]
+        except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverse leads nowhere so far out:
+            found = []  # a run that meets such an asperity fails, and says so
+        self._squares = found
 
-    def variance(self, realizations: int) -> Floats | float:
-        """Of the force of a realisation [N2], [step]: what those add that so many need not have met."""
+    def spread(self, realizations: int) -> Floats:
+        """Of the force of a realisation [N], [step]: what those add that so many need not have met."""
         from scipy.special import ndtri
 
         level = min(_MET / (realizations * self._count), 0.5)
         unmet = np.abs(_FINE) >= -float(ndtri(level))
-        return sum((self._count * (_WEIGHTS[unmet] @ squares[unmet]) for squares in self._squares), 0.0)
+        spread = np.zeros(self._steps)
+        for largest, squares in self._squares:
+            spread = np.hypot(spread, largest * np.sqrt(self._count * (_WEIGHTS[unmet] @ squares[unmet])))
+        return spread
 
 
-def _squares(cell: Cell, stream: int) -> Floats:
-    """Squared distance of the force of an asperity from its mean [N2], [fine score, step], one quantity at a score."""
+def _squares(cell: Cell, stream: int) -> tuple[float, Floats]:
+    """The largest force [N], and over its square that of the distance of forces from their mean, one quantity at a
+    score: [fine score, step].
+    """
     from scipy.special import ndtr
 
     made = cell.scene.asperities.at_levels(stream, ndtr(_SCORES), _EACH)
     force = np.array([[_force(cell, ensemble, number) for number in range(_EACH)] for ensemble in made])
+    largest = float(np.abs(force).max())
+    force = force / (largest or 1.0)  # so that no square leaves the range of a float
     mean = _WEIGHTS @ _between(force.mean(axis=1))
-    return np.exp(_between(np.log(np.mean((force - mean) ** 2, axis=1) + np.finfo(float).tiny)))
+    with np.errstate(under="ignore"):
+        return largest, np.exp(_between(np.log(np.mean((force - mean) ** 2, axis=1) + np.finfo(float).tiny)))
 
 
 def _between(values: Floats) -> Floats:

@@ -126,7 +126,7 @@ class Rounds:
             return way
         if cell not in self._rare:
             self._rare[cell] = Rare(self._plan.cells[cell])
-        error = relative_error(tally, self._rare[cell].variance(draws.realizations))
+        error = relative_error(tally, self._rare[cell].spread(draws.realizations))
         choice = draws._replace(error=error, met=relative_error(tally)) if error < math.inf else draws
         known = way._replace(choice=choice)
         if enough(draws.realizations, error, accuracy):
