@@ -51,7 +51,7 @@ NORMAL = {"distribution": "normal", "std": "1 um"}
 SCENES = {
     "Hertz, 40 asperities": scene_of(40, NORMAL),
     "JKR, 40 asperities": scene_of(40, NORMAL, 0.05),
-    "Hertz, 8 asperities, exponential heights": scene_of(8, {"distribution": "expon", "scale": "1 um"}),
+    "Hertz, 8 asperities, exponential heights": scene_of(8, {"distribution": "expon", "std": "1 um"}),
 }
 FEWEST = (50, 200, 500, 1000, 4000)
 """Realisations that the errors asked for take at least."""

@@ -31,7 +31,8 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("time", f"about {seconds_in_words(estimate.seconds)}, of them {seconds_in_words(estimate.start_up)} to start"),
         ("memory", f"about {_bytes(estimate.memory)}, of them {_bytes(estimate.resident)} for Python and its packages"),
     ]
-    return _table([*lines, *_several("cannot run", estimate.failures), *_several("left out", plan.left_out)])
+    lines += [*_several("warning", tuple(plan.doubts)), *_several("cannot run", estimate.failures)]
+    return _table([*lines, *_several("left out", plan.left_out)])
 
 
 def _until(plan: "Plan") -> Iterator[tuple[str, str]]:

@@ -39,6 +39,11 @@ class Plan(NamedTuple):
         """The swept dimensions, in their order."""
         return self.scene.sweep.sizes
 
+    @property
+    def doubts(self) -> list[str]:
+        """What of the asperities may not be what was meant; in how many cells, where not in all."""
+        return in_cells((text for cell in self.cells for text in cell.scene.asperities.doubts), len(self.cells))
+
     def name_of(self, cell: int, realization: int) -> str:
         """A run in words."""
         values = next(islice(self.scene.sweep.cells(), cell, None))

@@ -24,6 +24,7 @@ _REFERENCES = (
     "with and without adhesion (2012)"
 )
 _ESTIMATORS = ("sampled", "stratified", "expected")
+_MOSTLY_MET = 0.9  # of an error, what the draws alone show, where nothing need be said of what they have not met
 _ALWAYS = ("run_time", "numerical_error", "edge_slope", "profile_extent")
 
 
@@ -89,15 +90,15 @@ def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tup
 
 
 def _warnings(plan: Plan, found: Found) -> list[str]:
-    """What makes the numbers doubtful: said of the ensembles, and of the most that any contact comes to."""
+    """What makes the numbers doubtful: said of the scene and the ensembles, and of the most that contacts come to."""
     beside = found.beside
     done = beside["status"] == DONE
-    doubts = dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)
+    said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]
     if not done.any():
-        return list(doubts)
+        return said
     jkr = done & (beside["law"] == LAWS.index("jkr"))
     tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
-    return [*doubts, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
+    return [*said, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
 
 
 def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[Choice]) -> dict[str, Array]:
@@ -138,6 +139,12 @@ def _missed(accuracy: Accuracy, choices: Sequence[Choice], failed: NDArray[np.bo
         said.append(
             f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {len(choices)} cells "
             f"(up to {max(choice.error for choice in missed):.2g}): {why}"
+        )
+    rare = [choice for choice in missed if choice.met < _MOSTLY_MET * choice.error]
+    if rare:
+        said.append(
+            f"in {len(rare)} of {len(choices)} cells asperities too rare to be met by so many draws may bear much of "
+            f"the force: without them the error would seem to be {max(choice.met for choice in rare):.2g}"
         )
     without = [choice for choice, fails in zip(choices, failed, strict=True) if math.isnan(choice.error) and not fails]
     if without:

@@ -239,7 +239,7 @@ def test_what_a_function_does_at_the_end_of_a_piece_alone_is_seen() -> None:
 
 def test_cohesive_contacts_that_begin_to_touch_on_the_way_in() -> None:
     """Where they do, the force has a kink; the expected law is within its stated error of even draws all the same."""
-    stiff = {"shape": "paraboloid", "radius": 2e-5, "height": {"distribution": "expon", "scale": "1.4 nm"}}
+    stiff = {"shape": "paraboloid", "radius": 2e-5, "height": {"distribution": "expon", "std": "1.4 nm"}}
     asked = scene(stiff, {"model": "dugdale", "work": 10.0, "strength": 6.7e6}, material={"effective_modulus": 8e10})
     asked |= {"path": {"separation": [2.7e-9, 2.6e-10]}, "output": {"variables": ["force"]}}
     law = rm.run({**asked, "batch": {"estimator": "expected"}}).isel(realization=0)

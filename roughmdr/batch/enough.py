@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from roughmdr.arguments import Floats
 from roughmdr.batch.tally import Tally
 from roughmdr.scene.sections import Accuracy
 
@@ -16,10 +17,14 @@ _GROWTH = 4  # times as many at most from one look to the next
 _FAR = 1e3  # times too large, an error asks for more than _GROWTH whatever it is
 
 
-def relative_error(tally: Tally) -> float:
-    """The largest standard error of the mean force [step] over its largest magnitude; inf without any force."""
+def relative_error(tally: Tally, unmet: Floats | float = 0.0) -> float:
+    """The largest standard error of the mean force [step] over its largest magnitude; inf without any force.
+
+    ``unmet`` is the spread that asperities that were not met would add to that of a realisation [N], [step].
+    """
     largest = float(np.max(np.abs(tally.mean)))
-    return float(np.max(tally.standard_error)) / largest if largest > 0.0 else math.inf
+    error = float(np.max(np.hypot(tally.standard_error, unmet / math.sqrt(tally.size))))
+    return error / largest if largest > 0.0 else math.inf
 
 
 def bound(count: int) -> float:

@@ -7,6 +7,7 @@ from roughmdr.batch.costs import seconds
 from roughmdr.batch.enough import FIRST, enough, next_count, relative_error, still_missing
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.identity import keys_of
+from roughmdr.batch.rare import Rare
 from roughmdr.batch.shard import DONE
 from roughmdr.batch.tasks import Stretch
 from roughmdr.plan import Plan
@@ -21,6 +22,8 @@ class Choice(NamedTuple):
     realizations: int
     error: float = math.nan
     """Of the mean force over its largest value: standard error, or that of an expected law; NaN where not known."""
+    met: float = math.nan
+    """The standard error by the draws alone, without what asperities may add that they have not met."""
 
 
 class _Way(NamedTuple):
@@ -45,6 +48,7 @@ class Rounds:
         self._leader = [alike.setdefault(way.choice.key, cell) for cell, way in enumerate(self._ways)]
         self._open = list(alike.values())
         self._made: dict[str, int] = {}
+        self._rare: dict[int, Rare] = {}
 
     @property
     def choices(self) -> list[Choice]:
@@ -76,7 +80,7 @@ class Rounds:
 
     def _stretch(self, cell: int) -> Stretch:
         """What the choice of a cell needs beyond what was made."""
-        key, estimator, count, _ = self._ways[cell].choice
+        key, estimator, count, *_ = self._ways[cell].choice
         first, self._made[key] = self._made.get(key, 0), count
         return Stretch(cell, first, count, estimator)
 
@@ -120,8 +124,11 @@ class Rounds:
         tally = gathered.watched(draws.key, draws.realizations)
         if tally is None:  # some failed
             return way
-        error = relative_error(tally)
-        known = way._replace(choice=draws._replace(error=error if error < math.inf else math.nan))
+        if cell not in self._rare:
+            self._rare[cell] = Rare(self._plan.cells[cell])
+        error = relative_error(tally, self._rare[cell].spread(draws.realizations))
+        choice = draws._replace(error=error, met=relative_error(tally)) if error < math.inf else draws
+        known = way._replace(choice=choice)
         if enough(draws.realizations, error, accuracy):
             return known
         count = next_count(draws.realizations, error, accuracy)

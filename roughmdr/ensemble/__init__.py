@@ -2,6 +2,7 @@
 
 import operator
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
 from pydantic import Field, TypeAdapter, ValidationError
@@ -52,7 +53,8 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
 
 def make(section: Source, seed: int, realization: int) -> Ensemble:
     """The ensemble of a section for a user to keep: with positions where it says how to place them."""
-    return section.ensemble(seed, realization, placed="placement" in section.model_fields_set)
+    made = section.ensemble(seed, realization, placed="placement" in section.model_fields_set)
+    return replace(made, warnings=(*section.doubts, *made.warnings))
 
 
 def _whole(name: str, value: object) -> int:

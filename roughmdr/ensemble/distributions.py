@@ -1,7 +1,7 @@
 """Distributions, sampled through their inverse, so that draws can be shared and compared."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,10 @@ from roughmdr.ensemble.families import Family, find_family
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 _FAR_SCORE, _UNFELT = 8.0, 1e-14  # beyond so many normal scores values are checked if a mean cube feels that of them
+_CENTRED = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
+_ENDS = np.arange(-8.0, 9.0)  # normal scores, as far as draws reach
+_SPREAD_OF_LOGS = 0.2  # up to it the spread of forces is known from few draws
+_LONG = 15.0  # times the two scores of a normal distribution: that is 4 of itself, 12 of an exponential one
 _FAR_OUT = 1e-15  # fractions beyond which some inverses of scipy are wrong by many orders, as that of invgauss
 
 
@@ -30,11 +34,22 @@ class Distribution:
     """Where it is cut off below."""
     max: float = math.inf
     """Where it is cut off above."""
+    placed: bool = field(default=True, repr=False, compare=False)  # it changes no number
+    """Whether whoever asked for it said where it lies; else ``loc`` is 0, as in scipy.stats."""
 
     @property
     def constant(self) -> float | None:
         """The value, where every draw has the same."""
         return None if self.family else self.loc
+
+    @property
+    def off_centre(self) -> bool:
+        """Whether its mean, before any cut, is another than 0 though nobody said where it lies."""
+        if self.placed:
+            return False
+        mean, variance = self._standard.moments(*self.own)
+        spread = math.sqrt(variance) if math.isfinite(variance) else 1.0
+        return math.isfinite(mean) and abs(mean) > _CENTRED * spread
 
     @property
     def cut(self) -> bool:
@@ -174,6 +189,19 @@ class Distribution:
         if not self.family:
             return 0.0
         return self._moments[1] if self.cut else self.scale * math.sqrt(self._standard.moments(*self.own)[1])
+
+    @cached_property
+    def many_sized(self) -> bool:
+        """Whether its values, all above 0, are of many sizes: anywhere more so than those of a narrow lognormal one."""
+        return bool(self.family) and float(np.max(np.diff(np.log(self.of_scores(_ENDS))))) > _SPREAD_OF_LOGS
+
+    @cached_property
+    def long_tailed(self) -> bool:
+        """Whether its upper tail is longer, beside what is usual, than an exponential one."""
+        if not self.family:
+            return False
+        middle, upper, far = self.of_scores(np.array([0.0, 2.0, _ENDS[-1]]))
+        return bool(far - middle > _LONG * (upper - middle))
 
     @property
     def least(self) -> float:

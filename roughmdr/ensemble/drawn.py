@@ -18,6 +18,7 @@ _FRIENDLY = {
     "weibull": "weibull_min",
 }
 _LOCATION = ("loc", "scale", "mean", "std")
+_PLACING = ("loc", "mean", "std")  # the last by the default mean
 _ENDS = ("min", "max")
 _LEAST_SHARE = 1e-200  # of a distribution that is cut off: less has no digits left
 _LEAST_OWN, _GREATEST_OWN = 1e-12, 1e12  # of a family's own parameters: far beyond, scipy can end the whole process
@@ -27,8 +28,9 @@ _LEAST_OWN, _GREATEST_OWN = 1e-12, 1e12  # of a family's own parameters: far bey
 class Drawn:
     """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
 
-    The parameters are scipy's own (shape parameters, loc, scale) or mean and std; ``mean`` is their default mean.
-    ``min`` and ``max`` cut the distribution that the others describe off.
+    The parameters are scipy's own (shape parameters, loc, scale), with which the distribution is scipy's, loc = 0 by
+    default; or mean and std, which move and stretch it. ``mean`` is the default mean of those that have a std.
+    ``scale`` has no default: a length of 1 m is never meant. ``min`` and ``max`` cut off what the others describe.
     Raises RoughmdrError, with the names that would do, where it cannot be read.
     """
 
@@ -100,10 +102,13 @@ class Drawn:
         numbers = {key: self._number(key, entry) for key, entry in table.items()}
         least, most = numbers.pop("min", -math.inf), numbers.pop("max", math.inf)
         try:
-            distribution = Distribution(name, *_located(family, given, numbers, self.mean), least, most)
+            placed = not numbers.keys().isdisjoint(_PLACING)
+            distribution = Distribution(name, *_located(family, given, numbers, self.mean), least, most, placed)
             _check_cut(distribution, given)
             ends = distribution.least, distribution.greatest
-        except (ArithmeticError, RuntimeError) as error:
+        except RoughmdrError:
+            raise
+        except (ArithmeticError, RuntimeError, ValueError) as error:  # of scipy, where its inverse leads nowhere
             raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
         if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
             raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
@@ -153,7 +158,7 @@ def _located(
     if not family.defined(*own.values()):
         raise RoughmdrError(f"{given} is not defined for {_listed(own)}")
     unit_mean, unit_variance = family.moments(*own.values())
-    if mean is None and "loc" not in numbers and math.isfinite(unit_mean):
+    if std is not None and mean is None and "loc" not in numbers:
         mean = default_mean
     scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
     loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean

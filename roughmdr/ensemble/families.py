@@ -4,10 +4,11 @@ scipy.stats takes longer to import than a small scene to compute. The families t
 scipy.special; they give the same bits as scipy.stats, which a test holds them to.
 """
 
+import math
 import threading
 import warnings
 from collections.abc import Callable
-from functools import cache, wraps
+from functools import cache, lru_cache, partial, wraps
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
@@ -17,6 +18,8 @@ from roughmdr.arguments import Floats
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 _RAISED = (ArithmeticError, RuntimeError, ValueError)
+_TAILS = np.array([1e-3, 1e-6, 1e-10])  # shares of a family beyond quantiles that its moments must leave room for
+_ROOM = 2.0  # times what they leave: quantiles may be rounded
 _ALONE = threading.Lock()  # the filters of warnings are those of all threads
 
 
@@ -121,7 +124,7 @@ def _from_scipy(family: Any) -> Family:
     return Family(
         () if family.shapes is None else tuple(family.shapes.split(", ")),
         _quiet(lambda *own: bool(family._argcheck(*own))),
-        _quiet(lambda *own: tuple(float(moment) for moment in family.stats(*own, moments="mv"))),
+        lru_cache(maxsize=256)(_quiet(partial(_moments, family))),
         *(_quiet(_one_by_one(function)) for function in (family.ppf, family.isf, family.cdf, family.sf, family.pdf)),
     )
 
@@ -138,6 +141,26 @@ def _one_by_one(function: Callable[..., Floats]) -> Callable[..., Floats]:
             return np.array([call(one, *own) for one in np.ravel(x)]).reshape(np.shape(x))
 
     return call
+
+
+def _moments(family: Any, *own: float) -> tuple[float, float]:
+    """Mean and variance; NaN for what scipy says where there is none, as of invweibull with c below 1 or 2.
+
+    What lies beyond a quantile bears its share of the mean and of the variance (the inequalities of Markov and
+    Chebyshev): moments without room for it are none.
+    """
+    mean, variance = (float(moment) for moment in family.stats(*own, moments="mv"))
+    least, most = family.support(*own)
+    try:
+        low, high = family.ppf(_TAILS, *own), family.isf(_TAILS, *own)
+    except _RAISED:  # its inverse leads nowhere
+        return mean, variance
+    too_high = _TAILS * (high - least) > _ROOM * (mean - least)
+    too_low = _TAILS * (most - low) > _ROOM * (most - mean)
+    if not least <= mean <= most or too_high.any() or too_low.any():
+        return math.nan, math.nan
+    far = np.sqrt(_TAILS) * np.maximum(high - mean, mean - low)
+    return mean, variance if variance >= 0.0 and not (far > _ROOM * math.sqrt(variance)).any() else math.nan
 
 
 def _quiet(function: Callable[_P, _T]) -> Callable[_P, _T]:

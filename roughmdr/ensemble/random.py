@@ -1,15 +1,17 @@
 """source = "random": heights and shape parameters drawn from distributions."""
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, model_validator
 
+from roughmdr.arguments import Floats
 from roughmdr.ensemble.count import poisson
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
-from roughmdr.ensemble.draws import PARAMETER, independent, spread
+from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
 from roughmdr.ensemble.patch import PatchSource
@@ -124,6 +126,36 @@ class RandomAsperities(PatchSource):
     def expected_count(self) -> float:
         """How many asperities there are, on average."""
         return self.density * self.patch * self.patch if self.density is not None else float(self.count or 0)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Heights by scipy's own parameters whose place was left to scipy, and is not about z = 0."""
+        second = None if self.second is None else self.second.height
+        heights = {"height": self.height} | ({} if second is None else {"second.height": second})
+        return tuple(
+            f"asperities.{key}: {entry.family} with its own parameters is that of scipy.stats, loc = 0, and its mean "
+            "is not at z = 0; say loc = 0 if that is meant, or mean = 0 to move it there"
+            for key, entry in heights.items()
+            if entry.off_centre
+        )
+
+    @property
+    def far_reaching(self) -> tuple[int, ...]:
+        """Of the heights, and of the shape parameters."""
+        populations = self.law.populations
+        heights = (HEIGHT,) if any(each.height.long_tailed for each in populations) else ()
+        names = [name for name in self.distributions if any(each.parameters[name].many_sized for each in populations)]
+        return (*heights, *(self.law.streams[name] for name in names))
+
+    def at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
+        """For each level in (0, 1) ``count`` asperities at it in one of the streams, evenly spread in the others."""
+        others = spread(0, 0, self.law.varied)
+        for level in levels:
+
+            def draws(asked: int, number: int, level: float = level) -> Floats:
+                return np.full(number, level) if asked == stream else others(asked, number)
+
+            yield Ensemble.sorted(self.shape, *self.law.draw(draws, count), self.nominal_area, fixed=self.fixed)
 
     @property
     def sigma(self) -> float:

@@ -1,9 +1,11 @@
 """What every source of asperities has in common: what a scene, a plan and a run ask of it."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar
 
+from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.quantities import Section
@@ -44,6 +46,11 @@ class Source(Section):
         return ""
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """What of the section may not be what was meant, in words."""
+        return ()
+
+    @property
     def expected_count(self) -> float:
         """How many asperities there are, on average."""
         raise NotImplementedError
@@ -68,6 +75,15 @@ class Source(Section):
 
     def nodes(self, rule: Rule) -> Nodes:
         """Asperities with weights that stand for all: at the scores of a rule for each parameter that is drawn."""
+        raise NotImplementedError
+
+    @property
+    def far_reaching(self) -> tuple[int, ...]:
+        """The streams of quantities that are, though seldom, many times larger or smaller than mostly."""
+        return ()
+
+    def at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
+        """For each level in (0, 1) ``count`` asperities at it in one of the streams, evenly spread in the others."""
         raise NotImplementedError
 
     def sampled(self, count: int) -> "Source":
