@@ -5,16 +5,18 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, TENSION
+from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _kink: Callable[..., bool]
 load: Callable[..., tuple[float, float]]
 stretched: Callable[..., tuple[float, float]]
 
-_NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
 _LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, four digits are lost
-_GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
+# Gauss's rule of five nodes, exact for a slope of ninth degree: from the middle over the length, and weights.
+_INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for sign in (1.0, -1.0))
+_MIDDLE = 64.0 / 225.0
+_INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
 _FINE = 1e-8  # the square of a last step is below rounding
 _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
 _PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
@@ -28,12 +30,14 @@ def above(t: float, j: int, row: Floats) -> tuple[float, float]:
     if row[TENSION] == 0.0:
         return value, slope
     lifted = value + row[DEPTH]
-    far = step > _NEAR * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
+    far = step > row[NEAR] * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
     if far or _kink(foot, t, row):
         return lifted, slope
     middle = foot + 0.5 * step
-    outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]
-    return row[FOOT_X + j] * row[DEPTH] + step * (5.0 * outer + 8.0 * load(middle, row)[1]) / 18.0, slope
+    inner = load(middle - _INNER * step, row)[1] + load(middle + _INNER * step, row)[1]
+    outer = load(middle - _OUTER * step, row)[1] + load(middle + _OUTER * step, row)[1]
+    mean = _MIDDLE * load(middle, row)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
+    return row[FOOT_X + j] * row[DEPTH] + step * mean, slope
 
 
 def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
@@ -72,7 +76,7 @@ def arrived(t: float, step: float, x: float, rung: float, row: Floats) -> bool:
     """Whether a last ``nearer`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
     beyond = t - row[LAST]
     is_last = (rung == row[COUNT]) & (x > row[LAST_X])
-    return bool(is_last & (beyond > _NEAR * t) & (abs(step) <= _FINE * beyond))
+    return bool(is_last & (beyond > row[NEAR] * t) & (abs(step) <= _FINE * beyond))
 
 
 PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)

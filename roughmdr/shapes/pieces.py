@@ -36,8 +36,7 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
         base, length, start, stop, before = places.T
         middle, half = 0.5 * (stop + start), 0.5 * (stop - start)
         q = length[:, None] * (middle[:, None] + half[:, None] * _POINTS)
-        x = np.sqrt(q * q + base[:, None] ** 2)
-        values = integrals(x.ravel(), knots, coefficients).reshape(*x.shape, 3)
+        values = integrals(q.ravel(), np.repeat(base, q.shape[1]), knots, coefficients).reshape(*q.shape, 3)
         chebyshev = np.einsum("cp,spv->svc", _TO_CHEBYSHEV, values)
         largest = np.abs(values).max(axis=1)
         left = (np.abs(chebyshev[..., -2:]).sum(axis=-1) / np.where(largest > 0.0, largest, 1.0)).max(axis=1)
@@ -115,7 +114,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     terms = np.array([binom(2 * i, i) / 4.0**i * np.sum(excess * r ** (2 * i)) for i in k])
     steepness = 0.5 * np.pi * coefficients[-1, 0]
     far = end * np.sum(2.0 * k / (2.0 * k - 1.0) * terms * end ** (-2.0 * k))
-    constant = integrals(np.array([end]), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
+    constant = integrals(np.array([end]), np.zeros(1), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
     return np.concatenate([[steepness, constant, 0.0], terms])
 
 
@@ -124,7 +123,7 @@ def steepness(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floa
     from roughmdr.shapes.abel import integrals
 
     x = (begins[:-1, None] + np.diff(begins)[:, None] * (np.arange(_LOOKS) + 0.5) / _LOOKS).ravel()
-    return x, integrals(x, knots, coefficients)[:, 1]
+    return x, integrals(x, np.zeros_like(x), knots, coefficients)[:, 1]
 
 
 def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[float, float]]:
@@ -134,7 +133,7 @@ def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[flo
     from roughmdr.shapes.abel import integrals
 
     def steep(x: float) -> float:
-        return float(np.sqrt(x) * integrals(np.array([x]), knots, coefficients)[0, 1])
+        return float(np.sqrt(x) * integrals(np.array([x]), np.zeros(1), knots, coefficients)[0, 1])
 
     x, slope = steepness(begins, knots, coefficients)
     m = np.sqrt(x) * slope

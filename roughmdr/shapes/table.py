@@ -81,6 +81,27 @@ def _swept(t: float, form: Form) -> float:
     return t * _curve(t, form)[2] - _push(t, form)
 
 
+def _largest(place: float, begin: int, form: Form) -> float:
+    """The sum of the magnitudes of the terms of such a polynomial."""
+    total = 0.0
+    for i in range(DEGREE, -1, -1):
+        total = total * abs(place) + abs(form[begin + i])
+    return total
+
+
+def _magnitude(t: float, form: Form) -> tuple[float, float]:
+    piece = _piece(t, form)
+    if piece < 0:
+        return 0.0, 0.0
+    place = _place_on(t, piece, form) if form[piece] == 0.0 else 1.0  # off the tip right to the largest on the piece
+    return _largest(place, piece + 4, form), _largest(place, piece + 6 + 2 * DEGREE, form)
+
+
+def _roundings(form: Form) -> float:
+    """As they are tested; those of the slope next to a knot among them."""
+    return 64.0
+
+
 def _height(r: float, form: Form) -> tuple[float, float]:
     begins = 2 + 2 * int(form[0])
     spline = begins + int(form[begins - 1]) * (1 + PIECE) + 1 + FAR
@@ -162,4 +183,6 @@ PROFILE = Profile(
     strain=_strain,
     edge_count=_edge_count,
     edge=_edge,
+    roundings=_roundings,
+    magnitude=_magnitude,
 )
