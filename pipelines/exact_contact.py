@@ -1,18 +1,19 @@
 """The exact force of one asperity at a given indentation, from closed forms with 60 digits, in a fraction of a millisecond.
 
-The state that a kernel found is where the search begins; what is found must be a root, to 45 digits, on the same stable
+The state that a kernel found is where the search begins; what is found must be a root, to 33 digits, on the same stable
 branch. Profiles are those of DESIGN's table, g and a g - G (H 16, 17, 32, 33, 40, 41), none of them as the kernels have it.
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
-from twins import Real, kappa, mp
+from twins import PowerShape, Real, Twin, kappa, mp
 
 import roughmdr as rm
 from roughmdr.shapes import Shape
 
-_SMALL = mp.mpf("1e-20")
+_SMALL = mp.mpf("1e-15")
+_CLOSE = mp.mpf("1e-33")  # tables have 40 digits
 _PATIENCE = 60
 
 
@@ -57,7 +58,7 @@ def profile(shape: Shape) -> Profile:
         case rm.RoundedPunch():
             return _rounded_punch(given["edge_radius"], b)
         case rm.Tabulated():
-            return lambda t: Point(*shape.precisely(t))
+            return lambda t: Point(*(mp.mpf(each) for each in shape.precisely(t)))
     raise ValueError(f"no profile of {shape}")
 
 
@@ -145,6 +146,7 @@ class Exact:
 
     def __init__(self, shape: Shape, modulus: float, work: float) -> None:
         self.profile = profile(shape)
+        self.power = Twin(shape, modulus, work) if isinstance(shape, PowerShape) else None
         self.modulus = mp.mpf(modulus)
         self.per_root = mp.sqrt(2 * mp.pi * mp.mpf(work) / self.modulus)
 
@@ -157,6 +159,10 @@ class Exact:
         """P [N]."""
         a, _, push = self.profile(mp.mpf(t))
         return 2 * self.modulus * (push - self.per_root * a * mp.sqrt(a))
+
+    def fold(self) -> Real:
+        """The a [m] where a power law lets go."""
+        return self.power.fold("indentation")
 
     def state(self, indentation: Real, begin: float, low: Real, high: Real) -> Real | None:
         """The t of an indentation [m] on the stable branch from low to high, from ``begin`` on; None where none is found.
@@ -172,7 +178,7 @@ class Exact:
             if value == value_other:
                 return None
             slope = (value_other - value) / (other - t)
-            if slope > 0 and abs(value) <= mp.mpf("1e-45") * scale:
+            if slope > 0 and abs(value) <= _CLOSE * scale:
                 return t
             better = t - value / slope if slope > 0 else 2 * t - low
             better = (t + low) / 2 if better < low else ((t + high) / 2 if better > high else better)
@@ -181,3 +187,28 @@ class Exact:
             if value == 0:
                 return t
         return None
+
+
+class Pinned(Exact):
+    """A flat punch, whose state is its indentation [m] itself."""
+
+    def __init__(self, shape: rm.FlatPunch, modulus: float, work: float) -> None:
+        self.radius = mp.mpf(shape.radius)
+        self.modulus = mp.mpf(modulus)
+        self.stretch = mp.sqrt(2 * mp.pi * self.radius * mp.mpf(work) / self.modulus)
+
+    def indentation(self, t: Real) -> Real:
+        """delta [m]."""
+        return mp.mpf(t)
+
+    def force(self, t: Real) -> Real:
+        """P [N]."""
+        return 2 * self.modulus * self.radius * t
+
+    def fold(self) -> Real:
+        """Where it lets go."""
+        return -self.stretch
+
+    def state(self, indentation: Real, begin: float, low: Real, high: Real) -> Real | None:
+        """The indentation."""
+        return indentation

@@ -73,9 +73,9 @@ class Law(NamedTuple):
     guess: Kernel | None = None
     """(x, form) -> where Newton's method begins."""
     nearer: Callable[..., tuple[float, float, float]] | None = None
-    """(state, x, form) -> the state one step nearer, the step, and d(state)/dx."""
+    """(state, x, form) -> the state one step nearer, how far away it was, and d(state)/dx."""
     arrived: Callable[..., bool] | None = None
-    """(state, step, x, rung, form) -> whether the last step has come to the state on branch number ``rung``."""
+    """(state, away, x, rung, form) -> whether a step from so far away has come to the state on branch number ``rung``."""
     state_on: Kernel | None = None
     """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.shapes.table import DEGREE, PIECE, strain_between
+from roughmdr.shapes.table import DEGREE, HEAD, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
 _NOISE = 1e-11  # below it, what halving does not lower is rounding
@@ -44,7 +44,8 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
         powers = chebyshev @ _TO_POWERS
         for i in np.flatnonzero(fits):
             begin = np.hypot(base[i], length[i] * start[i]) if start[i] > 0.0 else base[i]
-            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0]
+            sizes = np.abs(powers[i, [0, 2]]).sum(axis=1)
+            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0, *sizes]
             done.append((float(begin), np.concatenate([head, powers[i].ravel()])))
         waiting = [
             part
@@ -95,7 +96,7 @@ def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
     g[1:4] = c0, c1, c2
     slope[:3] = c0, 2.0 * c1, 3.0 * c2
     push[2:5] = 0.5 * c0, 2.0 / 3.0 * c1, 0.75 * c2
-    return 0.0, np.concatenate([[0.0, 1.0, 0.0, 0.0], g, slope, push])
+    return 0.0, np.concatenate([[0.0, 1.0, *np.zeros(HEAD - 2)], g, slope, push])
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
