@@ -1,4 +1,20 @@
-"""How far the sum of the forces of a block can be off."""
+"""How far the sum of the forces of a block can be off.
+
+A kernel finds the state t of a contact at which the indentation D, as it computes it, is z - h. With all digits D(t) is
+off by some eta, and the right state is the t* at which D is z - h. So the force is off by what P(t) is computed wrongly
+by, and by |P(t) - P(t*)|. The second is at most m |k(t)| eta:
+
+- Far from a fold k is all but the same from t to t*, so that m is 1.
+- Next to a smooth fold D - D_c goes with y = t - t_c as y^2, where the fold is about to vanish as y^3, or as something
+  between; and P as y. With D* = D - eta down to D_c itself, |y - y*|/eta grows to y/(D - D_c) = 2 or 3 times dy/dD.
+  Upwards dy/dD falls. So m is 2 or 3, however close the fold is and however k goes along the rest of the branch.
+- Where t is so close to the fold that all digits of 2 sqrt(a) g' - dl' are lost, the computed k is some 1/u times a,
+  and |k| eta with eta >= u dl is no less than the force itself.
+
+eta is the rounding of z - h, of the depth and of x, at most 4 u (|z| + |h| + depth) for the two of them that next to a
+fold are not small as D - D_c is; and, where D comes from g - dl, what they are computed wrongly by, some u (g + dl). g is
+z - h + dl.
+"""
 
 import math
 from collections.abc import Callable
@@ -6,30 +22,31 @@ from typing import Any
 
 from roughmdr.aggregate.block import least
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
-from roughmdr.aggregate.settle import FORCE, STATE, STIFFNESS
+from roughmdr.aggregate.settle import FORCE, RADIUS, STATE, STIFFNESS
 from roughmdr.arguments import Floats
 
 _UNIT = 2.0**-53  # the largest relative error of one rounding
-# Of the force of a contact over its natural scale, as the kernels are tested; the second where adhesion has a range.
-_KERNEL_ERROR, _KERNEL_ERROR_COHESIVE = 1e-13, 1e-12
+_NEXT_TO_A_FOLD = 3.0  # m
 
 # Names that ``specialise`` fills with the kernels of a law.
 _adhesive: bool
-_cohesive: bool
-_curved: bool
 _state: Callable[..., float]
 _force: Callable[..., float]
 _stiffness: Callable[..., float]
+_errors: Callable[..., tuple[float, float]]
+_pulled: Callable[..., tuple[float, float]]
+_magnitude: Callable[..., tuple[float, float]] | None
 _own: Callable[..., Any]
 _mixed: Callable[..., bool]
 
 
-def worst(count: int, z: Floats, h: float, slope: float, push: float, greatest: Floats) -> float:
-    """The error [N] of ``count`` contacts whose reduced stiffness and force are at most ``slope`` and ``push``."""
+def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: float, greatest: Floats) -> float:
+    """The error [N] of ``count`` contacts of which |k| is at most ``slope`` and the computed force off by ``push``, both
+    reduced, and the computed indentation by ``swing`` of its terms.
+    """
     deepest = greatest[DEPTH] if _adhesive else 0.0
-    rounding = 4.0 * _UNIT * (max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest)
-    own = _KERNEL_ERROR_COHESIVE if _cohesive else _KERNEL_ERROR
-    each = slope * greatest[RIGIDITY] * rounding + own * push * greatest[LOAD]
+    farthest = max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest
+    each = slope * greatest[RIGIDITY] * (4.0 * _UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push * greatest[LOAD]
     return float(count * each)
 
 
@@ -46,12 +63,11 @@ def bound(
 ) -> float:
     """A bound on the error [N] of what the first ``count`` asperities of a block add to the force.
 
-    Each force is off by |k| times the rounding of z - h and of the fold, and by what its kernel is off. k grows along
-    the branch, so that |k| is largest in the least or the greatest state: two calls bound a block of one form. Only
-    a retraction brings a state below that of first touch, x = 1.
+    For laws whose k grows along the branch, from -inf at the fold of a cone or a paraboloid, so that |k| is largest in
+    the least or the greatest state: two calls bound a block of one form. Only a retraction brings a state below that of
+    first touch, x = 1.
     """
-    deepest = greatest[DEPTH] if _adhesive else 0.0
-    high = _state(((z[0] - h) + deepest) * greatest[PER_DEPTH], _own(forms, 0))
+    high = _state(((z[0] - h) + (greatest[DEPTH] if _adhesive else 0.0)) * greatest[PER_DEPTH], _own(forms, 0))
     low = high
     if _adhesive:
         low = _state(1.0, _own(forms, 0))
@@ -61,12 +77,12 @@ def bound(
             low = max(min(low, least(terms, count)), _UNIT)
     slope = max(abs(_stiffness(low, _own(forms, 0))), abs(_stiffness(high, _own(forms, 0))))
     least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
-    push = max(least_push, abs(_force(high, _own(forms, 0))))
+    push = max(least_push, abs(_force(high, _own(forms, 0)))) * _errors(_own(forms, 0))[0]
     if _mixed(forms):
         for i in range(count):
             slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(forms, i))))
-            push = max(push, abs(_force(found[STATE, i], _own(forms, i))))
-    return worst(count, z, h, slope, push, greatest)
+            push = max(push, abs(_force(found[STATE, i], _own(forms, i))) * _errors(_own(forms, i))[0])
+    return worst(count, z, h, slope, push, 0.0, greatest)
 
 
 def bound_found(
@@ -80,11 +96,16 @@ def bound_found(
     found: Floats,
     terms: Floats,
 ) -> float:
-    """The same where P and k were found with the state: one by one."""
-    slope = 0.0
-    push = 1.0 if _adhesive and not _curved else 0.0  # that of a shape with a width is no force of this contact
+    """The same where P and k were found with the state: one by one, so that nothing is asked of how k goes."""
+    slope, push, swing = 0.0, 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:
-            slope = max(slope, abs(found[STIFFNESS, i]))
-            push = max(push, abs(found[FORCE, i]))
-    return worst(count, z, h, slope, push, greatest)
+            a, (own, each) = found[RADIUS, i], _errors(_own(forms, i))
+            k = min(abs(found[STIFFNESS, i]), a / _UNIT)
+            stretch, share = _pulled(a, _own(forms, i)) if _adhesive else (0.0, 0.0)
+            off = own * (abs(found[FORCE, i]) + 2.0 * share) + 2.0 * _NEXT_TO_A_FOLD * each * k * stretch
+            if _magnitude is not None:
+                g, pushed = _magnitude(found[STATE, i], _own(forms, i))
+                off += own * pushed + _NEXT_TO_A_FOLD * each * k * g
+            slope, push, swing = max(slope, k), max(push, off), max(swing, each)
+    return worst(count, z, h, slope, push, swing, greatest)

@@ -15,6 +15,9 @@ from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
 # Names that ``specialise`` fills with the functions of a profile.
 _curve: Callable[..., tuple[float, float, float, float]]
 _push: Callable[..., float]
+_roundings: Callable[..., float]
+
+_UNIT = 2.0**-53
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
@@ -70,6 +73,18 @@ def stiffness(t: float, row: Floats) -> float:
     return answer(t, row)[2]
 
 
+def pulled(a: float, row: Floats) -> tuple[float, float]:
+    """dl over rise, and a dl over width rise."""
+    stretch = row[TENSION] * math.sqrt(a)
+    return stretch, a * stretch
+
+
+def errors(row: Floats) -> tuple[float, float]:
+    """Both from the roundings of the profile and of dl."""
+    error = _UNIT * _roundings(row)
+    return error, error
+
+
 def strain(t: float, row: Floats) -> float:
     """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
     total, low = 0.0, 0.0
@@ -99,6 +114,8 @@ PARTS: tuple[Callable[..., Any], ...] = (
     answer,
     force,
     stiffness,
+    pulled,
+    errors,
     strain,
     energy,
 )

@@ -170,6 +170,8 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
         "_edge_count": compiled(profile.edge_count),
         "_edge": compiled(profile.edge),
         "_ready": compiled(profile.ready),
+        "_roundings": compiled(profile.roundings),
+        "magnitude": None if profile.magnitude is None else compiled(profile.magnitude),
         "_beyond": None if profile.beyond is None else compiled(profile.beyond),
         "_corner": profile.corner,
         "_flat": profile.flat,

@@ -21,7 +21,7 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH
+from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 
 # Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``margins``.
 _push: Callable[..., float]
@@ -29,6 +29,11 @@ _height: Callable[..., tuple[float, float]]
 zone: Callable[..., tuple[float, float, float]]
 margins: Callable[..., tuple[float, float, float, float, float, float, float]]
 strain: Callable[..., float]
+_roundings: Callable[..., float]
+
+_UNIT = 2.0**-53
+_ZONE_ERROR = 1e-12  # of the force: as it is tested
+_ZONE_ROUNDINGS = 32.0  # of the zone's share of the indentation
 
 
 def along(s: float, row: Floats) -> tuple[float, float, float, float, float]:
@@ -96,6 +101,22 @@ def stiffness(s: float, row: Floats) -> float:
     return answer(s, row)[2]
 
 
+def pulled(a: float, row: Floats) -> tuple[float, float]:
+    """No less than beta m over rise, and beta/2 (a m + c^2 theta) over width rise.
+
+    The gap at c is at most w/sigma0, so that beta (m theta - c + a) <= pi/2 RANGE; and the bracket is at least
+    2/pi (pi/2 - 1) theta m, theta >= pi/4 min(m/a, 1).
+    """
+    stretch = 1.33 * row[TENSION] * math.sqrt(a) + 5.5 * row[RANGE]
+    return stretch, stretch * (a + 0.25 * math.pi * stretch / row[STRENGTH])
+
+
+def errors(row: Floats) -> tuple[float, float]:
+    """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
+    error = _UNIT * (_roundings(row) + _ZONE_ROUNDINGS)
+    return max(_ZONE_ERROR, error), error
+
+
 def energy(s: float, row: Floats) -> float:
     """U, elastic and of both surfaces, over 2 E* width rise^2 DEPTH; 0 where the surfaces do not attract each other.
 
@@ -133,5 +154,7 @@ PARTS: tuple[Callable[..., Any], ...] = (
     cohesive_radius,
     force,
     stiffness,
+    pulled,
+    errors,
     energy,
 )

@@ -17,6 +17,7 @@ from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRE
 natural, natural_force = compiled(curved.natural), compiled(curved.natural_force)
 own = njit(curved.own, inline=True)
 passes = 1
+_KERNEL_ERROR = 1e-12  # of the force, as it is tested
 _LONGEST = 2.0**26  # times beta: the depth, of whose roundings the edge of a contact that closes makes less than 1e-12
 
 
@@ -155,6 +156,18 @@ def force(s: float, row: Floats) -> float:
 def stiffness(s: float, row: Floats) -> float:
     """k over 2 E* b."""
     return radius(s, row)
+
+
+@njit
+def pulled(a: float, row: Floats) -> tuple[float, float]:
+    """No less than what the attraction takes of delta/b and of P over 2 E* b^2."""
+    return row[STRENGTH], row[STRENGTH]
+
+
+@njit
+def errors(row: Floats) -> tuple[float, float]:
+    """That of the force as it is tested; the state is the indentation itself."""
+    return _KERNEL_ERROR, 0.0
 
 
 @njit

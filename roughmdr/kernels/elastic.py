@@ -9,6 +9,8 @@ from roughmdr._extended import Pair, two_product
 from roughmdr._jit import njit
 from roughmdr.shapes.kappa import kappa
 
+_KERNEL_ERROR = 1e-13  # of the force, as it is tested
+_UNIT = 2.0**-53
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
@@ -128,6 +130,12 @@ def energy_power(t: float, n: float) -> float:
     """U = ∫ P d(delta) over 2 E* width depth^2."""
     x = math.pow(t, n)
     return n * n / ((n + 1.0) * (2.0 * n + 1.0)) * (t * x * x)
+
+
+@njit
+def errors(n: float) -> tuple[float, float]:
+    """A rounding of t moves t^(n + 1) by n + 1 of them."""
+    return _KERNEL_ERROR + 4.0 * _UNIT * n, 0.0
 
 
 @njit

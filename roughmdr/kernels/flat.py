@@ -10,6 +10,8 @@ from roughmdr import _extended as extended
 from roughmdr._extended import Pair
 from roughmdr._jit import njit
 
+_KERNEL_ERROR = 1e-14
+
 
 @njit
 def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
@@ -23,6 +25,12 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
             return (0.0, 0.0), 0.0, 0.0, 0.0
         depth = extended.sqrt(square)
     return depth, width, 2.0 * modulus * width * depth[0], 2.0 * modulus * width
+
+
+@njit
+def errors(n: float) -> tuple[float, float]:
+    """The scales and the state are a few roundings each."""
+    return _KERNEL_ERROR, 0.0
 
 
 @njit

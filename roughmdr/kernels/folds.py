@@ -19,6 +19,7 @@ from roughmdr.kernels.row import (
     LAST,
     LAST_X,
     MOST,
+    NEAR,
     ONSET,
     TENSION,
     TOP,
@@ -33,7 +34,10 @@ _corner: bool
 load: Callable[..., tuple[float, float]]
 
 _LARGEST = 1e140  # its square is a float
-_CLOSE = 1e-13
+_CLOSE = 1e-15
+# From what part of the foot on a difference has lost too many digits for a square root of it: in ordinary profiles, and
+# where the terms of that difference are ``_SWING`` times as large; and how far an integral is right to rounding.
+_NEAR, _SWING, _FARTHEST = 4e-3, 8.0, 0.1
 _NEXT = 2.0**-52
 
 
@@ -115,12 +119,16 @@ def _list_branches(tension: float, row: Floats) -> int:
 
 def find_branches(row: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
-    row[COUNT], row[FOLD], row[DEPTH], row[ONSET] = 0.0, 0.0, 1.0, 1.0
+    row[COUNT], row[FOLD], row[DEPTH], row[ONSET], row[NEAR] = 0.0, 0.0, 1.0, 1.0, _NEAR
     if row[TENSION] == 0.0:
         row[FOOT], row[TOP], row[FOOT_X], row[TOP_X], row[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
         row[LAST], row[LAST_X] = 0.0, 0.0
         return
     measure_branches(_list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row), row)
+    if row[COUNT] > 0.0:
+        a = _curve(row[FOLD], row)[0]
+        swing = 2.0 * row[TENSION] * math.sqrt(a) * (a if row[CONTROL] > 0.0 else 1.0) / row[DEPTH]
+        row[NEAR] = min(_NEAR * max(swing / _SWING, 1.0), _FARTHEST)
 
 
 def measure_branches(count: int, row: Floats) -> None:

@@ -5,12 +5,13 @@ import math
 from roughmdr import _extended as extended
 from roughmdr._extended import Pair
 from roughmdr._jit import njit
-from roughmdr.kernels.jkr_paraboloid import radius, state_of_radius
+from roughmdr.kernels.jkr_paraboloid import errors, radius, state_of_radius
 from roughmdr.kernels.jkr_power import branch
 
 __all__ = [
     "distance",
     "energy",
+    "errors",
     "force",
     "natural",
     "natural_force",

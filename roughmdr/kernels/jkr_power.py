@@ -21,6 +21,7 @@ from roughmdr.elementary import expm1, log, log1p
 from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
+_KERNEL_ERROR = 1e-13  # of the force over its terms, as it is tested
 _TINY = 1e-150  # 1/z^2 of a lesser z is no float
 _expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)
@@ -62,6 +63,19 @@ def natural(modulus: float, work: float, width: float, rise: float, n: float) ->
     e = extended.two_sum(2.0 * n, -1.0)
     depth = extended.multiply(stretch, extended.divide(e, (2.0 * n, 0.0)))
     return depth, a_c[0], 2.0 * modulus * a_c[0] * stretch[0], 2.0 * modulus * a_c[0]
+
+
+@njit
+def errors(n: float) -> tuple[float, float]:
+    """The state comes from the distance to the fold."""
+    return _KERNEL_ERROR, 0.0
+
+
+@njit
+def pulled(a: float, n: float) -> tuple[float, float]:
+    """dl over dl(a_c), and a dl over a_c dl(a_c)."""
+    stretch = math.sqrt(a)
+    return stretch, a * stretch
 
 
 @_vector

@@ -53,11 +53,19 @@ class Law(NamedTuple):
     """(state, form) -> k over natural stiffness."""
     energy: Kernel
     """(state, form) -> elastic and surface energy over natural force times natural depth."""
+    errors: Callable[..., tuple[float, float]]
+    """form -> what ``bound`` has to allow for: of the force over its terms, which are P and twice what adhesion takes
+    of it; and of the indentation over g + dl, 0 where the state comes from the distance to the fold itself."""
     radius_of_force: Kernel | None = None
     """(distance to the onset under dead load, form under dead load) -> a over the radius of ``natural_force``, where
     that has more digits than the radius of the state."""
     answer: Callable[..., tuple[float, float, float]] | None = None
     """(state, form) -> radius, force and stiffness, where they are found together."""
+    pulled: Callable[..., tuple[float, float]] | None = None
+    """(a, form) -> what adhesion takes of the indentation and of the force, or no less, over natural force/stiffness
+    and natural force. Used where there is an ``answer``."""
+    magnitude: Callable[..., tuple[float, float]] | None = None
+    """(state, form) -> how large the terms of g and of a g - G are, in the same units, where they cancel."""
     mixed: Kernel | None = None
     """forms -> whether they differ; None where the law is curved. What follows is used only where it is."""
     passes: int = 0
@@ -65,9 +73,9 @@ class Law(NamedTuple):
     guess: Kernel | None = None
     """(x, form) -> where Newton's method begins."""
     nearer: Callable[..., tuple[float, float, float]] | None = None
-    """(state, x, form) -> the state one step nearer, the step, and d(state)/dx."""
+    """(state, x, form) -> the state one step nearer, how far away it was, and d(state)/dx."""
     arrived: Callable[..., bool] | None = None
-    """(state, step, x, rung, form) -> whether the last step has come to the state on branch number ``rung``."""
+    """(state, away, x, rung, form) -> whether a step from so far away has come to the state on branch number ``rung``."""
     state_on: Kernel | None = None
     """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None

@@ -78,6 +78,11 @@ def _power_strain(a: float, form: Form) -> float:
     return 2.0 * n * n / (n + 1.0) / (2.0 * n + 1.0) * (g * g * a)
 
 
+def _power_roundings(form: Form) -> float:
+    """Those of any profile, and of t in its power."""
+    return 14.0 + form[0]
+
+
 def _power_ready(form: Any) -> None:
     form[1] = kappa(form[0])
 
@@ -88,7 +93,14 @@ _POWERS: dict[type[Shape], Profile] = {
     ),
     Cone: Profile(_cone_curve, _cone_push, _cone_push, _place, _cone_height, strain=_cone_strain),
     PowerLaw: Profile(
-        _power_curve, _power_push, _power_swept, _place, _power_height, strain=_power_strain, ready=_power_ready
+        _power_curve,
+        _power_push,
+        _power_swept,
+        _place,
+        _power_height,
+        strain=_power_strain,
+        roundings=_power_roundings,
+        ready=_power_ready,
     ),
 }
 

@@ -5,17 +5,19 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.arguments import Floats
-from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, TENSION
+from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _kink: Callable[..., bool]
 load: Callable[..., tuple[float, float]]
 stretched: Callable[..., tuple[float, float]]
 
-_NEAR = 4e-3  # from here on to a foot the integral of the slope is better than the difference of the values
 _LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, four digits are lost
-_GAUSS = 0.5 * math.sqrt(0.6)  # three nodes: exact for a slope of fifth degree
-_FINE = 1e-8  # the square of a last step is below rounding
+# Gauss's rule of five nodes, exact for a slope of ninth degree: from the middle over the length, and weights.
+_INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for sign in (1.0, -1.0))
+_MIDDLE = 64.0 / 225.0
+_INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
+_FINE = 1e-8  # of the way and of the value: the square of a last step is below rounding
 _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
 _PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
 
@@ -28,17 +30,19 @@ def above(t: float, j: int, row: Floats) -> tuple[float, float]:
     if row[TENSION] == 0.0:
         return value, slope
     lifted = value + row[DEPTH]
-    far = step > _NEAR * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
+    far = step > row[NEAR] * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
     if far or _kink(foot, t, row):
         return lifted, slope
     middle = foot + 0.5 * step
-    outer = load(middle - _GAUSS * step, row)[1] + load(middle + _GAUSS * step, row)[1]
-    return row[FOOT_X + j] * row[DEPTH] + step * (5.0 * outer + 8.0 * load(middle, row)[1]) / 18.0, slope
+    inner = load(middle - _INNER * step, row)[1] + load(middle + _INNER * step, row)[1]
+    outer = load(middle - _OUTER * step, row)[1] + load(middle + _OUTER * step, row)[1]
+    mean = _MIDDLE * load(middle, row)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
+    return row[FOOT_X + j] * row[DEPTH] + step * mean, slope
 
 
 def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
     """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
-    foot = row[FOOT + j]
+    foot, lift = row[FOOT + j], row[DEPTH] if row[TENSION] > 0.0 else 0.0
     for i in range(200):
         value, slope = above(t, j, row)
         if value < wanted:
@@ -48,7 +52,7 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
         else:
             return t
         step = (value - wanted) / slope if slope > 0.0 else math.inf
-        if abs(step) <= _FINE * (t - foot):
+        if abs(step) <= _FINE * (t - foot) and abs(value - wanted) <= _FINE * (wanted + lift):
             return t - step
         better = t - step
         circling = i % 3 == 2 and i > _PATIENCE
@@ -61,18 +65,25 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
 
 
 def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
-    """One step of Newton's method on the last branch under fixed grips, not below its foot: t, the step, and dt/dx."""
+    """One step of Newton's method on the last branch under fixed grips, not below its foot: t, how far it was away, and
+    dt/dx.
+
+    So far away is it as the step, or as the step makes of the value: that of a steep power changes more than t.
+    """
     value, slope = stretched(t, row)
     lift = row[DEPTH] if row[TENSION] > 0.0 else 0.0
-    step = ((value + lift) - x * row[DEPTH]) / slope
-    return max(t - step, row[LAST] + _LEAST_WAY * (t - row[LAST])), step, row[DEPTH] / slope
+    wanted, beyond = x * row[DEPTH], t - row[LAST]
+    rest = (value + lift) - wanted
+    step = rest / slope
+    away = max(abs(step), abs(rest) / (wanted + lift) * beyond)
+    return max(t - step, row[LAST] + _LEAST_WAY * beyond), away, row[DEPTH] / slope
 
 
-def arrived(t: float, step: float, x: float, rung: float, row: Floats) -> bool:
-    """Whether a last ``nearer`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
+def arrived(t: float, away: float, x: float, rung: float, row: Floats) -> bool:
+    """Whether a ``nearer`` from ``away`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
     beyond = t - row[LAST]
     is_last = (rung == row[COUNT]) & (x > row[LAST_X])
-    return bool(is_last & (beyond > _NEAR * t) & (abs(step) <= _FINE * beyond))
+    return bool(is_last & (beyond > row[NEAR] * t) & (away <= _FINE * beyond))
 
 
 PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)

@@ -17,8 +17,9 @@ LAST, LAST_X = -6, -7  # the foot of the last branch: its t, and its distance to
 ONSET = -8  # the distance at which the contact, or attraction, begins
 STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range (``dugdale``)
 JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and what t - 1 is counted in
-FOOT, TOP = UNIT - MOST, UNIT - 2 * MOST  # t of the first
-FOOT_X, TOP_X = UNIT - 3 * MOST, UNIT - 4 * MOST  # the distances
+NEAR = -13  # times t: so near a foot the integral of the slope has more digits than the difference of the values
+FOOT, TOP = NEAR - MOST, NEAR - 2 * MOST  # t of the first
+FOOT_X, TOP_X = NEAR - 3 * MOST, NEAR - 4 * MOST  # the distances
 
 
 def first_node(split: int) -> int:

@@ -23,23 +23,32 @@ _WIDE, _WIDE_WEIGHTS = _gauss(14)  # enough for a right angle
 
 
 @njit
-def integrals(x: Floats, knots: Floats, coefficients: Floats) -> Floats:
-    """g, g' and ∫ x g' dx at each x > 0, of f' = c0 + c1 s + c2 s^2 over s = r - knot, the last piece without end.
+def _beyond(knot: float, a: float, place: float, base: float) -> float:
+    """sqrt(a^2 - knot^2), a^2 = place^2 + base^2."""
+    return math.sqrt(place * place + (base - knot) * (base + knot) if knot <= base else (a - knot) * (a + knot))
 
-    Angles and s are formed without differences of numbers that are nearly equal.
+
+@njit
+def integrals(place: Floats, base: Floats, knots: Floats, coefficients: Floats) -> Floats:
+    """g, g' and ∫ x g' dx at each x = sqrt(place^2 + base^2) > 0, of f' = c0 + c1 s + c2 s^2 over s = r - knot, the last
+    piece without end; ``base`` is a knot, 0 among them.
+
+    Angles and s are formed without differences of numbers that are nearly equal; next to a knot, where g' begins like
+    the root of the way from it, x itself has too few digits.
     """
-    out = np.zeros((x.size, 3))
-    for i in range(x.size):
-        a = x[i]
+    out = np.zeros((place.size, 3))
+    for i in range(place.size):
+        beside, begin = place[i], base[i]
+        a = math.sqrt(beside * beside + begin * begin)
         for k in range(knots.size):
             knot = knots[k]
             if knot >= a:
                 break
-            q = math.sqrt((a - knot) * (a + knot))
+            q = _beyond(knot, a, beside, begin)
             angle = math.atan2(q, knot)
             if k + 1 < knots.size and knots[k + 1] < a:
                 end = knots[k + 1]
-                q_end = math.sqrt((a - end) * (a + end))
+                q_end = _beyond(end, a, beside, begin)
                 sine = (end - knot) * (end + knot) * a * a / (end * q + knot * q_end)
                 angle = math.atan2(sine, q * q_end + end * knot)
             nodes, weights = (_FINE, _FINE_WEIGHTS) if angle < _SMALL else (_WIDE, _WIDE_WEIGHTS)

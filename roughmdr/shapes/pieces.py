@@ -3,7 +3,7 @@
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.shapes.table import DEGREE, PIECE, strain_between
+from roughmdr.shapes.table import DEGREE, HEAD, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
 _NOISE = 1e-11  # below it, what halving does not lower is rounding
@@ -36,8 +36,7 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
         base, length, start, stop, before = places.T
         middle, half = 0.5 * (stop + start), 0.5 * (stop - start)
         q = length[:, None] * (middle[:, None] + half[:, None] * _POINTS)
-        x = np.sqrt(q * q + base[:, None] ** 2)
-        values = integrals(x.ravel(), knots, coefficients).reshape(*x.shape, 3)
+        values = integrals(q.ravel(), np.repeat(base, q.shape[1]), knots, coefficients).reshape(*q.shape, 3)
         chebyshev = np.einsum("cp,spv->svc", _TO_CHEBYSHEV, values)
         largest = np.abs(values).max(axis=1)
         left = (np.abs(chebyshev[..., -2:]).sum(axis=-1) / np.where(largest > 0.0, largest, 1.0)).max(axis=1)
@@ -45,7 +44,8 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
         powers = chebyshev @ _TO_POWERS
         for i in np.flatnonzero(fits):
             begin = np.hypot(base[i], length[i] * start[i]) if start[i] > 0.0 else base[i]
-            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0]
+            sizes = np.abs(powers[i, [0, 2]]).sum(axis=1)
+            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0, *sizes]
             done.append((float(begin), np.concatenate([head, powers[i].ravel()])))
         waiting = [
             part
@@ -96,7 +96,7 @@ def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
     g[1:4] = c0, c1, c2
     slope[:3] = c0, 2.0 * c1, 3.0 * c2
     push[2:5] = 0.5 * c0, 2.0 / 3.0 * c1, 0.75 * c2
-    return 0.0, np.concatenate([[0.0, 1.0, 0.0, 0.0], g, slope, push])
+    return 0.0, np.concatenate([[0.0, 1.0, *np.zeros(HEAD - 2)], g, slope, push])
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
@@ -115,7 +115,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     terms = np.array([binom(2 * i, i) / 4.0**i * np.sum(excess * r ** (2 * i)) for i in k])
     steepness = 0.5 * np.pi * coefficients[-1, 0]
     far = end * np.sum(2.0 * k / (2.0 * k - 1.0) * terms * end ** (-2.0 * k))
-    constant = integrals(np.array([end]), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
+    constant = integrals(np.array([end]), np.zeros(1), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
     return np.concatenate([[steepness, constant, 0.0], terms])
 
 
@@ -124,7 +124,7 @@ def steepness(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floa
     from roughmdr.shapes.abel import integrals
 
     x = (begins[:-1, None] + np.diff(begins)[:, None] * (np.arange(_LOOKS) + 0.5) / _LOOKS).ravel()
-    return x, integrals(x, knots, coefficients)[:, 1]
+    return x, integrals(x, np.zeros_like(x), knots, coefficients)[:, 1]
 
 
 def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[float, float]]:
@@ -134,7 +134,7 @@ def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[flo
     from roughmdr.shapes.abel import integrals
 
     def steep(x: float) -> float:
-        return float(np.sqrt(x) * integrals(np.array([x]), knots, coefficients)[0, 1])
+        return float(np.sqrt(x) * integrals(np.array([x]), np.zeros(1), knots, coefficients)[0, 1])
 
     x, slope = steepness(begins, knots, coefficients)
     m = np.sqrt(x) * slope

@@ -48,6 +48,11 @@ def at_one(index: int, form: Form) -> tuple[float, float]:
     return 1.0, 1.0
 
 
+def _few(form: Form) -> float:
+    """What a dozen operations, and the powers of t up to the third, come to."""
+    return 16.0
+
+
 def _nothing(form: Any) -> None:
     """Nothing more to find out."""
 
@@ -85,6 +90,10 @@ class Profile(NamedTuple):
     """(number, form) -> such a radius, and the one y for which g is smooth in sqrt(x^2 - y^2) from there on."""
     beyond: Callable[[float, Form], float] | None = None
     """(q, form) -> t where q = sqrt(x^2 - y^2) beyond the edge y, where that has more digits than x itself."""
+    roundings: Callable[[Form], float] = _few
+    """form -> by how many roundings, of what they are, g and push may be off, that of t among them."""
+    magnitude: Callable[[float, Form], tuple[float, float]] | None = None
+    """(t, form) -> how large the terms are that g and push are the sums of; None where none of them cancel."""
     ready: Callable[[Any], None] = _nothing
     """Fills in what else the functions need to know, in the second place of a form that is one number."""
 

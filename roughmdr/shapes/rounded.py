@@ -110,6 +110,11 @@ def _punch_swept(q: float, form: Form) -> float:
     return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
 
 
+def _punch_roundings(form: Form) -> float:
+    """Those of any profile, and of q - atan q where that is not yet a series."""
+    return 80.0
+
+
 def _punch_beyond(q: float, form: Form) -> float:
     return q
 
@@ -142,6 +147,7 @@ class RoundedPunch(Curved):
         edge_count=one_edge,
         edge=at_one,
         beyond=_punch_beyond,
+        roundings=_punch_roundings,
     )
 
     def f(self, r: ArrayLike) -> Floats:

@@ -65,6 +65,16 @@ def _place(radius: float, width: float, form: Form) -> float:
     return radius / width
 
 
+def _roundings(form: Form) -> float:
+    """Those of any profile, of each sum, and of t in the steepest power."""
+    return 14.0 + form[0] + form[3 * int(form[0]) - 2]
+
+
+def _kink(low: float, high: float, form: Form) -> bool:
+    """Where the steepest term grows by more than half, a few nodes do not integrate it to rounding."""
+    return form[3 * int(form[0]) - 2] * (high - low) > 0.5 * low
+
+
 @dataclass(frozen=True, eq=False)
 class PowerSeries(Common):
     """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c the number that it is in metres, [m^(1-n)].
@@ -78,7 +88,7 @@ class PowerSeries(Common):
     units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
     along: ClassVar[str] = "term"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, strain=_strain)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, kink=_kink, strain=_strain, roundings=_roundings)
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:
@@ -130,18 +140,26 @@ class PowerSeries(Common):
 
     def stretched(self) -> tuple[float, float, Any]:
         """The width where the first and the last term are equal, their rise there, and the reduced terms."""
-        from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
+        from roughmdr import _extended as extended  # these alone need the compiler
+        from roughmdr.shapes.kappa import precise_kappa
 
         (n, c), (n_last, c_last) = next(iter(self.terms.items())), list(self.terms.items())[-1]
         log_width = (math.log(c) - math.log(c_last)) / (n_last - n) if n_last > n else 0.0
-        log_width = min(max(log_width, -25.0), 5.0)  # lengths from 1e-11 to 100 m
-        logs = [math.log(factor) + exponent * log_width for exponent, factor in self.terms.items()]
-        if max(abs(log) for log in (*logs, *(log - logs[0] for log in logs))) > _LOG_LARGEST:
+        width = math.exp(min(max(log_width, -25.0), 5.0))  # lengths from 1e-11 to 100 m
+        per_power = extended.log((width, 0.0))
+        # A logarithm of hundreds has no more than 13 digits as one float.
+        logs = [
+            extended.add(extended.log((factor, 0.0)), extended.multiply((exponent, 0.0), per_power))
+            for exponent, factor in self.terms.items()
+        ]
+        above = [extended.add(log, (-logs[0][0], -logs[0][1])) for log in logs]
+        if max(abs(log[0]) for log in (*logs, *above)) > _LOG_LARGEST:
             raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
         parts = [float(len(self.terms))]
-        for exponent, log in zip(self.terms, logs, strict=True):
-            parts += [exponent, kappa(exponent) * math.exp(log - logs[0]), math.exp(log - logs[0])]
-        return math.exp(log_width), math.exp(logs[0]), np.array(parts)
+        for exponent, log in zip(self.terms, above, strict=True):
+            factor = extended.exp(log)
+            parts += [exponent, extended.multiply(precise_kappa(exponent), factor)[0], factor[0]]
+        return width, extended.exp(logs[0])[0], np.array(parts)
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         from mpmath import mp

@@ -34,6 +34,11 @@ def _swept(t: float, form: Form) -> float:
     return 0.5 * (a * a * t - beyond_tanh(t, a))
 
 
+def _roundings(form: Form) -> float:
+    """Those of any profile, and of t - tanh t where that is not yet a series."""
+    return 40.0
+
+
 def _height(r: float, form: Form) -> tuple[float, float]:
     side = math.sqrt(max((1.0 - r) * (1.0 + r), 0.0))
     return r * r / (1.0 + side), r / side if side > 0.0 else math.inf
@@ -52,7 +57,7 @@ class Sphere(Curved):
     name: ClassVar[str] = "sphere"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, end=1.0)
+    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, end=1.0, roundings=_roundings)
 
     def f(self, r: ArrayLike) -> Floats:
         r = radii("r", r, most=self.radius)

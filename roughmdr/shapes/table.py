@@ -1,10 +1,10 @@
 """The MDR profile of a tabulated shape as pieces of polynomials, looked up.
 
 A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
-knot, scale, middle, strain at its begin and the coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end
-its steepness, a constant, the strain at the end and coefficients; then the number of knots and for each its r, f and
-the coefficients of f' over r - knot]. Over a piece these are polynomials in the place
-q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the kink of a root at every knot;
+knot, scale, middle, strain at its begin, the sums of the magnitudes of the coefficients of g and of ∫ x g' dx and the
+coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a constant, the strain at the end
+and coefficients; then the number of knots and for each its r, f and the coefficients of f' over r - knot]. Over a piece
+these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the kink of a root at every knot;
 beyond the end g - steepness a is one in 1/a^2.
 """
 
@@ -16,7 +16,8 @@ from roughmdr.elementary import sqrt
 from roughmdr.shapes.profile import Form, Profile
 
 DEGREE = 13
-PIECE = 4 + 3 * (DEGREE + 1)
+HEAD = 6
+PIECE = HEAD + 3 * (DEGREE + 1)
 FAR = 3 + DEGREE + 1
 KNOT = 5
 
@@ -67,18 +68,36 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
         slope = steepness + _far_sum(t, -piece, 1.0, form) / t
         return t, 1.0, steepness * t + _far_sum(t, -piece, 0.0, form), slope
     place = _place_on(t, piece, form)
-    return t, 1.0, _sum(place, piece + 4, form), _sum(place, piece + 5 + DEGREE, form)
+    return t, 1.0, _sum(place, piece + HEAD, form), _sum(place, piece + HEAD + 1 + DEGREE, form)
 
 
 def _push(t: float, form: Form) -> float:
     piece = _piece(t, form)
     if piece < 0:
         return 0.5 * form[-piece] * t * t + form[1 - piece] + t * _far_sum(t, -piece, 2.0, form)
-    return _sum(_place_on(t, piece, form), piece + 6 + 2 * DEGREE, form)
+    return _sum(_place_on(t, piece, form), piece + HEAD + 2 + 2 * DEGREE, form)
 
 
 def _swept(t: float, form: Form) -> float:
     return t * _curve(t, form)[2] - _push(t, form)
+
+
+def _magnitude(t: float, form: Form) -> tuple[float, float]:
+    """At t on the tip, where there are three terms; else the most anywhere on the piece."""
+    piece = _piece(t, form)
+    if piece < 0:
+        return 0.0, 0.0
+    if form[piece] > 0.0:
+        return form[piece + 4], form[piece + 5]
+    g, push = 0.0, 0.0
+    for k in range(3, 0, -1):
+        g, push = (g + abs(form[piece + HEAD + k])) * t, (push + abs(form[piece + HEAD + 2 * DEGREE + 3 + k])) * t
+    return g, push * t
+
+
+def _roundings(form: Form) -> float:
+    """As they are tested; those of the slope next to a knot among them."""
+    return 64.0
 
 
 def _height(r: float, form: Form) -> tuple[float, float]:
@@ -162,4 +181,6 @@ PROFILE = Profile(
     strain=_strain,
     edge_count=_edge_count,
     edge=_edge,
+    roundings=_roundings,
+    magnitude=_magnitude,
 )

@@ -1,10 +1,12 @@
 """A measured radial profile."""
 
+from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
@@ -64,46 +66,57 @@ class Tabulated(Common):
     def end(self) -> float:
         return float(self.radii[-1])
 
-    def _pieces(self, width: float = 1.0, rise: float = 1.0) -> tuple[Floats, Floats]:
-        """Knots, and the coefficients of f' over r - knot for each piece, the last one without end."""
+    @cached_property
+    def _units(self) -> tuple[float, float]:
+        """The powers of two next to the last r and f: dividing by them changes no bit."""
+        return float(2.0 ** np.frexp(self.radii[-1])[1]), float(2.0 ** np.frexp(self.heights[-1])[1])
+
+    @cached_property
+    def _pieces(self) -> tuple[Floats, Floats]:
+        """Knots, and the coefficients of f' over r - knot for each piece, the last one without end; in ``_units``."""
+        width, rise = self._units
         r, f, d = self.radii / width, self.heights / rise, self.knot_slopes * (width / rise)
-        h, chord = np.diff(r), np.diff(f) / np.diff(r)
-        bend = 2.0 * (3.0 * chord - 2.0 * d[:-1] - d[1:]) / h
-        twist = 3.0 * (d[:-1] + d[1:] - 2.0 * chord) / h**2
-        return r, np.stack([d, np.append(bend, 0.0), np.append(twist, 0.0)], axis=1)
+        exact = [[Fraction(value) for value in column.tolist()] for column in (r, f, d)]
+        coefficients = np.zeros((r.size, 3))
+        coefficients[:, 0] = d
+        # Differences of slopes that are nearly alike: in floats they lose as many digits as the points lie close.
+        for i, (begin, end) in enumerate(pairwise(zip(*exact, strict=True))):
+            h, left, right = end[0] - begin[0], begin[2], end[2]
+            chord = (end[1] - begin[1]) / h
+            coefficients[i, 1:] = 2 * (3 * chord - 2 * left - right) / h, 3 * (left + right - 2 * chord) / h**2
+        return r, coefficients
 
     def f(self, r: ArrayLike) -> Floats:
-        knots, coefficients = self._pieces()
-        r = radii("r", r)
-        piece = np.searchsorted(knots[1:], r, side="right")
-        s = r - knots[piece]
-        c0, c1, c2 = coefficients[piece].T.reshape(3, *r.shape)
-        return np.asarray(self.heights[piece] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)))
+        s, (c0, c1, c2), piece = self._at(r)
+        return np.asarray(self.heights[piece] + self._units[1] * s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)))
 
     def df(self, r: ArrayLike) -> Floats:
-        knots, coefficients = self._pieces()
-        r = radii("r", r)
+        s, (c0, c1, c2), _ = self._at(r)
+        return np.asarray(self._units[1] / self._units[0] * (c0 + s * (c1 + s * c2)))
+
+    def _at(self, r: ArrayLike) -> tuple[Floats, Floats, NDArray[np.intp]]:
+        """r - knot and the coefficients of the piece that each r lies on, and its number."""
+        knots, coefficients = self._pieces
+        r = radii("r", r) / self._units[0]
         piece = np.searchsorted(knots[1:], r, side="right")
-        s = r - knots[piece]
-        c0, c1, c2 = coefficients[piece].T.reshape(3, *r.shape)
-        return np.asarray(c0 + s * (c1 + s * c2))
+        return r - knots[piece], coefficients[piece].T.reshape(3, *r.shape), piece
 
     @cached_property
     def _form(self) -> Floats:
         from roughmdr.shapes.pieces import tabulate
 
-        return tabulate(*self._pieces(self.radii[-1], self.heights[-1]))
+        return tabulate(*self._pieces)
 
     def stretched(self) -> tuple[float, float, Any]:
-        """The last r and f, and the pieces in their units."""
-        return float(self.radii[-1]), float(self.heights[-1]), self._form
+        """About the last r and f, and the pieces in these units."""
+        return *self._units, self._form
 
     def _check_disc(self) -> None:
         """OutOfRange where g falls: pressed without adhesion, the contact would gape inside."""
         from roughmdr.shapes.pieces import steepness
 
-        width, rise = self.radii[-1], self.heights[-1]
-        knots, coefficients = self._pieces(width, rise)
+        width, _ = self._units
+        knots, coefficients = self._pieces
         x, slope = steepness(knots, knots, coefficients)
         falls = slope < -_NOISE * slope.max()
         if falls.any():
@@ -117,7 +130,7 @@ class Tabulated(Common):
         from mpmath import mp
 
         with mp.workdps(40):
-            a = mp.mpf(float(self.radii[-1])) * mp.mpf(t)
+            a = mp.mpf(self._units[0]) * mp.mpf(t)
             r, f, d = ([mp.mpf(float(v)) for v in column] for column in (self.radii, self.heights, self.knot_slopes))
             g = push = begin = mp.mpf(0)
             for k, knot in enumerate(r):
