@@ -2,8 +2,9 @@
 
     python pipelines/summits.py -o results/studies
 
-On periodic maps the summits are found exactly, by Fourier series, and by the fit of a paraboloid through nine points of
-grids that are more or less fine. Errors are those of the spread over the maps. Writes summits.nc and summits.png.
+On periodic maps the summits are found exactly, by Fourier series, and by paraboloids through points of grids that are
+more or less fine, fitted to the eight neighbours. Errors are those of the spread over the maps. Writes summits.nc and
+summits.png.
 """
 
 import itertools
@@ -59,7 +60,7 @@ def law_of_maps() -> SummitLaw:
 
 
 def fitted(series: Series, points: int) -> Summits:
-    """What a fit of paraboloids through nine points finds on a grid; it tells no mean curvature."""
+    """What paraboloids through points of a grid, fitted to their neighbours, find; they tell no mean curvature."""
     spacing = series.size / points
     found = find_summits(HeightMap(series.on_grid(points), spacing, spacing, periodic=True))
     return Summits(found.height, np.full_like(found.height, np.nan), found.parameters["radius"])
@@ -117,7 +118,7 @@ def summits(count: int = 20, grids: tuple[int, ...] = GRIDS, drawn: int = DRAWN)
         if name in FITTED:
             for j, part in enumerate(("bias", "bias_error")):
                 values = [bias[j][i] for bias in biases]
-                label = f"{text}, nine-point fit, relative {part.replace('_', ', standard ')}"
+                label = f"{text}, fit to neighbours, relative {part.replace('_', ', standard ')}"
                 result[f"{name}_{part}"] = ("points_per_wave", values, {"units": "1", "long_name": label})
     every = Summits(*(np.concatenate(part) for part in zip(*found, strict=True)))
     attrs = {"maps": count, "summits": every.height.size, **law.moments._asdict(), "alpha": law.moments.alpha}
@@ -125,7 +126,7 @@ def summits(count: int = 20, grids: tuple[int, ...] = GRIDS, drawn: int = DRAWN)
 
 
 def draw(result: xr.Dataset, found: Summits) -> "Figure":
-    """The law beside the summits of the maps, and the bias of the nine-point fit."""
+    """The law beside the summits of the maps, and the bias of the fit to neighbours."""
     from matplotlib.figure import Figure
 
     law = law_of_maps()
@@ -161,7 +162,7 @@ def draw(result: xr.Dataset, found: Summits) -> "Figure":
     bias.axhline(0.0, color="k", lw=0.6)
     bias.set_xscale("log", base=2)
     bias.set_xticks(result.points_per_wave.to_numpy(), [str(int(n)) for n in result.points_per_wave])
-    bias.set(xlabel="points a shortest wave", ylabel="off by [%]", title="paraboloids fitted through nine points")
+    bias.set(xlabel="points a shortest wave", ylabel="off by [%]", title="paraboloids fitted to neighbours")
     for axes in (heights, curvatures, tied, bias):
         axes.legend(fontsize=8)
     return figure
@@ -185,7 +186,7 @@ def main(output: Path, quick: bool) -> None:
         )
     for name in FITTED:
         biases = ", ".join(f"{100.0 * value:+.2f} %" for value in result[f"{name}_bias"].to_numpy())
-        click.echo(f"{STATISTICS[name][1]:<40} nine-point fit off by {biases}")
+        click.echo(f"{STATISTICS[name][1]:<40} fit to neighbours off by {biases}")
 
 
 if __name__ == "__main__":

@@ -3,19 +3,23 @@
 Exit status: 0 done, 2 wrong input, 130 interrupted; 1 anything else: runs failed, or what was begun could not go on.
 """
 
+import errno
 import gc
+import io
 import os
 import shlex
 import sys
 import time
+import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
+from roughmdr.wording import harmless
 
 if TYPE_CHECKING:
     from roughmdr.runner import Tls
@@ -24,34 +28,73 @@ _NOT_ALL, _WRONG_INPUT, _INTERRUPTED = 1, 2, 130
 
 
 class _Group(click.Group):
-    """A command group that turns errors raised on purpose into messages."""
+    """A command group that turns errors raised on purpose, and the end of the memory, into messages."""
 
     def invoke(self, ctx: click.Context) -> object:
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                warnings.showwarning = _warn
+                return super().invoke(ctx)
+        except click.ClickException as error:
+            message = io.StringIO()
+            error.show(message)
+            _say(message.getvalue().removesuffix("\n"), err=True)
+            sys.exit(error.exit_code)
         except RoughmdrError as error:
             _stop(error)
+        except MemoryError as error:
+            _say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
+            sys.exit(_NOT_ALL)
         except (KeyboardInterrupt, click.Abort) as interrupt:
-            click.echo(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
+            _say(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
             # Threads may still compute, and what they finish is not waited for.
             os._exit(_INTERRUPTED)
 
 
+def _say(text: str, *, err: bool = False) -> None:
+    """Print what may come from a file, and so may hold what a terminal acts on."""
+    _print(harmless(text), err=err)
+
+
+def _print(text: str, *, err: bool) -> None:
+    """Print what is harmless; in colour where that is a terminal and NO_COLOR is not set.
+
+    The standard error stream may lead nowhere; RoughmdrError where the standard output cannot be written.
+    """
+    stream = sys.stderr if err else sys.stdout
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    text = text.encode(encoding, "backslashreplace").decode(encoding)
+    try:
+        click.echo(text, err=err, color=False if os.environ.get("NO_COLOR") else None)
+    except OSError as error:
+        if error.errno == errno.EPIPE and not err:
+            raise  # whoever read it has seen enough: click ends without a word
+        with suppress(OSError):  # or the end of Python would write it again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if not err:
+            raise RoughmdrError(f"the standard output cannot be written: {error.strerror}") from None
+
+
+def _warn(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    _say(f"roughmdr: {category.__name__}: {message}", err=True)
+
+
 def _stop(error: RoughmdrError) -> NoReturn:
-    """The message on the standard error stream; in colour where that is a terminal and NO_COLOR is not set."""
+    """The message on the standard error stream, and the exit status."""
     faults = error.faults if isinstance(error, SceneError) else ()
-    for line in map(_coloured, faults) if faults else str(error).splitlines():
-        click.echo(f"roughmdr: {line}", err=True, color=False if os.environ.get("NO_COLOR") else None)
+    for line in map(_coloured, faults) if faults else map(harmless, str(error).splitlines()):
+        _print(f"roughmdr: {line}", err=True)
     sys.exit(_NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
 
 
 def _coloured(fault: Fault) -> str:
-    message, hint, name = fault.message.partition("did you mean")
+    key, value, text, place = map(harmless, fault)
+    message, hint, name = text.partition("did you mean")
     return str(
-        fault._replace(
-            place=fault.place and click.style(fault.place, bold=True),
-            key=fault.key and click.style(fault.key, fg="cyan", bold=True),
-            value=fault.value and click.style(fault.value, fg="red"),
+        Fault(
+            place=place and click.style(place, bold=True),
+            key=key and click.style(key, fg="cyan", bold=True),
+            value=value and click.style(value, fg="red"),
             message=message + (hint and click.style(hint + name, fg="green")),
         )
     )
@@ -149,11 +192,11 @@ def run(
         tls=_tls(tls_ca, tls_cert, tls_key),
     )
     if not quiet:
-        click.echo(describe_result(result, time.perf_counter() - started))
-        click.echo(f"result       {click.format_filename(output)}")
+        _say(describe_result(result, time.perf_counter() - started))
+        _say(f"result       {click.format_filename(output)}")
     if failed := describe_failed(result):
         if quiet:
-            click.echo(f"roughmdr: {failed}", err=True)
+            _say(f"roughmdr: {failed}", err=True)
         sys.exit(_NOT_ALL)
 
 
@@ -182,7 +225,7 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
     from roughmdr.plan import make_plan
 
     planned = make_plan(asked)
-    click.echo(describe_plan(planned, estimate(planned, workers), workers))
+    _say(describe_plan(planned, estimate(planned, workers), workers))
 
 
 @main.command()
@@ -212,9 +255,9 @@ def plot(result: Path, output: Path, variables: tuple[str, ...], with_expected: 
                 found = compared(planned, names)
                 lines += found.lines
                 for line in found.remarks:
-                    click.echo(f"{title:<12} {line}")
+                    _say(f"{title:<12} {line}")
     plot(data, output, names, lines)
-    click.echo(f"picture      {click.format_filename(output)}")
+    _say(f"picture      {click.format_filename(output)}")
 
 
 @main.command()
@@ -228,12 +271,12 @@ def info(result: Path, cells: bool) -> None:
     if cells:
         from roughmdr.cell_table import describe_cells
 
-        click.echo(describe_cells(data))
+        _say(describe_cells(data))
         return
     from roughmdr.describe import describe_origin, describe_result
 
-    click.echo(describe_result(data))
-    click.echo(describe_origin(data, result.stat().st_size))
+    _say(describe_result(data))
+    _say(describe_origin(data, result.stat().st_size))
 
 
 @main.command()
@@ -250,7 +293,7 @@ def new(scene: Path) -> None:
         raise StoreError(f"{scene}: is there already; give a new name")
     with replacing(scene) as temporary:
         temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
-    click.echo(f"scene        {click.format_filename(scene)}")
+    _say(f"scene        {click.format_filename(scene)}")
 
 
 @main.command()
@@ -276,5 +319,5 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
     check_writable(output, asked.inputs)
     made = make(asked.asperities, asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
-    click.echo(describe_ensemble(made))
-    click.echo(f"ensemble     {click.format_filename(output)}")
+    _say(describe_ensemble(made))
+    _say(f"ensemble     {click.format_filename(output)}")

@@ -61,7 +61,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         *_several("failed", tuple(describe_failed(result).splitlines())),
         *_several("warning", tuple(attrs.get("warnings", "").splitlines())),
         ("run time", _run_time(result, elapsed)),
-        ("error", f"numerical error at most {np.nanmax(_array(result, 'numerical_error')):.1e} of the largest force"),
+        ("error", _error(result)),
     ]
     return _table([*lines, *_several("left out", tuple(attrs["left_out"].splitlines()))])
 
@@ -77,6 +77,7 @@ def describe_ensemble(ensemble: Labelled) -> str:
             ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
             ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
             ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
+            ("", "each a paraboloid through the point above its eight neighbours, fitted to these"),
             ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
         ]
     return _table([*lines, *_several("warning", tuple(attrs.get("warnings", "").splitlines()))])
@@ -106,6 +107,13 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
 def _run_time(result: Labelled, elapsed: float | None) -> str:
     inside = f"{seconds_in_words(float(np.nansum(_array(result, 'run_time'))))} of work in the realisations"
     return inside if elapsed is None else f"{seconds_in_words(elapsed)}; {inside}, over all workers"
+
+
+def _error(result: Labelled) -> str:
+    known = _array(result, "numerical_error")[done_of(result)]
+    if not known.size:
+        return "not known: no run was computed"
+    return f"numerical error at most {known.max():.1e} of the largest force"
 
 
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:

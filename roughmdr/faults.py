@@ -33,9 +33,11 @@ def with_likely_names(error: ValidationError, data: dict[str, Any], declared: An
         given = [name] if name in table else near(name, table)
         tags = _tags(choices, name)
         for key in given:
-            tag = str(table.pop(key))
-            table[name] = (near(tag, tags) or tags)[0]
-            renamed = True
+            tag = table[key]
+            if meant := [tag] if tag in tags else near(str(tag), tags):
+                del table[key]
+                table[name] = meant[0]
+                renamed = True
     return likely if renamed else None
 
 
@@ -105,7 +107,7 @@ def _walk(
             keys[-1] += f"[{item}]"
             data = data[item]
         else:
-            chosen = [s for s in inner if any(item in get_args(f.annotation) for f in s.model_fields.values())]
+            chosen = [s for s in inner if any(get_args(f.annotation) == (item,) for f in s.model_fields.values())]
             inner = chosen or inner
     return keys, holders, inner
 

@@ -12,7 +12,8 @@ from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.store import replacing
 from roughmdr.variables import LAW
-from roughmdr.views import cell_label, cells_of, realizations_in_words
+from roughmdr.views import cell_label, cells_of, done_of, realizations_in_words
+from roughmdr.wording import harmless
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,11 +31,13 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
 
     Every realisation is a thin line, the mean a thick one, twice its standard error a band. The cells of a sweep have a
     colour each and no thin lines; the way back is dashed. The expected law is thin and dark, the named laws are dotted.
-    StoreError where the picture cannot be written.
+    StoreError where no run was computed, or the picture cannot be written.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
+    if not done_of(result).any():
+        raise StoreError("there is nothing to draw: no run was computed")
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     cells = cells_of(result)
@@ -42,7 +45,7 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
     below = 0.2 * (min(len(cells), _MOST_LABELS) + len(laws)) if len(cells) > 1 else 0.0
     figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + below), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
-    labels = [cell_label(result, cell).replace("$", r"\$") for cell in cells]  # no mathematics
+    labels = [harmless(cell_label(result, cell)).replace("$", r"\$") for cell in cells]  # no mathematics
     for ax, name in zip(axes.flat, names, strict=False):
         said = [(line, _law_style(line.law, laws, line.cell, len(cells))) for line in lines if line.variable == name]
         _draw(ax, name, list(curves(result, name)), labels, said)
@@ -58,7 +61,7 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
     if len(cells) > 1:
         note += ", unloading dashed"
         note += f", {len(shown)} of {len(cells)} cells named" if len(shown) < len(cells) else ""
-    figure.suptitle(f"{result.attrs['title']}\n{note}", fontsize=11, parse_math=False)
+    figure.suptitle(f"{harmless(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
     suffix = path.suffix.lstrip(".").lower() or "png"
     if suffix not in ("png", "pdf", "svg"):
         raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")

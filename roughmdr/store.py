@@ -4,29 +4,20 @@ import contextlib
 import os
 import platform
 import tempfile
-import threading
 from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.errors import StoreError
-from roughmdr.labelled import Array, Labelled
-from roughmdr.variables import LAW
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.labelled import Labelled
+from roughmdr.netcdf import LOCK, load
+from roughmdr.result_form import fault_in
 
-if TYPE_CHECKING:
-    import netCDF4
-
-
-# What every result holds.
-_ARRAYS = ("separation", "branch", "status", "run_time", "numerical_error", "seed")
-_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _TEMPORARY = ".roughmdr."
-_NETCDF = threading.Lock()  # the library crashes where two threads are in it
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 
 
@@ -134,7 +125,7 @@ def _write_netcdf(data: Labelled, path: Path) -> None:
     import netCDF4
 
     beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
-    with _NETCDF, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+    with LOCK, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(data.attrs)
         for dimension, size in data.sizes.items():
             file.createDimension(dimension, size)
@@ -154,52 +145,10 @@ def _write_netcdf(data: Labelled, path: Path) -> None:
 
 def read(path: Path) -> Labelled:
     """A result file, loaded; StoreError where it is none."""
-    import netCDF4
-
     try:
-        if not path.is_file():
-            raise StoreError(f"{path}: no such file")
-        with _NETCDF, netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
-            data = _read_netcdf(file)
-    except (OSError, RuntimeError, ValueError, AttributeError) as error:
-        if isinstance(error, StoreError):
-            raise
-        raise StoreError(f"{path}: not a netCDF file that can be read ({error})") from None
-    if fault := _what_is_wrong(data):
+        data = load(path)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if fault := fault_in(data):
         raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
     return data
-
-
-def _what_is_wrong(data: Labelled) -> str:
-    """Why arrays are no result; empty where they are."""
-    held = {*data.variables, *data.coordinates, *data.attrs}
-    if missing := [name for name in (*_ARRAYS, *_TEXTS) if name not in held]:
-        return f"it holds no {', '.join(missing)}"
-    if changed := [name for name in _TEXTS if not isinstance(data.attrs[name], str)]:
-        return f"the attribute {changed[0]} is no text"
-    if "realization" not in data.sizes and "realization_count" not in data.variables:
-        return "it has neither a dimension realization nor a realization_count"
-    if not all(data.sizes.values()):
-        return "a dimension has no length"
-    cells = data.variables["status"].dims
-    for name, array in data.variables.items():
-        if name.removesuffix("_mean") in LAW and array.dims != (*cells, "step"):
-            return f"{name} lies over {', '.join(array.dims)}; it must lie over {', '.join((*cells, 'step'))}"
-    return ""
-
-
-def _read_netcdf(file: "netCDF4.Dataset") -> Labelled:
-    arrays, beside = {}, set(file.dimensions)
-    for name, variable in file.variables.items():
-        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-        beside |= set(attrs.pop("coordinates", "").split())
-        attrs.pop("_FillValue", None)
-        arrays[name] = Array(variable.dimensions, np.asarray(variable[...]), attrs)
-        if arrays[name].values.ndim != len(variable.dimensions):  # letters of a text, in the classic format
-            raise ValueError(f"{name} is a text made of letters; it must be one of netCDF-4")
-    return Labelled(
-        {name: array for name, array in arrays.items() if name not in beside},
-        {name: array for name, array in arrays.items() if name in beside},
-        {key: file.getncattr(key) for key in file.ncattrs()},
-    )

@@ -81,3 +81,6 @@ RUN = _table(
     ("accuracy_method", "1", "how the cell was computed"),
 )
 """Variables that stand in every result."""
+
+BESIDE = ("separation", "branch", "cell_key", "remark")
+"""Those of them that are coordinates of a result, beside its swept keys."""

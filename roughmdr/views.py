@@ -1,6 +1,5 @@
 """How a result is laid out: its variables, its cells, its realisations."""
 
-import tomllib
 from collections.abc import Iterable
 
 import numpy as np
@@ -9,7 +8,8 @@ from numpy.typing import NDArray
 from roughmdr.batch.shard import DONE
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
-from roughmdr.variables import LAW
+from roughmdr.tables import table_of
+from roughmdr.variables import BESIDE, LAW
 
 
 def held_variables(result: Labelled) -> list[str]:
@@ -27,8 +27,7 @@ def estimator_of(result: Labelled) -> str:
         method = result.variables["accuracy_method"]
         taken = {str(method.attrs["flag_meanings"]).split()[number] for number in np.unique(method.values)}
         return taken.pop() if len(taken) == 1 else "sampled"
-    estimator = tomllib.loads(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled")
-    return str(estimator)
+    return str(table_of(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled"))
 
 
 def method_of(result: Labelled, cell: tuple[int, ...]) -> str:
@@ -88,7 +87,7 @@ def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     names = list(swept_sizes(result))
     parts = []
     for name, array in result.coordinates.items():
-        if name not in ("separation", "branch", "cell_key", "remark"):
+        if name not in BESIDE and array.dims and set(array.dims) <= set(names):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
             unit = array.attrs.get("units", "1")
             shown = f"{value:.6g}" if array.values.dtype.kind == "f" else str(value)

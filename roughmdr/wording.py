@@ -4,13 +4,16 @@ from collections import Counter
 from collections.abc import Iterable
 
 _NEAR = 0.7  # of difflib's ratio: one or two letters of a word
+_LAYOUT = "\n\t"
 
 
 def near(given: str, allowed: Iterable[str], count: int = 1) -> list[str]:
-    """Those of the allowed names that are most like a given one."""
+    """Those of the allowed names that are most like a given one, in whatever case; never the given one itself."""
     import difflib
 
-    return difflib.get_close_matches(given, list(allowed), n=count, cutoff=_NEAR)
+    folded = {name.strip().casefold(): name for name in allowed if name != given}
+    meant = difflib.get_close_matches(given.strip().casefold(), list(folded), n=count, cutoff=_NEAR)
+    return [folded[name] for name in meant]
 
 
 def suggestion(given: str, allowed: list[str]) -> str:
@@ -21,8 +24,15 @@ def suggestion(given: str, allowed: list[str]) -> str:
     return f"; it can be {', '.join(allowed)}"
 
 
+def harmless(text: str) -> str:
+    """A text, of one line or several, with every character that a terminal would act on as an escape sequence."""
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() or letter in _LAYOUT else repr(letter)[1:-1] for letter in text)
+
+
 def printable(key: str) -> str:
-    """A key on one line, with nothing that a terminal would act on."""
+    """A key on one line."""
     return key if key.isprintable() else repr(key)
 
 

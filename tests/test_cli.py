@@ -48,7 +48,7 @@ def test_quiet_says_nothing(small: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["run", "none.toml", "-o", "out.nc"], "none.toml: cannot be read"),
+        (["run", "none.toml", "-o", "out.nc"], "none.toml: no such file"),
         (["run", "small.toml", "-o", "none/out.nc"], "none/out.nc: the folder none does not exist"),
         (["run", "small.toml", "-o", "out.nc", "--set", "asperities.hieght=1"], "did you mean 'height'"),
         (["run", "small.toml", "-o", "out.nc", "--set", "asperities.source=surface"], "asperities.file: is missing"),

@@ -1,6 +1,5 @@
 """What is there of earlier runs: a result at the output, shards that were kept; and whether they are of use."""
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,6 +14,8 @@ from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan
 from roughmdr.store import read
+from roughmdr.tables import table_of
+from roughmdr.variables import LAW
 
 _MOST_CHANGES = 5
 _SHAPING = ("title", "output", "batch", "accuracy", "sweep")
@@ -30,10 +31,6 @@ def earlier(target: Path) -> Labelled | None:
         old = read(target)
     except StoreError as error:
         raise StoreError(f"{error}. It is there already: {_WAYS_OUT}") from None
-    try:
-        tomllib.loads(old.attrs["scene"])
-    except tomllib.TOMLDecodeError as error:
-        raise StoreError(f"{target}: its scene cannot be read ({error}): {_WAYS_OUT}") from None
     if old.attrs.get("checksum", old.checksum()) != old.checksum():
         raise StoreError(f"{target}: its numbers are not those that were written: {_WAYS_OUT}")
     return old
@@ -41,7 +38,7 @@ def earlier(target: Path) -> Labelled | None:
 
 def is_finished(old: Labelled, plan: Plan, keys: Sequence[set[str]]) -> bool:
     """Whether a result is just what is asked for; ``keys`` are those that each cell may have."""
-    asked, was = (tomllib.loads(text) for text in (plan.scene.toml, old.attrs["scene"]))
+    asked, was = (table_of(text) for text in (plan.scene.toml, old.attrs["scene"]))
     same = all(asked.get(part) == was.get(part) for part in _SHAPING)
     same = same and list(asked.get("sweep", ())) == list(was.get("sweep", ()))  # in this order are its dimensions
     held = _keys(old)
@@ -100,7 +97,7 @@ def _what_changed(scene: str, made_with: str, plan: Plan) -> list[str]:
     """Why no cell of a plan is one of a scene, in words."""
     try:
         changed = list(changes(scene, plan.scene.toml))
-    except tomllib.TOMLDecodeError:
+    except ValueError:
         changed = ["its scene cannot be read"]
     if made_with != versions():
         changed.append(f"it was made with {made_with}, this is {versions()}")
@@ -113,7 +110,7 @@ def _shard_of(old: Labelled) -> Shard:
     status = old.variables["status"]
     cells = status.values.reshape(-1, status.values.shape[-1])
     cell, first = np.nonzero(cells == DONE)
-    names = [name for name, array in old.variables.items() if array.dims == (*status.dims, "step")]
+    names = [name for name in LAW if name in old.variables]
 
     def column(name: str, default: float) -> np.ndarray:
         if name not in old.variables:

@@ -1,7 +1,6 @@
 """What decides the numbers of a cell, as a key: results are used again only where it is the same."""
 
 import hashlib
-import tomllib
 from collections.abc import Iterator
 from functools import cache, lru_cache
 from importlib.metadata import version
@@ -11,6 +10,8 @@ from roughmdr._sources import fingerprint
 from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.plan import Cell, Plan
+from roughmdr.tables import table_of
+from roughmdr.wording import shown
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
 _NO_MATTER = ("title", "output", "batch", "accuracy", "sweep.mode")
@@ -65,12 +66,12 @@ def _path(separation: bytes) -> str:
 
 def changes(old: str, new: str) -> Iterator[str]:
     """What of a scene that matters is another in a new one; both in TOML."""
-    before, after = (_flat(tomllib.loads(text)) for text in (old, new))
+    before, after = (_flat(table_of(text)) for text in (old, new))
     for key in dict.fromkeys([*before, *after]):
         if key.startswith(_NO_MATTER) and key not in _MATTER:
             continue
         if before.get(key) != after.get(key):
-            was, now = (repr(side[key]) if key in side else "not given" for side in (before, after))
+            was, now = (shown(side[key]) if key in side else "not given" for side in (before, after))
             yield f"{key} was {was}, is {now}"
 
 

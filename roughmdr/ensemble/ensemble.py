@@ -12,9 +12,12 @@ from roughmdr.limits import Extremes
 from roughmdr.shapes import SHAPES, Common, Shape
 from roughmdr.units import unit_factor
 from roughmdr.variables import COORDINATES
+from roughmdr.wording import shown
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_SIDES = ("patch", "patch_x", "patch_y")
 
 
 @dataclass(frozen=True)
@@ -94,7 +97,7 @@ class Ensemble:
         """
         shape = dataset.attrs.get("shape")
         if not isinstance(shape, str) or shape not in SHAPES:
-            raise SceneError(f"ensemble: attribute shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
+            raise SceneError(f"ensemble: attribute shape is {shown(shape)}; it must be one of {', '.join(SHAPES)}")
         kind = SHAPES[shape]
         height = _column(dataset, "height", "m")
         positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
@@ -102,12 +105,13 @@ class Ensemble:
             parameters, fixed = _parameters(dataset, kind)
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
-        area = _nominal_area(dataset.attrs)
-        sides: dict[str, float | int | str] = {
-            name: float(dataset.attrs[name]) for name in ("patch", "patch_x", "patch_y") if name in dataset.attrs
-        }
-        found = cls.sorted(shape, height, parameters, area, positions, sides, fixed)
-        return replace(found, warnings=tuple(str(dataset.attrs.get("warnings", "")).splitlines()))
+        sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
+        doubts = dataset.attrs.get("warnings", "")
+        if not isinstance(doubts, str):
+            raise SceneError(f"ensemble: attribute warnings is {shown(doubts)}; it must be a text")
+        area = _nominal_area(dataset.attrs, sides)
+        found = cls.sorted(shape, height, parameters, area, positions, dict(sides), fixed)
+        return replace(found, warnings=tuple(doubts.splitlines()))
 
 
 def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], Common | None]:
@@ -121,22 +125,23 @@ def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Flo
     return parameters, None
 
 
-def _nominal_area(attrs: dict[str, Any]) -> float | None:
+def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | None:
     """The nominal area [m2], or else what the sides of the patch make of it."""
-
-    def number(name: str) -> float:
-        try:
-            return check_number(f"ensemble: attribute {name}", attrs[name], "in SI")
-        except OutOfRange as error:
-            raise SceneError(str(error)) from None
-
     if "nominal_area" in attrs:
-        return number("nominal_area")
-    if "patch" in attrs:
-        return number("patch") ** 2
-    if "patch_x" in attrs and "patch_y" in attrs:
-        return number("patch_x") * number("patch_y")
+        return _size("nominal_area", attrs["nominal_area"])
+    if "patch" in sides:
+        return _size("patch, squared,", sides["patch"] * sides["patch"])
+    if "patch_x" in sides and "patch_y" in sides:
+        return _size("patch_x times patch_y", sides["patch_x"] * sides["patch_y"])
     return None
+
+
+def _size(name: str, value: Any) -> float:
+    """A length or an area of a patch, in SI."""
+    try:
+        return check_number(f"ensemble: attribute {name}", value, "in SI")
+    except OutOfRange as error:
+        raise SceneError(str(error)) from None
 
 
 def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity") -> Floats:
@@ -154,7 +159,8 @@ def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity"
         factor = 1.0 if given == unit else float(unit_factor(given, unit))
     except RoughmdrError as error:
         raise SceneError(f"ensemble: units of {name}: {error}") from None
-    column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
+    with np.errstate(over="ignore"):  # refused below
+        column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
     if not np.isfinite(column).all():
         where = int(np.argmin(np.isfinite(column)))
         raise SceneError(f"ensemble: {name} is {column[where]} at {along} {where}; it must be finite")

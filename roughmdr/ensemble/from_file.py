@@ -11,17 +11,13 @@ from pydantic import AfterValidator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
-from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.errors import SceneError
+from roughmdr.files import check_ordinary
 
 
 def _is_file(value: str) -> str:
-    """The name of a file that is there; RoughmdrError where it is not."""
-    try:
-        there, folder = Path(value).is_file(), Path(value).is_dir()
-    except OSError as error:
-        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
-    if not there:
-        raise RoughmdrError("is a folder; expected a file" if folder else "no such file")
+    """The name of a file that is there; RoughmdrError where it is not, or is no ordinary one."""
+    check_ordinary(Path(value))
     return value
 
 

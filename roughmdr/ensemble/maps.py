@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.ensemble.content import Content, check_points
+from roughmdr.ensemble.content import Content, blocks, check_points
 from roughmdr.ensemble.instrument_maps import read_instrument
 from roughmdr.ensemble.netcdf_maps import read_netcdf
 from roughmdr.ensemble.plain_maps import read_npy, read_npz, read_text
@@ -46,7 +46,7 @@ class HeightMap(NamedTuple):
     @property
     def defined(self) -> int:
         """How many points have a height."""
-        return int(np.isfinite(self.height).sum())
+        return sum(int(np.isfinite(self.height[rows]).sum()) for rows in blocks(*self.height.shape))
 
 
 class Sides:
@@ -83,15 +83,14 @@ def read_map(
     dx, dy = _spacings(path, content, size, values.shape)
     factor = _factor(path, content, unit)
     eps = float(np.finfo(values.dtype).eps) if values.dtype.kind == "f" else 0.0
-    height = np.array(values, dtype=np.float64)
     with np.errstate(over="ignore"):  # what no float can hold is undefined
-        height *= factor
-    undefined = ~np.isfinite(height)
-    if undefined.all():
+        height = np.require(values, np.float64, "W")
+        for rows in blocks(*height.shape):
+            height[rows] *= factor
+            height[rows][~np.isfinite(height[rows])] = np.nan
+    found = HeightMap(height, dx, dy, bool(content.periodic) if periodic is None else periodic)
+    if not found.defined:
         raise SceneError(f"{path}: all its {height.size} heights are undefined")
-    height[undefined] = np.nan
-    wraps = bool(content.periodic) if periodic is None else periodic
-    found = HeightMap(height, dx, dy, wraps)
     return found._replace(rounding=eps * found.highest)
 
 

@@ -1,11 +1,13 @@
 """Height maps in netCDF: height over evenly spaced coordinates, both with units."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from roughmdr.ensemble.content import Content, check_points
+from roughmdr.ensemble.content import Content, blocks, check_points
+from roughmdr.ensemble.datasets import opened
 from roughmdr.errors import RoughmdrError
 from roughmdr.units import unit_factor
 
@@ -17,21 +19,27 @@ _UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular gri
 
 def read_netcdf(path: Path, channel: str | None) -> Content:
     """The variable ``channel``, or height, over x and y; fill values become NaN. RoughmdrError where there is none."""
-    import xarray as xr
-
     name = channel or "height"
-    try:
-        with xr.open_dataset(path) as dataset:
-            dataset.load()
-    except Exception as error:
-        raise RoughmdrError(f"not a netCDF file that can be read ({type(error).__name__})") from error
-    if name not in dataset.data_vars or dataset[name].ndim != 2:
-        raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
-    height = dataset[name].transpose("x", "y") if set(dataset[name].dims) == {"x", "y"} else dataset[name]
-    check_points(height.shape)
-    dx, dy = (_spacing(dataset, str(dim)) for dim in height.dims)
-    unit = str(height.attrs.get("units", "")).strip() or None
-    return Content(height.to_numpy(), unit, (dx, dy), _periodic(dataset))
+    with opened(path) as dataset:
+        if name not in dataset.data_vars or dataset[name].ndim != 2:
+            raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
+        height = dataset[name]
+        check_points(height.shape)
+        turned = height.dims == ("y", "x")
+        values, dims = _values(height), height.dims
+        if turned:
+            values, dims = values.T, dims[::-1]
+        dx, dy = (_spacing(dataset, str(dim)) for dim in dims)
+        unit = str(height.attrs.get("units", "")).strip() or None
+        return Content(values, unit, (dx, dy), _periodic(dataset))
+
+
+def _values(height: "xr.DataArray") -> NDArray[Any]:
+    """Read in blocks, since what is packed or has fill values is several times as large while it is unpacked."""
+    values = np.empty(height.shape, height.dtype)
+    for rows in blocks(*values.shape):
+        values[rows] = height[rows].to_numpy()
+    return values
 
 
 def _spacing(dataset: "xr.Dataset", dim: str) -> float:
@@ -44,9 +52,11 @@ def _spacing(dataset: "xr.Dataset", dim: str) -> float:
         factor = float(unit_factor(str(along.attrs.get("units", "")), "m"))
     except RoughmdrError as error:
         raise RoughmdrError(f"units of {dim}: {error}") from None
-    steps = np.diff(np.asarray(along.to_numpy(), dtype=np.float64) * factor)
-    mean = float(np.mean(steps))
-    if not np.isfinite(mean) or mean == 0.0 or np.ptp(steps) > _UNEVEN * abs(mean):
+    with np.errstate(all="ignore"):  # what is not finite is not even
+        steps = np.diff(np.asarray(along.to_numpy(), dtype=np.float64) * factor)
+        mean = float(np.mean(steps))
+        uneven = not np.isfinite(mean) or mean == 0.0 or np.ptp(steps) > _UNEVEN * abs(mean)
+    if uneven:
         raise RoughmdrError(f"the coordinate {dim} is not evenly spaced")
     return abs(mean)
 

@@ -1,10 +1,12 @@
 """How well a height map resolves its summits."""
 
 import math
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from roughmdr.arguments import Floats
+from roughmdr.ensemble.content import blocks
 from roughmdr.ensemble.maps import HeightMap
 
 FEW = 40.0
@@ -22,13 +24,14 @@ def measures(surface: HeightMap) -> dict[str, float | int | str]:
 
     The slope is that of both directions, sqrt(<h_x^2> + <h_y^2>), from neighbours.
     """
-    height, dx, dy, periodic, _ = surface
-    slopes = (_mean_square(_steps(height, periodic) / dx), _mean_square(_steps(height.T, periodic) / dy))
+    scale = surface.highest or 1.0  # so that no square is too large or too small for a float
+    mean = sum(float(np.nansum(part)) for part in _parts(surface, scale)) / surface.defined
+    slopes = (_rms(steps) * scale / spacing for steps, spacing in _steps(surface, scale))
     return {
-        "rms_height": float(np.nanstd(height)),
-        "rms_slope": math.sqrt(sum(slopes)),
-        "undefined_share": (height.size - surface.defined) / height.size,
-        "periodic": int(periodic),
+        "rms_height": scale * _rms(part - mean for part in _parts(surface, scale)),
+        "rms_slope": math.hypot(*slopes),
+        "undefined_share": (surface.height.size - surface.defined) / surface.height.size,
+        "periodic": int(surface.periodic),
     }
 
 
@@ -42,10 +45,26 @@ def few_points(points_per_summit: float) -> list[str]:
     ]
 
 
-def _steps(height: Floats, periodic: bool) -> Floats:
-    return np.diff(height, axis=0, append=height[:1]) if periodic else np.diff(height, axis=0)
+def _parts(surface: HeightMap, scale: float) -> Iterator[Floats]:
+    """The heights over ``scale``, some rows at a time."""
+    return (surface.height[rows] / scale for rows in blocks(*surface.height.shape))
 
 
-def _mean_square(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.mean(known * known)) if known.size else 0.0
+def _steps(surface: HeightMap, scale: float) -> Iterator[tuple[Iterator[Floats], float]]:
+    """From each point to the next, over ``scale``, some rows at a time: along x and along y, with the spacing."""
+    height, dx, dy, periodic, _ = surface
+    nx, ny = height.shape
+    to_next = (np.arange(rows.start, rows.stop + 1) for rows in blocks(nx if periodic else nx - 1, ny))
+    yield (np.diff(height[rows % nx], axis=0) / scale for rows in to_next), dx
+    last = 1 if periodic else 0
+    yield (np.diff(part, axis=1, append=part[:, :last]) for part in _parts(surface, scale)), dy
+
+
+def _rms(parts: Iterable[Floats]) -> float:
+    """Of all numbers that are not NaN; 0 where there are none."""
+    total, count = 0.0, 0
+    for part in parts:
+        known = part[np.isfinite(part)]
+        total += float(known @ known)
+        count += known.size
+    return math.sqrt(total / count) if count else 0.0

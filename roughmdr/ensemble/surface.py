@@ -1,4 +1,4 @@
-"""source = "surface": the summits of a measured height map, as paraboloids."""
+"""source = "surface": the summits of a measured height map, as paraboloids through points above their neighbours."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +21,7 @@ _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a t
 
 
 class SurfaceAsperities(FromFile):
-    """[asperities] with source = "surface": the summits of the map in ``file``.
+    """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``).
 
     ``size`` and ``unit``, of the heights, describe a map whose file does not; ``channel`` chooses among the maps of a
     file. ``detrend`` is what is taken out: "quadratic", of a periodic map "mean", unless it says otherwise.
@@ -54,9 +54,9 @@ class SurfaceAsperities(FromFile):
                 raise SceneError(
                     f'a periodic map has no trend to take out: detrend is {trend!r}; it must be "mean" or "none"'
                 )
-            surface = surface._replace(height=remove_trend(surface.height, trend))
+            remove_trend(surface.height, trend)
             if self.cutoff is not None:
-                surface = remove_short_waves(surface, self.cutoff)
+                remove_short_waves(surface, self.cutoff)
             if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
                 raise SceneError(f"the map has no summit: with detrend {trend!r} it is flat, but for rounding")
             with np.errstate(over="ignore", under="ignore"):  # refused below

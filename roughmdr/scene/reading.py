@@ -1,7 +1,6 @@
 """From a TOML file, a result or a dictionary to a validated scene; every fault is found before anything is computed."""
 
 import re
-import tomllib
 from collections.abc import Iterable
 from functools import reduce
 from operator import getitem
@@ -11,16 +10,20 @@ from typing import Any
 import numpy as np
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.files import check_ordinary, is_open_pipe
+from roughmdr.netcdf import load_text
 from roughmdr.scene.cells import validate
 from roughmdr.scene.keys import put
 from roughmdr.scene.lines import key_lines, line_of
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
+from roughmdr.tables import table_of
 from roughmdr.wording import printable
 
 _PATHS = (("asperities", "file"),)
 """Keys that name a file: in a scene relative to the scene, in --set to the current folder."""
 _NETCDF = (b"\x89HDF", b"CDF")
+_MOST = 2**24  # bytes
 
 
 def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = ()) -> Scene:
@@ -34,14 +37,14 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     if isinstance(source, Scene):
         if not changes:
             return source
-        path, label, text, table = source.file, "scene", "", tomllib.loads(source.toml)
+        path, label, text, table = source.file, "scene", "", table_of(source.toml)
     elif isinstance(source, dict):
         path, label, text, table = None, "scene", "", _plain(source)
     else:
         path, label, text = Path(source), str(source), _text(Path(source))
         try:
-            table = tomllib.loads(text)
-        except (ValueError, RecursionError) as error:
+            table = table_of(text)
+        except ValueError as error:
             raise SceneError(f"{label}: not valid TOML: {error}{_hint(str(error), text)}") from None
     try:
         _settle(table, path.parent if path else Path())
@@ -59,16 +62,31 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
 
 
 def _text(path: Path) -> str:
+    """The TOML in a file, a pipe or a result."""
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        content = _content(path)
+    except RoughmdrError as error:
+        raise SceneError(f"{path}: {error}") from None
     if content.startswith(_NETCDF):
         return _scene_of_result(path)
+    if len(content) > _MOST:
+        raise SceneError(f"{path}: is longer than {_MOST} bytes, the most that a scene can have")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text file; a scene is TOML in UTF-8") from None
+
+
+def _content(path: Path) -> bytes:
+    """The bytes of a file or a pipe, as many as a scene may have and some more; of a netCDF file only the first."""
+    if not is_open_pipe(path):
+        check_ordinary(path)
+    try:
+        with path.open("rb") as file:
+            first = file.read(max(map(len, _NETCDF)))
+            return first if first.startswith(_NETCDF) else first + file.read(_MOST)
+    except OSError as error:
+        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
 
 
 def _hint(message: str, text: str) -> str:
@@ -80,12 +98,9 @@ def _hint(message: str, text: str) -> str:
 
 
 def _scene_of_result(path: Path) -> str:
-    import netCDF4
-
     try:
-        with netCDF4.Dataset(path) as file:
-            return str(file.getncattr("scene"))
-    except (OSError, RuntimeError, AttributeError) as error:
+        return load_text(path, "scene")
+    except RoughmdrError as error:
         raise SceneError(f"{path}: a netCDF file, but no result of roughmdr: it holds no scene ({error})") from None
 
 
@@ -137,8 +152,8 @@ def _no_longer_swept(table: dict[str, Any], key: str) -> None:
 
 def _value(text: str) -> Any:
     try:
-        table = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
+        table = table_of(f"value = {text}")
+    except ValueError:
         return text
     return table["value"] if len(table) == 1 else text
 

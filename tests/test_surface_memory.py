@@ -1,0 +1,108 @@
+"""A height map is worked on in blocks: little is held beside it, and where a block ends makes no difference."""
+
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import roughmdr as rm
+from roughmdr.ensemble import content
+from roughmdr.ensemble.maps import HeightMap
+from roughmdr.ensemble.relief import remove_short_waves, remove_trend
+from roughmdr.ensemble.resolution import measures
+from roughmdr.ensemble.summits import find_summits
+
+POINTS = 1024
+
+
+@pytest.fixture(scope="module")
+def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same waves in several files, of which some have gaps."""
+    folder = tmp_path_factory.mktemp("maps")
+    along = 2.0 * np.pi * np.arange(POINTS) / 32.0
+    height = 1e-7 * np.outer(np.cos(along), np.cos(along + 1.0))
+    np.save(folder / "whole.npy", height)
+    np.savez(folder / "whole.npz", height=height)
+    at = (np.arange(POINTS) + 0.5) * 1e-8
+    for name, dims in (("whole.nc", ("x", "y")), ("turned.nc", ("y", "x"))):
+        xr.Dataset({"height": (dims, height)}, coords={"x": at, "y": at}).to_netcdf(folder / name)
+    height[100:104, 200:300] = np.nan
+    np.save(folder / "gaps.npy", height)
+    data = xr.Dataset({"height": (("x", "y"), height)}, coords={"x": at, "y": at})
+    packed = {"dtype": "int32", "scale_factor": 1e-16, "_FillValue": -(2**31)}
+    data.to_netcdf(folder / "packed.nc", encoding={"height": packed})
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "keys", "most"),
+    [
+        ("whole.npy", {}, 1.5),
+        ("whole.npz", {}, 1.5),
+        ("whole.nc", {}, 1.5),
+        ("turned.nc", {}, 1.5),
+        ("gaps.npy", {}, 1.5),
+        ("packed.nc", {}, 1.5),
+        ("whole.npy", {"periodic": True}, 1.5),
+        ("whole.npy", {"cutoff": "60 nm"}, 1.5),
+        ("whole.npy", {"cutoff": "60 nm", "periodic": True}, 2.0),
+        ("gaps.npy", {"cutoff": "60 nm"}, 2.5),
+    ],
+)
+def test_little_is_held_beside_the_map(
+    maps: Path, name: str, keys: dict[str, object], most: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    section = {"source": "surface", "file": str(maps / name), **({} if ".nc" in name else {"size": "10.24 um"}), **keys}
+    first = rm.generate(section, seed=0)  # and all that is imported for it
+    monkeypatch.setattr(content, "_TOGETHER", 2**14)
+    tracemalloc.start()
+    try:
+        again = rm.generate(section, seed=0)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < most * 8 * POINTS**2
+    assert again.sizes == first.sizes
+    np.testing.assert_allclose(again.height, first.height, rtol=1e-12)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    shape=st.tuples(st.integers(3, 40), st.integers(3, 40)),
+    together=st.integers(1, 500),
+    periodic=st.booleans(),
+    share=st.sampled_from([0.0, 0.05]),
+    seed=st.integers(0, 10**6),
+)
+def test_where_a_block_ends_makes_no_difference(
+    shape: tuple[int, int], together: int, periodic: bool, share: float, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    rough = rng.normal(size=shape)
+    rough[rng.random(shape) < (0.0 if periodic else share)] = np.nan
+    if np.isfinite(rough).sum() < 9:
+        return
+    found = []
+    for size in (2**20, together):
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(content, "_TOGETHER", size)
+            surface = HeightMap(rough.copy(), 0.5, 0.7, periodic)
+            try:
+                summits = find_summits(surface)
+                columns = [summits.height, *summits.parameters.values(), *summits.positions.values()]
+                bits = [column.tobytes() for column in columns], summits.attrs["saddles"], summits.nominal_area
+            except rm.SceneError as error:
+                bits = str(error)
+            numbers = measures(surface)
+            remove_trend(surface.height, "quadratic")
+            if 2 * 0.7 <= 1.5 <= min(shape[0] * 0.5, shape[1] * 0.7):
+                remove_short_waves(surface, 1.5)
+            found.append((bits, numbers, surface.height))
+    (bits, numbers, height), (other_bits, other_numbers, other) = found
+    assert other_bits == bits
+    assert other_numbers == pytest.approx(numbers, rel=1e-12, abs=0.0)
+    np.testing.assert_allclose(other, height, atol=1e-13)
