@@ -24,7 +24,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 def quantiles(frozen: Any, scores: Floats) -> Floats:
     """The values that lie as high in a distribution of scipy.stats as normal scores do, by the nearer tail."""
     with np.errstate(all="ignore"):
-        return np.where(scores < 0.0, frozen.ppf(ndtr(np.minimum(scores, 0.0))), frozen.isf(ndtr(-np.maximum(scores, 0.0))))
+        lower, upper = frozen.ppf(ndtr(np.minimum(scores, 0.0))), frozen.isf(ndtr(-np.maximum(scores, 0.0)))
+    return np.asarray(np.where(scores < 0.0, lower, upper))
 
 
 def _end(frozen: Any) -> float:

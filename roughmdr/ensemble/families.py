@@ -12,6 +12,7 @@ from functools import cache, lru_cache, partial, wraps
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roughmdr.arguments import Floats
 
@@ -132,7 +133,7 @@ def _from_scipy(family: Any) -> Family:
 def _one_by_one(function: Callable[..., Floats]) -> Callable[..., Floats]:
     """A function of scipy's that is NaN where it would raise, as some do far out."""
 
-    def call(x: Floats, *own: float) -> Floats:
+    def call(x: ArrayLike, *own: float) -> Floats:
         try:
             return np.asarray(function(x, *own))
         except _RAISED:

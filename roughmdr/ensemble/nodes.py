@@ -20,6 +20,7 @@ _LAST = 8.5  # normal score beyond which parameters are left out: their share is
 _QUARTER = 0.6745  # normal score that a quarter of all heights lie above
 _STEEPEST = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
 _NEGLIGIBLE = 1e-16  # of the force that the bulk bears
+_NEXT_TO_LOC = 1e-14  # of the scale
 _WIDEST = 1e100  # of the scale: farther heights are not integrated
 
 
@@ -28,15 +29,15 @@ class UpperTail(NamedTuple):
 
     share: float
     """Of all heights."""
-    index: float
-    """xi, where heights grow as share^-xi (the index of extreme values)."""
+    xi: float
+    """Index of extreme values: heights grow as share^-xi."""
 
     def over_edge(self, growth: float) -> float:
         """What the tail bears over what one height at its edge bears, where that grows as the height^growth.
 
-        The integral of (p/share)^(-growth index) dp from 0 to share; inf where it has no bound.
+        The integral of (p/share)^(-growth xi) dp from 0 to share; inf where it has no bound.
         """
-        return self.share / (1.0 - growth * self.index) if growth * self.index < 1.0 else math.inf
+        return self.share / (1.0 - growth * self.xi) if growth * self.xi < 1.0 else math.inf
 
 
 class Heights(NamedTuple):
@@ -103,6 +104,8 @@ def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], f
     score, high = next(
         ((t, y) for t, y in zip(_NEARER_ENDS, of_scores(ends).tolist(), strict=True) if math.isfinite(y)), (_BULK, bulk)
     )
+    if 0.0 < low < _NEXT_TO_LOC * scale:  # a pole may stand at loc: no float is as near to it as some heights
+        low = 0.0
     edges, before = [low, low_bulk, bulk, high], (_BULK, bulk)
     if low < 0.0 < high:
         edges.append(0.0)  # where families that have a pole within have it

@@ -77,7 +77,9 @@ class HeightTable(NamedTuple):
         unknown[-1] += heights.tail.share
         doubt = np.column_stack([slack, loose, unknown])
         if not (np.isfinite(coefficients).all() and np.isfinite(doubt).all()):
-            raise OutOfRange(f"no float holds the density of the heights, about {heights.origin:g} m and {heights.scale:g} m wide")
+            raise OutOfRange(
+                f"no float holds the density of the heights, about {heights.origin:g} m and {heights.scale:g} m wide"
+            )
         share = np.concatenate([[0.0], np.cumsum(parts)])
         return cls(table.low, table.high, coefficients, doubt, share, heights.origin, heights.tail)
 

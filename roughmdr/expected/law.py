@@ -123,7 +123,7 @@ def _beyond(nodes: list[Node], closest: float) -> float:
     lost = 0.0
     for share, contact, heights in ((node.share, node.contact, node.heights) for node in nodes):
         edge = np.array([heights.high[-1] - (closest - heights.origin)])
-        if heights.tail.index > _HEAVY and edge[0] > 0.0:
+        if heights.tail.xi > _HEAVY and edge[0] > 0.0:
             top = contact.at_indentation(edge)
             force, growth = abs(float(top["force"][0])), float((top["stiffness"] * edge / top["force"])[0])
             lost += share * force * heights.tail.over_edge(growth)

@@ -16,7 +16,16 @@ from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Node
 
-_ENDS = (3.0, 4.5, 6.0, 8.5, 12.0, 17.0, 24.0, 37.0)  # normal scores: of panels, and beyond which parameters may be left out
+_ENDS = (
+    3.0,
+    4.5,
+    6.0,
+    8.5,
+    12.0,
+    17.0,
+    24.0,
+    37.0,
+)  # normal scores: of panels, and beyond which parameters may be left out
 _USUAL_END = 8.5  # nearer ones only where no contact is representable there
 _ORDER = 10
 _MOST_NODES = 2_000

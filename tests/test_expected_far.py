@@ -1,0 +1,167 @@
+"""The expected law where densities have poles or heavy tails: within the error that it states, or refused.
+
+Most of these distributions stand within one rounding of an end, or bear most where next to none of them stands.
+"""
+
+import math
+
+import numpy as np
+import pytest
+import scipy.stats
+from all_distributions import Scene, draw, families, judge
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+from plain_probability import mean_of_heights, mean_of_radii
+
+import roughmdr as rm
+from roughmdr.ensemble.distributions import Distribution
+from roughmdr.ensemble.nodes import Heights
+from roughmdr.expected.heights import HeightTable
+
+UM = 1e-6
+POLES = [
+    ("powerlaw", {"a": 0.03}),
+    ("powerlaw", {"a": 0.1}),
+    ("beta", {"a": 3.0, "b": 0.05}),
+    ("beta", {"a": 0.05, "b": 3.0}),
+    ("beta", {"a": 0.05, "b": 0.5}),
+    ("weibull_min", {"c": 0.2}),
+    ("gamma", {"a": 0.1}),
+    ("gamma", {"a": 0.2}),
+    ("dgamma", {"a": 0.1}),
+    ("dweibull", {"c": 0.3}),
+]
+
+
+def expected(height: dict[str, object], separation: list[float], **more: object) -> object:
+    asperities = {"source": "random", "shape": "paraboloid", "count": 1000, "patch": "1 mm", "radius": "50 um"}
+    scene = {
+        "material": {"effective_modulus": "4 MPa"},
+        "asperities": {**asperities, "height": height, **more.pop("asperities", {})},
+        "path": {"separation": separation},
+        "output": {"variables": ["force", "contact_count"]},
+        **({"batch": {"estimator": "expected"}} if "accuracy" not in more else {}),
+        **more,
+    }
+    return rm.run(scene).isel(realization=0)
+
+
+@pytest.mark.parametrize(("family", "own"), POLES)
+@pytest.mark.parametrize(("loc", "unit"), [(0.0, UM), (1e-3, UM), (-2.0, 1e-2)])
+def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], loc: float, unit: float) -> None:
+    """Each height counts, however near to the pole, wherever it lies and whatever the unit."""
+    height = {"distribution": family, **own, "loc": loc, "scale": 2.0 * unit}
+    separation = [loc + unit, loc + 0.01 * unit, loc, loc - unit]
+    law = expected(height, separation, asperities={"radius": 50.0 * unit})
+    from_loc = getattr(scipy.stats, family)(**own, scale=2.0 * unit)  # without the roundings of loc
+    np.testing.assert_allclose(law.contact_count, 1000.0 * from_loc.sf(np.array(separation) - loc), rtol=1e-9)
+    means = [mean_of_heights(from_loc, h - loc, 1.5) for h in separation]
+    force = 1000.0 * 4.0 / 3.0 * 4e6 * math.sqrt(50.0 * unit) * np.array([mean.value for mean in means])
+    doubt = max(mean.doubt for mean in means) / max(mean.value for mean in means)
+    assert doubt < 1e-10
+    off = float(np.abs(law.force - force).max() / force.max())
+    assert off <= float(law.numerical_error) + doubt
+    assert float(law.numerical_error) < 1e-5
+
+
+@pytest.mark.parametrize(("df", "worst"), [(1.8, 2e-12), (1.6, 1e-7), (1.55, 2e-4)])
+def test_heights_of_heavy_tails(df: float, worst: float) -> None:
+    """E[T^1.5; T > 0] of Student's t is a closed form; next to none of the heights bear most of it."""
+    law = expected({"distribution": "t", "df": df, "loc": 0.0, "scale": "2 um"}, [0.0])
+    with mp.workdps(30):
+        n, p = mpf(df), mpf(3) / 2
+        moment = n ** (p / 2) * mp.gamma((p + 1) / 2) * mp.gamma((n - p) / 2) / (2 * mp.sqrt(mp.pi) * mp.gamma(n / 2))
+        force = float(1000 * mpf(4) / 3 * mpf(4e6) * mp.sqrt(mpf(5e-5)) * mpf(2e-6) ** p * moment)
+    stated = float(law.numerical_error)
+    assert abs(float(law.force[0]) / force - 1.0) <= stated
+    assert stated < worst
+
+
+@pytest.mark.parametrize("heavy", [{"distribution": "t", "df": 1.4}, {"distribution": "pareto", "b": 1.5}])
+def test_heights_whose_mean_force_has_no_bound(heavy: dict[str, object]) -> None:
+    with pytest.raises(rm.OutOfRange, match="the mean force of these paraboloids is not known to have a bound"):
+        expected({**heavy, "loc": 0.0, "scale": "2 um"}, [0.0])
+
+
+RADII = [
+    ("beta", {"a": 0.05, "b": 0.05}),
+    ("beta", {"a": 3.0, "b": 0.05}),
+    ("arcsine", {}),
+    ("gamma", {"a": 0.1}),
+    ("weibull_min", {"c": 0.2}),
+    ("pareto", {"b": 1.05}),
+    ("bradford", {"c": 1e5}),
+]
+
+
+@pytest.mark.parametrize(("family", "own"), RADII)
+def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[str, float]) -> None:
+    law = expected(
+        {"distribution": "normal", "std": "1 um"},
+        [2 * UM, 0.0, -UM],
+        asperities={"radius": {"distribution": family, **own, "loc": 0.0, "scale": "50 um"}},
+    )
+    root = mean_of_radii(getattr(scipy.stats, family)(**own, scale=5e-5), 0.5)
+    heights = [mean_of_heights(scipy.stats.norm(scale=UM), h, 1.5).value for h in (2 * UM, 0.0, -UM)]
+    force = 1000.0 * 4.0 / 3.0 * 4e6 * root.value * np.array(heights)
+    off = float(np.abs(law.force - force).max() / force.max())
+    assert off <= float(law.numerical_error) + root.doubt / root.value
+    assert float(law.numerical_error) < 1e-10
+
+
+def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
+    """What the expected law states decides whether it is enough: here next to a pole, where it once stated too little."""
+    for own, relative in (({"a": 0.03}, 1e-2), ({"a": 3.0, "b": 0.05}, 1e-2)):
+        family = "powerlaw" if len(own) == 1 else "beta"
+        height = {"distribution": family, **own, "loc": 0.0, "scale": "2 um"}
+        accuracy = {"relative": relative, "method": "expected"}
+        law = expected(height, [0.0, -UM], accuracy=accuracy)
+        frozen = getattr(scipy.stats, family)(**own, scale=2 * UM)
+        force = 1000.0 * 4.0 / 3.0 * 4e6 * math.sqrt(5e-5) * mean_of_heights(frozen, -UM, 1.5).value
+        assert bool(law.accuracy_reached)
+        assert abs(float(law.force[-1]) / force - 1.0) <= min(relative, float(law.numerical_error) + 1e-13)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.floats(0.02, 5.0), st.floats(0.02, 5.0), st.sampled_from([0.0, 1e-3]), st.floats(-0.5, 1.5))
+def test_the_table_of_heights_counts_them_all(a: float, b: float, loc: float, at: float) -> None:
+    """Below any height as many as the distribution has there, give or take what the table says that it does not know."""
+    distribution = Distribution("beta", (a, b), loc, 2 * UM)
+    with np.errstate(all="ignore"):
+        table = HeightTable.of(Heights.of(distribution))
+    y = np.array([2 * UM * at])
+    below = table.between(np.array([-UM]), y)[0]
+    loose = table.doubt[(table.low < y[0]) & (y[0] < table.high), 1].sum()
+    unknown = table.doubt[:, 2].sum() + 1e-12
+    assert abs(below - scipy.stats.beta(a, b).cdf(at)) <= loose + unknown
+    assert abs(table.below[-1] - 1.0) <= unknown
+    assert unknown < 1e-8
+    np.testing.assert_array_equal(table.low[1:], table.high[:-1])
+
+
+def of_all_families(seed: int, scenes: int) -> None:
+    """So many random scenes, of heights and of radii; none may be wrong, and few are refused."""
+    generator = np.random.default_rng(seed)
+    names, outcomes = families(), []
+    wrong: list[Scene] = []
+    while len(outcomes) < scenes:
+        scene = draw(generator, str(generator.choice(["heights", "heights", "radii"])), str(generator.choice(names)))
+        if scene is None:
+            continue
+        verdict = judge(scene)
+        outcomes.append(verdict.outcome)
+        wrong += [verdict] if verdict.outcome == "wrong" else []
+    assert not wrong
+    assert outcomes.count("right") >= 0.75 * scenes
+    assert outcomes.count("no reference") <= 0.1 * scenes
+
+
+def test_random_distributions_of_scipy() -> None:
+    of_all_families(2026, 25)
+
+
+@pytest.mark.large
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_many_random_distributions_of_scipy(seed: int) -> None:
+    of_all_families(seed, 150)
