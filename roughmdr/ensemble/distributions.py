@@ -123,7 +123,7 @@ class Distribution:
 
         below, above = self.fractions(values)
         share, beyond = ndtr(-np.abs(scores)), np.where(scores > 0.0, above, below)
-        near = np.abs(self.of_scores(np.copysign(_FAR_SCORE, scores)) - self.loc)
+        near = np.abs(self.of_scores(np.array([-_FAR_SCORE, _FAR_SCORE])) - self.loc).max()
         with np.errstate(all="ignore"):
             felt = ~(share * (np.abs(values - self.loc) / near) ** 3 <= _UNFELT)
         return np.where(felt & ~(beyond > 0.5 * share), math.nan, values)

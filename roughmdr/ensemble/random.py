@@ -1,6 +1,6 @@
 """source = "random": heights and shape parameters drawn from distributions."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -177,6 +177,11 @@ class RandomAsperities(PatchSource):
         """Whether just one shape parameter is drawn, and from one distribution."""
         first, *others = self.law.populations
         return len(first.drawn) == 1 and not others
+
+    @property
+    def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
+        """The shape parameters that are drawn, of each population: normal scores -> values [SI]."""
+        return [each.parameters[name].of_scores for each in self.law.populations for name in each.drawn]
 
     def node_count(self, order: int) -> int:
         """One for each set of scores of the parameters that are drawn."""

@@ -1,7 +1,7 @@
 """What every source of asperities has in common: what a scene, a plan and a run ask of it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ClassVar
 
@@ -68,6 +68,11 @@ class Source(Section):
     def one_parameter(self) -> bool:
         """Whether just one shape parameter is drawn, and from one distribution."""
         return False
+
+    @property
+    def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
+        """The shape parameters that are drawn, of each population: normal scores -> values [SI]."""
+        return []
 
     def node_count(self, order: int) -> int:
         """How many ``nodes`` a rule of this order has."""

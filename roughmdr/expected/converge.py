@@ -4,6 +4,7 @@ Gauss's rule for smooth functions, of ever higher order; where it does not conve
 """
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -24,6 +25,9 @@ _AGREE = 1e-11  # of the largest force: orders whose forces part by less are bot
 _ROUGH = 1e-6  # of the largest: where orders part by more, one parameter is integrated over panels
 _SLOW = 0.3  # a higher order that leaves so much of the difference does not help
 _SLOWEST = 0.9  # as if each difference were at most so much of the one before
+_POWERS = (0.5, 1.0)  # of a parameter that forces go with
+_PANELS, _PANEL_ORDER = np.arange(-8.0, 8.5, 0.5).tolist(), 12  # ends of panels over normal scores
+_ROUNDED = 1e-10  # means that part by less do so by roundings and by what is left out
 _PROBES = 5  # steps at which they are compared where all are alike: where nothing lets go
 
 
@@ -55,7 +59,11 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
         return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
 
     if not asked.source.one_parameter:
-        return _smooth(asked, curves)
+        smooth = _smooth(asked, curves)
+        own = sum(_off(parameter, smooth.rule) for parameter in asked.source.drawn_parameters)
+        return smooth._replace(
+            doubt=max(smooth.doubt, own), doubt_of_others=max(smooth.doubt_of_others, own if len(rows) > 1 else 0.0)
+        )
     try:
         smooth = _smooth(asked, curves)
     except RoughmdrError:  # of parameters that next to no asperity has
@@ -93,6 +101,21 @@ def _smooth(asked: Asked, curves: Curves) -> Converged:
             break
     off = [_left(doubt, last, asked.hysteretic) for doubt, last in zip(doubts.tolist(), before.tolist(), strict=True)]
     return Converged(rule, nodes, off[0], max(off[1:], default=0.0))
+
+
+def _off(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
+    """How far a rule over the scores of a parameter is off, relative, in the means of powers that forces go with.
+
+    Products of rules over several parameters may agree with each other and all be off where one parameter has a pole.
+    """
+    fine = Rule.between(_PANELS, _PANEL_ORDER)
+    values, exact = parameter(rule.scores), parameter(fine.scores)
+    worst = 0.0
+    for power in _POWERS:
+        mean = float(fine.weights @ exact**power)
+        if math.isfinite(mean):
+            worst = max(worst, abs(float(rule.weights @ values**power) / mean - 1.0))
+    return worst if worst > _ROUNDED else 0.0
 
 
 def _left(doubt: float, last: float, hysteretic: bool) -> float:
