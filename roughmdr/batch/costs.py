@@ -1,10 +1,10 @@
-"""About what a run takes: by which batches are cut into tasks, and the cheapest way to an asked error is chosen.
+"""About what runs take: by which batches are cut into tasks, and the cheapest way to an asked error is chosen.
 
 Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipelines/scaling.py``), right to a factor of
 three or so. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
-from roughmdr.plan import Cell
+from roughmdr.plan import Cell, Plan
 
 _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run, to draw and sort an asperity
 _EVEN = 8e-4  # to begin evenly spread draws
@@ -13,6 +13,9 @@ _VISIT, _VISIT_CURVED, _VISIT_COHESIVE, _VISIT_COHESIVE_CURVED = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_COHESIVE_CURVED, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
+_NUMBER = 8  # bytes
+# A step of the path itself: its separation, what contacts remember of it, and the name of its branch, which is text.
+_WAY = 70  # bytes
 
 
 def seconds(cell: Cell, estimator: str) -> float:
@@ -25,8 +28,20 @@ def seconds(cell: Cell, estimator: str) -> float:
         nodes = section.node_count(_FIRST_RULE)
         node = (_NODE_ADHESIVE if law.work else _NODE) * (1.0 if simple else _OWN_TABLES)
         tables = _TABLES_COHESIVE_CURVED if cohesive and not simple else _TABLES
-        return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
+        return tables + steps * (_WAY + (nodes * nodes * node if nodes > 1 else 0.0))
     plain, curved = (_VISIT_COHESIVE, _VISIT_COHESIVE_CURVED) if cohesive else (_VISIT, _VISIT_CURVED)
     visit = plain if simple else curved
     begin = _RUN + (_EVEN if estimator == "stratified" else 0.0)
     return begin + section.expected_count * (_DRAW + visit * steps)
+
+
+def result_bytes(plan: Plan, runs: int) -> int:
+    """What the values of a result of so many runs in all take."""
+    steps, output = plan.cells[0].route.separation.size, plan.scene.output
+    each = _NUMBER * steps * len(output.variables)
+    return _WAY * steps + (each * runs if output.keep == "curves" else 4 * each * len(plan.cells))
+
+
+def held_bytes(plan: Plan, runs: int) -> int:
+    """What is held of them at most while the result is put together: as they came, and in their places."""
+    return 2 * result_bytes(plan, runs) - _WAY * plan.cells[0].route.separation.size

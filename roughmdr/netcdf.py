@@ -1,0 +1,156 @@
+"""Arrays into a netCDF-4 file and out of it, by one thread, piece by piece.
+
+Where memory or the disk gives out while HDF5 converts texts, it frees what it never had, and the process dies. So all
+the room that a file can take is its own before anything is written, and texts go in and out a few at a time.
+"""
+
+import errno
+import math
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from types import EllipsisType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughmdr.labelled import Array, Labelled
+from roughmdr.memory import check_room
+from roughmdr.wording import bytes_in_words
+
+if TYPE_CHECKING:
+    import netCDF4
+
+_UNABLE = (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS, errno.ENODEV)  # what disks say that give no room beforehand
+_NETCDF = threading.Lock()  # the library crashes where two threads are in it
+_PIECE = 2**16
+"""Elements of an array that are in the library at a time."""
+_WORKING = 2**26  # bytes of memory that the library takes at most while it has a piece
+# What a file takes at most beside its numbers [byte]: in all, for each array and attribute, and for each text.
+_FILE, _ARRAY, _ATTRIBUTE, _TEXT = 2**16, 2**12, 2**9, 56
+
+
+def write_arrays(data: Labelled, path: Path) -> None:
+    """Make ``path``, which is there and empty, a netCDF-4 file; OSError, RuntimeError or MemoryError where that fails.
+
+    OSError names the reason where the disk is full.
+    """
+    import netCDF4
+
+    check_room(_WORKING, "to write a file")
+    size = _most_bytes(data)
+    _reserve(path, size)
+    with _NETCDF:
+        with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+            _define(file, data)
+        _reserve(path, size)
+        with netCDF4.Dataset(path, "r+") as file:  # what is too much is cut off at the end
+            for name, array in (data.coordinates | data.variables).items():
+                values = array.values
+                for piece in _pieces(values.shape):
+                    part = values[piece]
+                    file[name][piece] = part.astype(object) if part.dtype.kind == "U" else part
+
+
+def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
+    """All of a file but the values."""
+    beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
+    file.setncatts(data.attrs)
+    for dimension, size in data.sizes.items():
+        file.createDimension(dimension, size)
+    for name, array in (data.coordinates | data.variables).items():
+        kind = array.values.dtype.kind
+        variable = file.createVariable(
+            name,
+            str if kind in "OU" else array.values.dtype,
+            array.dims,
+            fill_value=np.nan if kind == "f" and name in data.variables else None,
+        )
+        variable.setncatts(array.attrs)
+        if name in data.variables and (apt := [other for other, dims in beside.items() if dims <= set(array.dims)]):
+            variable.coordinates = " ".join(apt)
+
+
+def _reserve(path: Path, size: int) -> None:
+    """Give a file room on the disk; OSError where there is not enough, or where it must not become so large."""
+    if not hasattr(os, "posix_fallocate"):
+        return
+    with path.open("r+b") as file:
+        try:
+            os.posix_fallocate(file.fileno(), 0, size)
+        except OSError as error:
+            if error.errno not in _UNABLE:
+                what = f"{os.strerror(error.errno or 0)}, and it takes up to {bytes_in_words(size)}"
+                raise OSError(error.errno, what) from None
+
+
+def _most_bytes(data: Labelled) -> int:
+    """What a file of these arrays takes at most."""
+    arrays = [*data.variables.values(), *data.coordinates.values()]
+    attrs = [data.attrs, *(array.attrs for array in arrays)]
+    said = sum(_ATTRIBUTE + len(str(value).encode()) for some in attrs for value in some.values())
+    return _FILE + said + sum(_ARRAY + _bytes_of(array.values) for array in arrays)
+
+
+def _bytes_of(values: np.ndarray[Any, Any]) -> int:
+    if values.dtype.kind not in "OU":
+        return values.nbytes
+    letters = sum(len("".join(map(str, values[piece].ravel().tolist())).encode()) for piece in _pieces(values.shape))
+    return letters + values.size * _TEXT
+
+
+def _pieces(shape: tuple[int, ...]) -> Iterator[tuple[slice | EllipsisType, ...]]:
+    """Parts of an array that together are all of it, of a limited number of elements each."""
+    row = math.prod(shape[1:])
+    if not shape:
+        yield (...,)
+    elif row > _PIECE:
+        for first in range(shape[0]):
+            for rest in _pieces(shape[1:]):
+                yield slice(first, first + 1), *rest
+    else:
+        rows = _PIECE // max(row, 1)
+        for first in range(0, shape[0], rows):
+            yield slice(first, first + rows), ...
+
+
+def read_arrays(path: Path) -> Labelled:
+    """The arrays of a netCDF-4 file; OSError, RuntimeError, ValueError or AttributeError where there are none."""
+    import netCDF4
+
+    check_room(_WORKING, "to read a file")
+    with _NETCDF, netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        arrays, beside = {}, set(file.dimensions)
+        for name, variable in file.variables.items():
+            attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+            beside |= set(attrs.pop("coordinates", "").split())
+            attrs.pop("_FillValue", None)
+            arrays[name] = Array(variable.dimensions, _values(variable), attrs)
+            if arrays[name].values.ndim != len(variable.dimensions):  # letters of a text, in the classic format
+                raise ValueError(f"{name} is a text made of letters; it must be one of netCDF-4")
+        return Labelled(
+            {name: array for name, array in arrays.items() if name not in beside},
+            {name: array for name, array in arrays.items() if name in beside},
+            {key: file.getncattr(key) for key in file.ncattrs()},
+        )
+
+
+def dimensions_in(path: Path) -> dict[str, tuple[str, ...]]:
+    """The dimensions of each array of a netCDF file; OSError or RuntimeError where it is none."""
+    import netCDF4
+
+    with _NETCDF, netCDF4.Dataset(path) as file:
+        return {name: variable.dimensions for name, variable in file.variables.items()}
+
+
+def _values(variable: "netCDF4.Variable[Any]") -> np.ndarray[Any, Any]:
+    """The values of a variable; texts that are the same are one."""
+    if variable.dtype is not str:
+        return np.asarray(variable[...])
+    values, known = np.empty(variable.shape, dtype=object), dict[str, str]()
+    for piece in _pieces(variable.shape):
+        part = np.asarray(variable[piece], dtype=object)
+        values[piece] = np.array([known.setdefault(text, text) for text in part.flat], dtype=object).reshape(part.shape)
+    return values
