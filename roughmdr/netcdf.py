@@ -28,7 +28,7 @@ _PIECE = 2**16
 """Elements of an array that are in the library at a time."""
 _WORKING = 2**26  # bytes of memory that the library takes at most while it has a piece
 # What a file takes at most beside its numbers [byte]: in all, for each array and attribute, and for each text.
-_FILE, _ARRAY, _ATTRIBUTE, _TEXT = 2**16, 2**12, 2**9, 56
+_FILE, _ARRAY, _ATTRIBUTE, _TEXT = 2**15, 2**11, 2**8, 56
 
 
 def write_arrays(data: Labelled, path: Path) -> None:
@@ -39,7 +39,7 @@ def write_arrays(data: Labelled, path: Path) -> None:
     import netCDF4
 
     check_room(_WORKING, "to write a file")
-    size = _most_bytes(data)
+    size = most_bytes(data)
     _reserve(path, size)
     with _NETCDF:
         with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
@@ -85,7 +85,7 @@ def _reserve(path: Path, size: int) -> None:
                 raise OSError(error.errno, what) from None
 
 
-def _most_bytes(data: Labelled) -> int:
+def most_bytes(data: Labelled) -> int:
     """What a file of these arrays takes at most."""
     arrays = [*data.variables.values(), *data.coordinates.values()]
     attrs = [data.attrs, *(array.attrs for array in arrays)]
