@@ -16,7 +16,7 @@ import tomli_w
 
 from roughmdr.aggregate import Route, compute
 from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.costs import held_bytes, result_bytes
+from roughmdr.batch.costs import file_bytes, held_bytes
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
@@ -71,7 +71,7 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     runs = sum(stretch.last - stretch.first for stretch in first)
     tasks = len(cut(plan, first, variables, workers))
     busy = min(workers, tasks, _cores())
-    held, file = held_bytes(plan, runs), result_bytes(plan, runs)
+    held, file = held_bytes(plan, runs), file_bytes(plan, runs)
     if plan.scene.output.keep == "statistics":
         held += busy * min(TOGETHER, math.ceil(runs / tasks)) * _NUMBER * steps * len(variables)
     return Estimate(

@@ -14,8 +14,8 @@ _VISIT, _VISIT_CURVED, _VISIT_COHESIVE, _VISIT_COHESIVE_CURVED = 5e-9, 1.2e-7, 1
 _TABLES, _TABLES_COHESIVE_CURVED, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
 _NUMBER = 8  # bytes
-# A step of the path itself: its separation, what contacts remember of it, and the name of its branch, which is text.
-_WAY = 70  # bytes
+# A step of the path itself: the name of its branch in memory; on disk that and the separation.
+_BRANCH, _WAY = 36, 68  # bytes
 
 
 def seconds(cell: Cell, estimator: str) -> float:
@@ -35,13 +35,22 @@ def seconds(cell: Cell, estimator: str) -> float:
     return begin + section.expected_count * (_DRAW + visit * steps)
 
 
-def result_bytes(plan: Plan, runs: int) -> int:
-    """What the values of a result of so many runs in all take."""
-    steps, output = plan.cells[0].route.separation.size, plan.scene.output
-    each = _NUMBER * steps * len(output.variables)
-    return _WAY * steps + (each * runs if output.keep == "curves" else 4 * each * len(plan.cells))
+def file_bytes(plan: Plan, runs: int) -> int:
+    """About what a result of so many runs in all takes on disk."""
+    return _WAY * _steps(plan) + _values(plan, runs)
 
 
 def held_bytes(plan: Plan, runs: int) -> int:
-    """What is held of them at most while the result is put together: as they came, and in their places."""
-    return 2 * result_bytes(plan, runs) - _WAY * plan.cells[0].route.separation.size
+    """What is held of them while the result is put together: as they came, and in their places."""
+    return _BRANCH * _steps(plan) + 2 * _values(plan, runs)
+
+
+def _steps(plan: Plan) -> int:
+    return int(plan.cells[0].route.separation.size)
+
+
+def _values(plan: Plan, runs: int) -> int:
+    """Bytes of the variables: the curves of all runs or, of each cell, four statistics."""
+    output = plan.scene.output
+    each = _NUMBER * _steps(plan) * len(output.variables)
+    return each * runs if output.keep == "curves" else 4 * each * len(plan.cells)
