@@ -16,8 +16,8 @@ import tomli_w
 
 from roughmdr.aggregate import Route, compute
 from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.costs import file_bytes, held_bytes
 from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
 from roughmdr.memory import room

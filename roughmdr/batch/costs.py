@@ -1,10 +1,10 @@
-"""About what runs take: by which batches are cut into tasks, and the cheapest way to an asked error is chosen.
+"""About what a run takes: by which batches are cut into tasks, and the cheapest way to an asked error is chosen.
 
 Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipelines/scaling.py``), right to a factor of
 three or so. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
-from roughmdr.plan import Cell, Plan
+from roughmdr.plan import Cell
 
 _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run, to draw and sort an asperity
 _EVEN = 8e-4  # to begin evenly spread draws
@@ -13,9 +13,6 @@ _VISIT, _VISIT_CURVED, _VISIT_COHESIVE, _VISIT_COHESIVE_CURVED = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_COHESIVE_CURVED, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
-_NUMBER = 8  # bytes
-# A step of the path itself: the name of its branch in memory; on disk that and the separation.
-_BRANCH, _WAY = 36, 68  # bytes
 
 
 def seconds(cell: Cell, estimator: str) -> float:
@@ -28,29 +25,8 @@ def seconds(cell: Cell, estimator: str) -> float:
         nodes = section.node_count(_FIRST_RULE)
         node = (_NODE_ADHESIVE if law.work else _NODE) * (1.0 if simple else _OWN_TABLES)
         tables = _TABLES_COHESIVE_CURVED if cohesive and not simple else _TABLES
-        return tables + steps * (_WAY + (nodes * nodes * node if nodes > 1 else 0.0))
+        return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
     plain, curved = (_VISIT_COHESIVE, _VISIT_COHESIVE_CURVED) if cohesive else (_VISIT, _VISIT_CURVED)
     visit = plain if simple else curved
     begin = _RUN + (_EVEN if estimator == "stratified" else 0.0)
     return begin + section.expected_count * (_DRAW + visit * steps)
-
-
-def file_bytes(plan: Plan, runs: int) -> int:
-    """About what a result of so many runs in all takes on disk."""
-    return _WAY * _steps(plan) + _values(plan, runs)
-
-
-def held_bytes(plan: Plan, runs: int) -> int:
-    """What is held of them while the result is put together: as they came, and in their places."""
-    return _BRANCH * _steps(plan) + 2 * _values(plan, runs)
-
-
-def _steps(plan: Plan) -> int:
-    return int(plan.cells[0].route.separation.size)
-
-
-def _values(plan: Plan, runs: int) -> int:
-    """Bytes of the variables: the curves of all runs or, of each cell, four statistics."""
-    output = plan.scene.output
-    each = _NUMBER * _steps(plan) * len(output.variables)
-    return each * runs if output.keep == "curves" else 4 * each * len(plan.cells)

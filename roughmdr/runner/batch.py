@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.costs import held_bytes
 from roughmdr.batch.earlier import check_no_less, earlier, is_finished, use_again
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.held import Held
@@ -18,6 +17,7 @@ from roughmdr.batch.identity import versions
 from roughmdr.batch.keeper import Keeper, keeping
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.shard import FAILED, Shard
+from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
 from roughmdr.labelled import Labelled
