@@ -22,6 +22,7 @@ from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
 from roughmdr.wording import harmless
 
 if TYPE_CHECKING:
+    from roughmdr.labelled import Labelled
     from roughmdr.runner import Tls
 
 _NOT_ALL, _WRONG_INPUT, _INTERRUPTED = 1, 2, 130
@@ -127,6 +128,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 _changes = click.option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable."
 )
+_fresh = click.option("--fresh", is_flag=True, help="Replace what is at the output, whatever it is.")
 _workers = click.option(
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads or processes."
 )
@@ -234,14 +236,21 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
 @click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: all.")
 @click.option("--with-expected", is_flag=True, help="Draw the expected law of the scene as well.")
 @click.option("--with-theory", is_flag=True, help="Draw the named laws as well that apply to the scene.")
-def plot(result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool) -> None:
-    """Draw the load-separation law in RESULT."""
-    from roughmdr.plots import plot
+@_fresh
+def plot(
+    result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool, fresh: bool
+) -> None:
+    """Draw the load-separation law in RESULT. A picture of the same kind is replaced."""
+    from roughmdr.kinds import check_kind
+    from roughmdr.plots import format_of, plot
     from roughmdr.store import check_writable, read
     from roughmdr.views import asked_variables
 
     check_writable(output, [result])
+    if not fresh:
+        check_kind(output, format_of(output))
     data = read(result)
+    _warn_of(result, data)
     names, lines = asked_variables(data, variables), []
     if with_expected or with_theory:
         from roughmdr.comparison import expected_law, named_laws, plan_of
@@ -268,6 +277,7 @@ def info(result: Path, cells: bool) -> None:
     from roughmdr.store import read
 
     data = read(result)
+    _warn_of(result, data)
     if cells:
         from roughmdr.cell_table import describe_cells
 
@@ -277,6 +287,12 @@ def info(result: Path, cells: bool) -> None:
 
     _say(describe_result(data))
     _say(describe_origin(data, result.stat().st_size))
+
+
+def _warn_of(file: Path, result: "Labelled") -> None:
+    """Say so where the numbers in a file are not to be believed."""
+    if fault := result.what_was_changed():
+        click.echo(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
 
 
 @main.command()
@@ -302,11 +318,13 @@ def new(scene: Path) -> None:
 @click.option(
     "--realization", type=click.IntRange(0, 999_999_999), default=0, show_default=True, help="Which of the ensembles."
 )
+@_fresh
 @_changes
-def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ...]) -> None:
-    """Write the asperities that a run of SCENE presses on."""
+def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: tuple[str, ...]) -> None:
+    """Write the asperities that a run of SCENE presses on. Other asperities are replaced."""
     from roughmdr.describe import describe_ensemble
     from roughmdr.ensemble import make
+    from roughmdr.kinds import check_kind
     from roughmdr.scene import read
     from roughmdr.store import check_writable, provenance, write
 
@@ -317,6 +335,8 @@ def generate(scene: Path, output: Path, realization: int, changes: tuple[str, ..
     if realization > 0 and not asked.asperities.drawn:
         raise SceneError(f"--realization {realization}: there is only one, 0; nothing here is drawn")
     check_writable(output, asked.inputs)
+    if not fresh:
+        check_kind(output, "ensemble")
     made = make(asked.asperities, asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
     _say(describe_ensemble(made))

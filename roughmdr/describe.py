@@ -10,7 +10,7 @@ from roughmdr.analysis import PullOff, pull_off_force
 from roughmdr.batch.shard import FAILED
 from roughmdr.labelled import Labelled
 from roughmdr.views import cell_label, cells_of, done_of, estimator_of, held_variables, realizations_of, swept_sizes
-from roughmdr.wording import printable, seconds_in_words
+from roughmdr.wording import bytes_in_words, printable, seconds_in_words
 
 if TYPE_CHECKING:
     from roughmdr.estimate import Estimate
@@ -21,18 +21,25 @@ _MOST_CELLS = 30
 
 def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
     """What a run will do, how long it will take and how much memory."""
-    steps = plan.cells[0].route.separation.size
+    steps, output = plan.cells[0].route.separation.size, plan.scene.output
     lines = [
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in all"),
         *_until(plan),
-        ("output", f"{', '.join(plan.scene.output.variables)}; {plan.scene.output.keep}; {_bytes(estimate.file)}"),
+        ("output", f"{', '.join(output.variables)}; {output.keep}; {bytes_in_words(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {seconds_in_words(estimate.seconds)}, of them {seconds_in_words(estimate.start_up)} to start"),
-        ("memory", f"about {_bytes(estimate.memory)}, of them {_bytes(estimate.resident)} for Python and its packages"),
+        ("memory", _memory(estimate)),
     ]
     lines += [*_several("warning", tuple(plan.doubts)), *_several("cannot run", estimate.failures)]
     return _table([*lines, *_several("left out", plan.left_out)])
+
+
+def _memory(estimate: "Estimate") -> str:
+    all_of_it, resident = bytes_in_words(estimate.memory), bytes_in_words(estimate.resident)
+    more = f"; it can have only {bytes_in_words(estimate.room)} more than those here"
+    too_much = estimate.memory - estimate.resident > estimate.room
+    return f"about {all_of_it}, of them {resident} for Python and its packages{more if too_much else ''}"
 
 
 def _until(plan: "Plan") -> Iterator[tuple[str, str]]:
@@ -87,7 +94,7 @@ def describe_origin(result: Labelled, size: float) -> str:
     """Which scene made a result, of ``size`` bytes, with which seed and versions, and when."""
     attrs = result.attrs
     lines = [
-        ("size", _bytes(size)),
+        ("size", bytes_in_words(size)),
         ("seed", str(attrs["seed"])),
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),
@@ -191,10 +198,3 @@ def _several(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:
 
 def _table(lines: list[tuple[str, str]]) -> str:
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
-
-
-def _bytes(size: float) -> str:
-    for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if size >= factor:
-            return f"{size / factor:.3g} {unit}"
-    return f"{size:.0f} B"

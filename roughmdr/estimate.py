@@ -17,8 +17,10 @@ import tomli_w
 from roughmdr.aggregate import Route, compute
 from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
+from roughmdr.memory import room
 from roughmdr.plan import Cell, Plan, law_of
 from roughmdr.shapes import SHAPES
 
@@ -28,8 +30,7 @@ _CELLS = 12
 _REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
-# A step of the path itself: its separation, and the name of its branch, which is text.
-_STEP, _STEP_SECONDS = 70, 3e-6  # bytes, seconds
+_STEP_SECONDS = 3e-6  # of a step of the path itself
 
 
 class Estimate(NamedTuple):
@@ -45,6 +46,8 @@ class Estimate(NamedTuple):
     """At most, in all."""
     resident: float
     """What Python and its packages take; 0 where the system does not tell."""
+    room: float
+    """How much more this process could be given; inf where the system does not tell."""
     file: float
     """The result on disk."""
     failures: tuple[str, ...]
@@ -68,24 +71,21 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     runs = sum(stretch.last - stretch.first for stretch in first)
     tasks = len(cut(plan, first, variables, workers))
     busy = min(workers, tasks, _cores())
-    run = _NUMBER * steps * len(variables)
-    if plan.scene.output.keep == "curves":
-        kept = run * runs
-        held = 2 * kept + run * runs // len(variables)  # as they came, put together, and one variable to be written
-    else:
-        kept = 4 * run * len(plan.cells)
-        held = 2 * kept + busy * min(TOGETHER, math.ceil(runs / tasks)) * run
+    held, file = held_bytes(plan, runs), file_bytes(plan, runs)
+    if plan.scene.output.keep == "statistics":
+        held += busy * min(TOGETHER, math.ceil(runs / tasks)) * _NUMBER * steps * len(variables)
     return Estimate(
         runs=runs,
         tasks=tasks,
         seconds=start_up
         + float(np.mean([cost.seconds for cost in costs])) * runs / busy
-        + kept / _DISK
+        + file / _DISK
         + _STEP_SECONDS * steps,
         start_up=start_up,
-        memory=resident + held + _STEP * steps + busy * max(cost.memory for cost in costs),
+        memory=resident + held + busy * max(cost.memory for cost in costs),
         resident=resident,
-        file=kept + _STEP * steps,
+        room=room()[0],
+        file=file,
         failures=tuple(failures),
     )
 

@@ -1,13 +1,16 @@
 """Arrays with dimensions, units and attributes: what becomes an xarray Dataset, or a file without importing xarray."""
 
 import hashlib
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_TOGETHER = 2**16  # texts
 
 
 class Array(NamedTuple):
@@ -50,13 +53,31 @@ class Labelled(NamedTuple):
         digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
         for name, array in sorted((self.variables | self.coordinates).items()):
             if name != "run_time":
-                texts = array.values.dtype.kind in "OU"
-                content = "\0".join(map(str, array.values.ravel())).encode() if texts else array.values.tobytes()
-                digest.update(name.encode() + str(array.dims).encode() + content)
+                digest.update(name.encode() + str(array.dims).encode())
+                for part in _bytes_of(array.values):
+                    digest.update(part)
         return digest.hexdigest()
+
+    def what_was_changed(self) -> str:
+        """Why the arrays are not to be believed: their attribute ``checksum``. Empty where it is as it must be."""
+        if "checksum" not in self.attrs:
+            return "has no checksum: its numbers may not be those that were written"
+        if str(self.attrs["checksum"]) != self.checksum():
+            return "its numbers are not those that were written"
+        return ""
 
     def to_xarray(self) -> "xr.Dataset":
         """The same as a Dataset."""
         import xarray as xr
 
         return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
+
+
+def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
+    """What a hash is made of: numbers as they are, texts with a zero between them; a part at a time."""
+    if values.dtype.kind not in "OU":
+        yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
+        return
+    texts = values.ravel()
+    for first in range(0, texts.size, _TOGETHER):
+        yield ("\0" * (first > 0) + "\0".join(map(str, texts[first : first + _TOGETHER].tolist()))).encode()

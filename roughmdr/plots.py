@@ -62,11 +62,16 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Line] =
         note += ", unloading dashed"
         note += f", {len(shown)} of {len(cells)} cells named" if len(shown) < len(cells) else ""
     figure.suptitle(f"{harmless(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=160, format=format_of(path))
+
+
+def format_of(path: Path) -> str:
+    """The format of a picture, by its name; StoreError where there is no such format."""
     suffix = path.suffix.lstrip(".").lower() or "png"
     if suffix not in ("png", "pdf", "svg"):
         raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=160, format=suffix)
+    return suffix
 
 
 def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str], said: _Said) -> None:

@@ -10,11 +10,10 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-import numpy as np
-
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.labelled import Labelled
-from roughmdr.netcdf import LOCK, load
+from roughmdr.netcdf import load
+from roughmdr.netcdf_writing import write_arrays
 from roughmdr.result_form import fault_in
 
 _TEMPORARY = ".roughmdr."
@@ -41,22 +40,41 @@ def _made_with() -> tuple[str, str]:
     return f"roughmdr {version('roughmdr')}", ", ".join(versions)
 
 
+def destination(path: Path) -> Path:
+    """Where a file written to ``path`` ends up: for a link, what it leads to in the end, though nothing be there yet.
+
+    All that belongs to an output stands beside that place, so that it is found by way of the link and without it.
+    StoreError where links lead in a circle.
+    """
+    with cannot_be_written(path):
+        if not path.is_symlink():
+            return path
+        real = Path(os.path.realpath(path))
+        if real.is_symlink():
+            raise StoreError(f"{path}: is a link that leads to no file, but round in a circle")
+        return real
+
+
 def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
     """StoreError where a file cannot be put at ``path``, or would take the place of an input; leaves nothing behind."""
+    real = destination(path)
+    said = f"{path}" if real == path else f"{path} (a link to {real})"
     try:
-        if path.is_dir():
-            raise StoreError(f"{path}: is a folder; the output must be a file")
-        if path.exists() and not path.is_file():
-            raise StoreError(f"{path}: is no ordinary file; the output must be one")
-        if path.exists() and any(other.exists() and path.samefile(other) for other in inputs):
-            raise StoreError(f"{path}: is read from; the output must be another file")
-        if not path.parent.is_dir():
-            raise StoreError(f"{path}: the folder {path.parent} does not exist")
-        if not _utf8(path.parent.absolute()):
-            raise StoreError(f"{path.name!r}: the name of its folder is not UTF-8, and netCDF cannot write there")
-        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY, dir=path.parent)
+        if real.is_dir():
+            raise StoreError(f"{said}: is a folder; the output must be a file")
+        if real.exists() and not real.is_file():
+            raise StoreError(f"{said}: is no ordinary file; the output must be one")
+        if real.exists() and any(other.exists() and real.samefile(other) for other in inputs):
+            raise StoreError(f"{said}: is read from; the output must be another file")
+        if not real.parent.is_dir():
+            raise StoreError(f"{said}: the folder {real.parent} does not exist")
+        if not _utf8(path.absolute()) or not _utf8(real.absolute()):
+            raise StoreError(
+                f"{str(path)!r}: is no name in UTF-8, and netCDF could not read it again; give another one"
+            )
+        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY, dir=real.parent)
     except OSError as error:
-        raise StoreError(f"{path}: cannot be written: {error.strerror}") from None
+        raise StoreError(f"{said}: cannot be written: {error.strerror}") from None
     os.close(descriptor)
     Path(name).unlink()
 
@@ -78,9 +96,11 @@ def cannot_be_written(path: Path) -> Iterator[None]:
 def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     """A temporary name to write to, which takes the place of ``path`` when all is written and on disk.
 
-    It is in ``folder``, which must be on the same disk; by default beside ``path``.
+    It is in ``folder``, which must be on the same disk; by default beside ``path``. A link stays one: what it leads to
+    is replaced.
     """
     check_writable(path)
+    path = destination(path)
     place = folder or path.parent
     with cannot_be_written(path):
         with tempfile.NamedTemporaryFile(prefix=_TEMPORARY, suffix=".tmp", dir=place, delete=False) as made:
@@ -116,31 +136,9 @@ def write(data: Labelled, path: Path, folder: Path | None = None) -> None:
     """Put ``data`` at ``path`` as netCDF-4, atomically, by way of ``folder``; StoreError where that fails."""
     with replacing(path, folder) as temporary:
         try:
-            _write_netcdf(data, temporary)
-        except RuntimeError as error:  # so netCDF4 says that a disk is full
+            write_arrays(data, temporary)
+        except RuntimeError as error:  # of the library
             raise StoreError(f"{path}: cannot be written: {error}") from None
-
-
-def _write_netcdf(data: Labelled, path: Path) -> None:
-    import netCDF4
-
-    beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
-    with LOCK, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
-        file.setncatts(data.attrs)
-        for dimension, size in data.sizes.items():
-            file.createDimension(dimension, size)
-        for name, array in (data.coordinates | data.variables).items():
-            kind = array.values.dtype.kind
-            variable = file.createVariable(
-                name,
-                str if kind in "OU" else array.values.dtype,
-                array.dims,
-                fill_value=np.nan if kind == "f" and name in data.variables else None,
-            )
-            variable.setncatts(array.attrs)
-            if name in data.variables and (apt := [other for other, dims in beside.items() if dims <= set(array.dims)]):
-                variable.coordinates = " ".join(apt)
-            variable[...] = array.values.astype(object) if kind == "U" else array.values
 
 
 def read(path: Path) -> Labelled:

@@ -57,3 +57,11 @@ def seconds_in_words(seconds: float) -> str:
     if seconds < 100.0:
         return f"{seconds:.2g} s"
     return f"{seconds / 60.0:.3g} min" if seconds < 6000.0 else f"{seconds / 3600.0:.3g} h"
+
+
+def bytes_in_words(size: float) -> str:
+    """A size with a unit that suits it."""
+    for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if size >= factor:
+            return f"{size / factor:.3g} {unit}"
+    return f"{size:.0f} B"

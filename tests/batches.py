@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -23,6 +24,7 @@ from roughmdr.batch.shard import Shard
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
+from roughmdr.store import destination
 
 _CLI = "from roughmdr.cli import main; main()"
 _IN_CHUNKS = """
@@ -58,7 +60,7 @@ def interrupted(table: dict[str, Any], out: Path, after: int, monkeypatch: pytes
         with pytest.raises(KeyboardInterrupt):
             execute(make_plan(read(table), chunk), out, workers=1)
     assert not out.exists()
-    assert parts_of(out).is_dir()
+    assert parts_of(destination(out)).is_dir()
 
 
 class Batch:
@@ -182,3 +184,17 @@ def running(batch: Batch) -> Iterator[Batch]:
     finally:
         if batch.process.poll() is None:
             batch.kill()
+
+
+@contextmanager
+def mounted(place: Path, size: str) -> Iterator[None]:
+    """A disk of a size, as long as it takes."""
+    if shutil.which("mount") is None or os.geteuid() != 0:
+        pytest.skip("no file systems can be mounted here")
+    place.mkdir(exist_ok=True)
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place], check=False).returncode:
+        pytest.skip("no file systems can be mounted here")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", place], check=True)

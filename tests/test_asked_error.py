@@ -364,6 +364,20 @@ def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path) -> None:
+    out = tmp_path / "out.nc"
+    found = go(asking(0.04, output=kept(keep)), out)
+    content = out.read_bytes()
+    with pytest.raises(rm.StoreError, match=rf"holds {int(found.realization_count)} realisations of a cell.*--fresh"):
+        go(asking(0.4, output=kept(keep)), out)
+    assert out.read_bytes() == content
+    drawn = asking(1e-9, "stratified", 20, output=kept(keep))
+    execute(make_plan(read(drawn)), out, resume=False)
+    with pytest.raises(rm.StoreError, match=r"holds 20 realisations of a cell, of which there would be 1: .*--fresh"):
+        go(asking(1e-4, None, output=kept(keep)), out)
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("fails", [(3,), range(FIRST)])
 def test_a_cell_with_a_failure_is_left_as_it_is(
     fails: Sequence[int], keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

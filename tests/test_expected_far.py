@@ -111,7 +111,7 @@ def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[s
 
 
 def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
-    """What the expected law states decides whether it is enough: here next to a pole, where it once stated too little."""
+    """What the expected law states decides whether it is enough: here of heights next to a pole."""
     for own, relative in (({"a": 0.03}, 1e-2), ({"a": 3.0, "b": 0.05}, 1e-2)):
         family = "powerlaw" if len(own) == 1 else "beta"
         height = {"distribution": family, **own, "loc": 0.0, "scale": "2 um"}
@@ -126,7 +126,7 @@ def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
 @settings(deadline=None, max_examples=30)
 @given(st.floats(0.02, 5.0), st.floats(0.02, 5.0), st.sampled_from([0.0, 1e-3]), st.floats(-0.5, 1.5))
 def test_the_table_of_heights_counts_them_all(a: float, b: float, loc: float, at: float) -> None:
-    """Below any height as many as the distribution has there, give or take what the table says that it does not know."""
+    """Below any height as many as the distribution has there, give or take what the table does not know."""
     distribution = Distribution("beta", (a, b), loc, 2 * UM)
     with np.errstate(all="ignore"):
         table = HeightTable.of(Heights.of(distribution))

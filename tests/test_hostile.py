@@ -229,9 +229,6 @@ def test_long_and_odd_names_of_files(folder: Path) -> None:
         done = roughmdr(*arguments, cwd=folder)
         assert done.returncode == 2, (arguments, done.stderr)
         assert "Traceback" not in done.stderr
-    raw = os.fsencode(folder) + b"/a\xff.nc"
-    done = subprocess.run([*ROUGHMDR, "run", "small.toml", "-o", raw], cwd=folder, capture_output=True, check=False)
-    assert (done.returncode, os.path.exists(raw)) == (0, True), done.stderr
 
 
 def test_nobody_needs_to_listen(folder: Path) -> None:

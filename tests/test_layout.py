@@ -21,6 +21,7 @@ LINES = (
         "units",
         "spectrum",
         "wording",
+        "memory",
         "files",
         "tables",
         "netcdf",
@@ -42,7 +43,19 @@ LINES = (
     ("aggregate",),
     ("expected",),
     ("theory",),
-    ("plan", "store", "result_form", "batch", "statistics", "result", "progress", "runner", "estimate"),
+    (
+        "plan",
+        "netcdf_writing",
+        "store",
+        "kinds",
+        "result_form",
+        "batch",
+        "statistics",
+        "result",
+        "progress",
+        "runner",
+        "estimate",
+    ),
     ("named", "views", "curves", "analysis", "cell_table", "describe", "comparison", "plots", "cli", "__main__"),
 )
 LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
@@ -84,7 +97,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
             "xarray",
             {"labelled", "asperity", "equilibria", "fields", "ensemble", "aggregate", "runner", "analysis", "plots"},
         ),
-        ("netCDF4", {"store", "netcdf"}),
+        ("netCDF4", {"netcdf", "netcdf_writing"}),
     ],
 )
 def test_a_package_is_known_only_where_it_belongs(package: str, allowed: set[str]) -> None:

@@ -1,5 +1,6 @@
 """Runs that were begun, finished or asked for otherwise before: nothing is computed twice, to the same bits."""
 
+import os
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from batches import interrupted
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -18,7 +21,7 @@ from roughmdr.batch.parts import parts_of
 from roughmdr.plan import make_plan
 from roughmdr.runner import batch, execute
 from roughmdr.scene import read
-from roughmdr.variables import LAW
+from roughmdr.variables import DEFAULT, LAW
 
 FEW: dict[str, Any] = {**ASPERITIES, "count": 60}
 PATH: dict[str, Any] = {"separation": {"start": "2 sigma", "stop": "-0.5 sigma", "steps": 8}, "unload": True}
@@ -168,33 +171,112 @@ def test_the_same_cells_laid_out_otherwise(
     assert_same(found, fresh)
 
 
-def test_fewer_variables_are_taken_more_are_computed(calls: Calls, out: Path) -> None:
-    go(small(output=kept(variables=["force", "contact_area", "energy"])), out)
+def test_more_variables_are_computed(calls: Calls, out: Path) -> None:
+    go(small(output=kept(variables=["force", "contact_area"])), out)
     calls.taken()
-    fewer = small(output=kept(variables=["energy", "force"]))
-    found = go(fewer, out)
-    assert not calls.taken()
-    assert [name for name in found.data_vars if name in LAW] == ["energy", "force"]
-    assert_same(found, go(fewer, None))
-    calls.taken()
-    more = small(output=kept(variables=["force", "contact_area"]))
+    more = small(output=kept(variables=["energy", "force", "contact_area"]))
     found = go(more, out)
     assert calls.taken() == every([0.05], 0, 6)
     assert_same(found, go(more, None))
 
 
-@pytest.mark.parametrize("realizations", [11, 19])
-def test_curves_become_statistics(realizations: int, calls: Calls, out: Path) -> None:
-    curves = swept(WORKS[:2], realizations=11)
-    go(curves, out, chunk=3)
+def refused(table: dict[str, Any], out: Path, message: str) -> None:
+    """Nothing is computed, nothing replaced."""
+    content = out.read_bytes()
+    with pytest.raises(rm.StoreError, match=f"{message}.*--fresh"):
+        go(table, out)
+    assert out.read_bytes() == content
+    assert not parts_of(out).exists()
+
+
+VARIABLES = ["force", "contact_area", "energy"]
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+@pytest.mark.parametrize(
+    ("asked", "gone"), [(["energy", "force"], "contact_area"), (["pressure"], ", ".join(VARIABLES))]
+)
+def test_no_variable_is_dropped_unasked(asked: list[str], gone: str, keep: str, calls: Calls, out: Path) -> None:
+    go(small(output=kept(keep, VARIABLES)), out)
     calls.taken()
-    table = swept(WORKS[:2], realizations=realizations, output=kept("statistics"))
-    found = go(table, out)
-    assert calls.taken() == every([0.01, 0.03], 11, realizations)
-    assert_same(found, go(table, None, chunk=5))
+    fewer = small(output=kept(keep, asked))
+    refused(fewer, out, f"holds {gone}, which this scene does not ask for")
+    refused({**fewer, "batch": {"realizations": 9}}, out, f"holds {gone}, which")
+    assert not calls.taken()
+    assert_same(go(fewer, out, resume=False), go(fewer, None))
 
 
-@pytest.mark.parametrize("change", [{"title": "Another"}, {"output": kept()}])
+def test_no_curves_are_dropped_unasked(calls: Calls, out: Path) -> None:
+    go(swept(WORKS[:2]), out)
+    calls.taken()
+    statistics = swept(WORKS[:2], realizations=8, output={"keep": "statistics"})
+    refused(statistics, out, "holds the curves of its realisations, which this scene does not ask for")
+    assert not calls.taken()
+    assert_same(go(statistics, out, resume=False), go(statistics, None))
+    curves = swept(WORKS[:2], realizations=8)
+    assert_same(go(curves, out), go(curves, None))  # which say all that statistics say
+
+
+def held_by(result: xr.Dataset) -> set[tuple[str, str, str, int]]:
+    """All that a result holds: cell, variable, what of it, realisation."""
+    found: set[tuple[str, str, str, int]] = set()
+    names = [name for name in LAW if name in result or f"{name}_mean" in result]
+    keys, status = np.atleast_1d(result.cell_key), result.status.to_numpy().reshape(result.cell_key.size, -1)
+    counts = np.atleast_1d(result.realization_count) if "realization_count" in result else None
+    for cell, key in enumerate(keys):
+        for name in names:
+            if name in result:
+                runs = [number for number, one in enumerate(status[cell]) if one == 0]
+                found |= {(key, name, "curve", number) for number in runs}
+            else:
+                assert counts is not None
+                runs = list(range(int(counts[cell])))
+            found |= {(key, name, "mean", number) for number in runs}
+    return found
+
+
+@settings(
+    max_examples=int(os.environ.get("ROUGHMDR_RESULTS", "20")),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(data=st.data())
+def test_no_result_holds_less_than_the_one_before(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Whatever is asked for one after the other, a result is replaced only by one that holds all that it held."""
+    out = tmp_path_factory.mktemp("any") / "out.nc"
+    names = st.lists(st.sampled_from(["force", "contact_area", "energy"]), min_size=1, max_size=3, unique=True)
+
+    def asked() -> dict[str, Any]:
+        table = {
+            "sweep": {"adhesion.work": data.draw(st.lists(st.sampled_from([0.01, 0.03]), min_size=1, unique=True))},
+            "output": kept(data.draw(st.sampled_from(["curves", "statistics"])), data.draw(names)),
+        }
+        if data.draw(st.booleans()):
+            return small(data.draw(st.integers(1, 30)), **table)
+        accuracy = {"relative": data.draw(st.sampled_from([0.5, 0.1, 0.05])), "method": "sampled"}
+        return small(1, accuracy=accuracy, **table)
+
+    before = go(asked(), out)
+    for _ in range(3):
+        content, table = out.read_bytes(), asked()
+        try:
+            after = go(table, out)
+        except rm.StoreError as error:
+            said = str(error)
+        else:
+            said = ""
+        if said:
+            assert "--fresh" in said
+            assert out.read_bytes() == content
+            continue
+        assert held_by(before) <= held_by(after)
+        assert_same(after, go(table, None))
+        before = after
+
+
+@pytest.mark.parametrize("change", [{"title": "Another"}, {"output": kept(variables=[*reversed(DEFAULT)])}])
 def test_what_does_not_change_the_numbers_does_not_matter(change: dict[str, Any], calls: Calls, out: Path) -> None:
     go(small(), out)
     calls.taken()
@@ -289,6 +371,11 @@ def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Pat
     data.assign_attrs(scene="no = = toml").to_netcdf(out)
     with pytest.raises(rm.StoreError, match="its scene cannot be read"):
         go(table, out)
+    out.unlink()
+    del data.attrs["checksum"]
+    data.to_netcdf(out)
+    with pytest.raises(rm.StoreError, match="has no checksum: its numbers may not be"):
+        go(table, out)
     assert not calls.taken()
 
 
@@ -376,6 +463,32 @@ def test_an_interrupted_run_asked_for_otherwise(
     assert not {*anew} & {*done}
     assert {*anew} == {*every([0.01, 0.02, 0.03], 0, 8)} - {*done}
     assert_same(found, go(longer, None))
+
+
+@pytest.mark.parametrize("realizations", [11, 19])
+def test_curves_of_an_interrupted_run_become_statistics(
+    realizations: int, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted(swept(WORKS[:2], realizations=11), out, 7, monkeypatch, chunk=3)
+    done = calls.taken()
+    table = swept(WORKS[:2], realizations=realizations, output={"keep": "statistics"})
+    found = go(table, out)
+    assert sorted(done + calls.taken()) == every([0.01, 0.03], 0, realizations)
+    assert_same(found, go(table, None, chunk=5))
+
+
+def test_variables_of_an_interrupted_run_that_are_not_asked_for_stay(
+    calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    more, fewer = small(output=kept(variables=VARIABLES)), small(output=kept(variables=["energy"]))
+    interrupted(more, out, 2, monkeypatch)
+    calls.taken()
+    assert_same(go(fewer, out), go(fewer, None))
+    out.unlink()
+    calls.taken()
+    assert_same(go(more, out), go(more, None))
+    assert calls.taken() == sorted([*every([0.05], 4, 6), *every([0.05], 0, 6)])
+    assert not parts_of(out).exists()
 
 
 def test_interrupted_twice_and_shorter_at_last(calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,7 @@ import signal
 import subprocess
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from batches import (
     computed,
     kept,
     lines,
+    mounted,
     running,
     slow_scene,
     until,
@@ -381,19 +381,6 @@ def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
 
 
 # Disks and folders
-
-
-@contextmanager
-def mounted(place: Path, size: str) -> Iterator[None]:
-    if shutil.which("mount") is None or os.geteuid() != 0:
-        pytest.skip("no file systems can be mounted here")
-    place.mkdir(exist_ok=True)
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place], check=False).returncode:
-        pytest.skip("no file systems can be mounted here")
-    try:
-        yield
-    finally:
-        subprocess.run(["umount", "--lazy", place], check=True)
 
 
 def test_a_full_disk_keeps_what_fits_and_more_room_is_all_it_takes(tmp_path: Path) -> None:

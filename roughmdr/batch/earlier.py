@@ -31,8 +31,8 @@ def earlier(target: Path) -> Labelled | None:
         old = read(target)
     except StoreError as error:
         raise StoreError(f"{error}. It is there already: {_WAYS_OUT}") from None
-    if old.attrs.get("checksum", old.checksum()) != old.checksum():
-        raise StoreError(f"{target}: its numbers are not those that were written: {_WAYS_OUT}")
+    if fault := old.what_was_changed():
+        raise StoreError(f"{target}: {fault}: {_WAYS_OUT}")
     return old
 
 
@@ -78,19 +78,51 @@ def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Pla
 
 
 def _what_would_go(old: Labelled, plan: Plan, held: Held) -> str:
-    """Cells and realisations of a result that would be lost; empty for none."""
-    keys = _keys(old)
-    strangers = sum(not held.wants([key]) for key in keys)
+    """What of a result would be lost: cells, variables, curves or realisations; empty for nothing."""
+    strangers = sum(not held.wants([key]) for key in _keys(old))
     if strangers:
         return f"{strangers} cell{'s' * (strangers > 1)} more"
-    batch, status = plan.scene.batch, old.variables["status"]
-    if plan.scene.accuracy is not None:
+    asked = plan.scene.output
+    if unasked := [name for name in _variables(old) if name not in asked.variables]:
+        return ", ".join(unasked)
+    if "realization" in old.sizes and asked.keep == "statistics":
+        return "the curves of its realisations"
+    if plan.scene.accuracy is not None:  # how many there will be is not known yet, see check_no_less
         return ""
-    count = old.variables["realization_count"].values.max() if "realization" not in old.sizes else 0
-    if "realization" in old.sizes:
-        done = (status.values == DONE).reshape(-1, status.values.shape[-1])
-        count = max((int(row.nonzero()[0][-1]) + 1 for row in done if row.any()), default=0)
-    return f"{int(count)} realisations" if count > batch.realizations else ""
+    count = max(_counts(old).values(), default=0)
+    return f"{count} realisations" if count > plan.scene.batch.realizations else ""
+
+
+def check_no_less(target: Path, old: Labelled, new: Labelled, keys: Sequence[set[str]]) -> None:
+    """StoreError where a result has fewer realisations of a cell than the one at ``target`` whose place it would take.
+
+    With [accuracy] that is known only when it is there, and so it is of runs that failed; ``keys`` as in is_finished.
+    """
+    cell_of = {key: number for number, may in enumerate(keys) for key in may}
+    counts = _counts(new)
+    found = [max(counts.get(key, 0) for key in may) for may in keys]
+    for key, count in _counts(old).items():
+        if count > found[cell_of[key]]:
+            raise StoreError(
+                f"{target}: holds {count} realisations of a cell, of which there would be {found[cell_of[key]]}: "
+                f"{_WAYS_OUT}"
+            )
+
+
+def _variables(old: Labelled) -> list[str]:
+    """The variables of a law that a result holds, as curves or as statistics."""
+    return [name for name in LAW if name in old.variables or f"{name}_mean" in old.variables]
+
+
+def _counts(result: Labelled) -> dict[str, int]:
+    """By the key of each cell, how many realisations of it a result holds."""
+    done = result.variables["status"].values == DONE
+    if "realization" in result.sizes:
+        each = done.reshape(-1, done.shape[-1])
+        counts = (each * np.arange(1, each.shape[1] + 1)).max(axis=1)
+    else:
+        counts = np.where(done, result.variables["realization_count"].values, 0).ravel()
+    return dict(zip(_keys(result), counts.astype(int).tolist(), strict=True))
 
 
 def _what_changed(scene: str, made_with: str, plan: Plan) -> list[str]:

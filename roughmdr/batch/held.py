@@ -16,7 +16,7 @@ class Held:
         self._variables, self._tallied = variables, tallied
         self._reads: list[Callable[[], Shard | None]] = []
         self._rows: dict[str, list[tuple[int, int, int, int]]] = {}
-        self._strangers = False
+        self._more = False
 
     def wants(self, keys: Sequence[str]) -> bool:
         """Whether a cell of one of the keys is among those that are wanted."""
@@ -27,9 +27,10 @@ class Held:
         whole = read()
         if whole is None:
             return False
-        self._strangers |= not self._wanted.issuperset(whole.keys)
+        self._more |= not self._wanted.issuperset(whole.keys)
         if not self.wants(whole.keys):
             return False
+        self._more |= not set(self._variables).issuperset(whole.variables)
         shard = self._fitting(whole)
         if shard is not None:
             columns = zip(shard.cell.tolist(), shard.first.tolist(), shard.size.tolist(), strict=True)
@@ -41,7 +42,7 @@ class Held:
 
     def spare(self, chosen: Sequence[tuple[str, int]]) -> bool:
         """Whether there is more than goes into these cells, of which each has a key and so many realisations."""
-        return self._strangers or any(
+        return self._more or any(
             first - less > count for key, count in chosen for first, less, *_ in self._rows.get(key, ())
         )
 

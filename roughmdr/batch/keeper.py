@@ -66,13 +66,12 @@ class Keeper:
     def _near(self) -> Path | None:
         """Where the result is best written to: with the parts, so that the next run takes away what this one may leave.
 
-        None where netCDF cannot write there, or the result could not take its place from there.
+        None where the result could not take its place from there.
         """
         if self.parts is None:
             return None
         folder = self.parts.folder
-        named = os.fsencode(folder.name).decode(errors="replace") == folder.name
-        return folder if named and folder.stat().st_dev == self.target.parent.stat().st_dev else None
+        return folder if folder.stat().st_dev == self.target.parent.stat().st_dev else None
 
     @property
     def begun(self) -> bool:

@@ -193,7 +193,8 @@ def _locked(folder: Path, target: Path) -> int:
                 raise
         with suppress(FileNotFoundError):
             if os.path.samestat(os.fstat(lock), os.stat(folder / _LOCK)):
-                os.truncate(lock, 0)
-                os.write(lock, f"process {os.getpid()} on {platform.node()}\n".encode())
+                with suppress(OSError):  # the disk may be full; who holds the lock is only said to be helpful
+                    os.truncate(lock, 0)
+                    os.write(lock, f"process {os.getpid()} on {platform.node()}\n".encode())
                 return lock
         os.close(lock)

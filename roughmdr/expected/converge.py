@@ -5,6 +5,7 @@ Gauss's rule for smooth functions, of ever higher order; where it does not conve
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
@@ -59,15 +60,13 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
         return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
 
     if not asked.source.one_parameter:
+        product = _smooth(asked, curves)
+        own = sum(_off(parameter, product.rule) for parameter in asked.source.drawn_parameters)
+        others = max(product.doubt_of_others, own if len(rows) > 1 or dissipating else 0.0)
+        return product._replace(doubt=max(product.doubt, own), doubt_of_others=others)
+    smooth: Converged | None = None
+    with suppress(RoughmdrError):  # of parameters that next to no asperity has
         smooth = _smooth(asked, curves)
-        own = sum(_off(parameter, smooth.rule) for parameter in asked.source.drawn_parameters)
-        return smooth._replace(
-            doubt=max(smooth.doubt, own), doubt_of_others=max(smooth.doubt_of_others, own if len(rows) > 1 else 0.0)
-        )
-    try:
-        smooth = _smooth(asked, curves)
-    except RoughmdrError:  # of parameters that next to no asperity has
-        smooth = None
     if smooth is not None and max(smooth.doubt, smooth.doubt_of_others) <= _ROUGH:
         return smooth
     rule, nodes, doubts = halve_panels(partial(set_up, asked), curves)

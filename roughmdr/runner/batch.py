@@ -10,16 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.earlier import earlier, is_finished, use_again
+from roughmdr.batch.earlier import check_no_less, earlier, is_finished, use_again
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.held import Held
 from roughmdr.batch.identity import versions
 from roughmdr.batch.keeper import Keeper, keeping
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.shard import FAILED, Shard
+from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
 from roughmdr.labelled import Labelled
+from roughmdr.memory import check_room, left_in_words
 from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Progress, progress
 from roughmdr.result import assemble
@@ -27,7 +29,7 @@ from roughmdr.runner.cluster import Cluster, Tls, connected
 from roughmdr.runner.local import Here, Pool, Processes, Threads
 from roughmdr.runner.stopping import Interrupted, stoppable
 from roughmdr.scene import Scene, read
-from roughmdr.store import check_writable
+from roughmdr.store import check_writable, destination
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,10 +87,11 @@ def execute(
     _check(workers, scheduler)
     if target is not None:
         check_writable(target, plan.scene.inputs)
+        target = destination(target)
     rounds = Rounds(plan)
     with keeping(target) as keeper:
         held = Held(rounds.keys, computed(plan), tallied=plan.scene.output.keep == "statistics")
-        history = ""
+        old: Labelled | None = None
         if target is not None and keeper is not None and resume:
             old = earlier(target)
             if old is not None and is_finished(old, plan, rounds.keys):
@@ -96,14 +99,14 @@ def execute(
                     keeper.parts.remove()  # the run that wrote the result was killed before it could
                 return old
             use_again(target, old, keeper.parts, plan, held)
-            history = "" if old is None else old.attrs["history"]
+        _check_memory(plan, rounds)
         try:
             with _pool(scheduler, workers, tls) as pool:
                 if keeper is not None and not resume:
                     keeper.clear()
-                return _Batch(plan, rounds, keeper, held, pool, quiet=quiet).run(command, history)
+                return _Batch(plan, rounds, keeper, held, pool, quiet=quiet).run(command, old)
         except (StoreError, MemoryError) as error:
-            what = str(error) or "out of memory"
+            what = str(error) or f"out of memory, with {left_in_words()}"
             if keeper is not None and keeper.said:
                 raise Unfinished(f"{what}; {keeper.said}") from None
             if isinstance(error, MemoryError):
@@ -139,6 +142,14 @@ def computed(plan: Plan) -> tuple[str, ...]:
     return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
 
 
+def _check_memory(plan: Plan, rounds: Rounds) -> None:
+    """StoreError, before computing, where this process may not have the memory that the first round takes at least."""
+    runs = sum(choice.realizations for choice in rounds.choices)
+    check_room(
+        held_bytes(plan, runs), "the run", "fewer steps or realizations, or output.keep = 'statistics', take less"
+    )
+
+
 class _Batch:
     """A plan while it is carried out."""
 
@@ -152,17 +163,17 @@ class _Batch:
         steps = plan.cells[0].route.separation.size
         self._gathered = Gathered(self._variables, steps, tallied=self._tallied, watched=watched)
 
-    def run(self, command: str, history: str) -> Labelled:
-        """All rounds; the result, whose history goes on from that of the result that it may take the place of."""
+    def run(self, command: str, old: Labelled | None) -> Labelled:
+        """All rounds; the result, whose history goes on from that of the ``old`` one that it may take the place of."""
         with stoppable(self._begun, self._kept) as stop:
             with progress(self._plan.scene.title, quiet=self._quiet) as display:
                 stretches = self._rounds.begin()
                 while stretches:
                     self._round(stretches, display, stop)
                     stretches = self._rounds.next(self._gathered)
-            return self._finished(command, history)
+            return self._finished(command, old)
 
-    def _finished(self, command: str, history: str) -> Labelled:
+    def _finished(self, command: str, old: Labelled | None) -> Labelled:
         """The result, put together and written."""
         choices = self._rounds.choices
         nothing = self._gathered.nothing  # asked first: what was gathered is given away then
@@ -174,9 +185,11 @@ class _Batch:
             name = self._plan.name_of(cell, 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
         result = assemble(self._plan, choices, found, self._variables, command)
-        if history:
-            result.attrs["history"] += f"\n{history}"
+        if old is not None:
+            result.attrs["history"] += f"\n{old.attrs['history']}"
         if self._keeper is not None:
+            if old is not None:
+                check_no_less(self._keeper.target, old, result, self._rounds.keys)
             spare = self._held.spare([(choice.key, choice.realizations) for choice in choices])
             self._keeper.finish(result, whole=not (failed.any() or spare))
         return result
