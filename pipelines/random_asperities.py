@@ -15,12 +15,13 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import staircase
 from roughmdr.arguments import Floats
 from roughmdr.kernels.laws import Law, choose
-from roughmdr.kernels.row import COUNT, DEPTH, FOOT, TOP
+from roughmdr.kernels.row import COUNT, FOOT, TOP
 from roughmdr.shapes import SHAPES, Curved, Shape
 
 NEAREST = 1e-12
 """To a fold, over its depth: nearer ones are not asked for."""
-_PRESSED = 1e3
+_PRESSED = 1e3  # depths beyond first touch, before some are drawn back
+_LEAST = 1e-290
 _TRIES = 50
 
 
@@ -228,8 +229,7 @@ def _compared(
     if t is None:
         raise ArithmeticError(f"no equilibrium at {asperity}")
     force = exact.force(t)
+    if not _LEAST < abs(force) < 1 / _LEAST:  # below, floats lose digits
+        return None
     error = abs(mp.mpf(float(total[totals.FORCE, -1])) - force)
     return asperity, Found(float(error), float(total[totals.ERROR, -1]), float(force), distance)
-
-
-__all__ = ["DEPTH", "Asperity", "Found", "found"]

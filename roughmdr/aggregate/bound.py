@@ -100,9 +100,12 @@ def bound_found(
     slope, push, swing = 0.0, 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:
-            a, (own, each) = found[RADIUS, i], _errors(_own(forms, i))
-            k = min(abs(found[STIFFNESS, i]), a / _UNIT)
-            stretch, share = _pulled(a, _own(forms, i)) if _adhesive else (0.0, 0.0)
+            own, each = _errors(_own(forms, i))
+            k, stretch, share = abs(found[STIFFNESS, i]), 0.0, 0.0
+            if _adhesive:
+                stretch, share = _pulled(found[RADIUS, i], _own(forms, i))
+                if k == math.inf:  # on the fold itself
+                    k = share / stretch / _UNIT
             off = own * (abs(found[FORCE, i]) + 2.0 * share) + 2.0 * _NEXT_TO_A_FOLD * each * k * stretch
             if _magnitude is not None:
                 g, pushed = _magnitude(found[STATE, i], _own(forms, i))
