@@ -1,7 +1,7 @@
 """netCDF files as anyone may have written them: read, or refused with a RoughmdrError.
 
-Where memory gives out while HDF5 converts texts, it frees what it never had, and the process dies: so there must be room
-for what it works with, and texts go out of it a few at a time.
+Where memory gives out while HDF5 converts texts, it frees what it never had, and the process dies: so there must be
+room for what it works with, and texts go out of it a few at a time.
 """
 
 import math

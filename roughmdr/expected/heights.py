@@ -33,8 +33,8 @@ class HeightTable(NamedTuple):
     coefficients: Floats
     """Of the density [1/m]: [piece, 1, order]."""
     doubt: Floats
-    """How far the density may be off [1/m]; the part of all heights that stands anywhere on the piece; the part that may
-    stand on it or not: [piece, 3]."""
+    """How far the density may be off [1/m]; the part of all heights that stands anywhere on the piece; the part that
+    may stand on it or not: [piece, 3]."""
     below: Floats
     """The part of all heights below each edge: [piece + 1]; the last is 1 but for errors."""
     origin: float

@@ -13,13 +13,13 @@ from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route
 from roughmdr.aggregate.law import ROW
 from roughmdr.aggregate.tabor import range_of
-from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE, STIFFNESS
+from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
-from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.converge import FIRST_ORDER, converge
+from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.parted import Parted
 
 _DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
@@ -56,8 +56,8 @@ def compute(
     total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _beyond(nodes, closest)
     if total[ERROR].max() == math.inf:
         raise OutOfRange(
-            f"the mean force of these {asked.source.shape_name}s is not known to have a bound: too many of them are too "
-            "high or too large (their distribution has too heavy a tail)"
+            f"the mean force of these {asked.source.shape_name}s is not known to have a bound: too many of them "
+            "are too high or too large (their distribution has too heavy a tail)"
         )
     if not np.isfinite(total).all():
         raise OutOfRange(
@@ -87,8 +87,9 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
     """What to say of errors over the largest force, and of other variables; OutOfRange where that leaves nothing."""
     if not error <= _WORTHLESS:
         raise OutOfRange(
-            f"the expected law of these asperities is right only to {error:.1g} of its largest force: the integrals "
-            "over the heights and shape parameters do not converge; estimator 'stratified' or 'sampled' has no such limit"
+            f"the expected law of these asperities is right only to {error:.1g} of its largest force: the "
+            "integrals over the heights and shape parameters do not converge; estimator 'stratified' or 'sampled' has "
+            "no such limit"
         )
     if error > _DOUBTFUL:
         return (

@@ -50,9 +50,10 @@ class Table(NamedTuple):
         """The table of ``function``, points -> [row, point], between ``edges``.
 
         A piece is held where its last coefficients and what it is off at its ends, times the ``weight`` of the piece
-        (its ends, the greatest value of the first row -> weight), are below ``tolerance`` [row] of the greatest value on
-        it, or are roundings, and the first row's values do not vary by more than ``ratio``; or where it is ``narrow``
-        (its ends -> how narrow). The function may be off as if its points were, by ``rounding`` relative to themselves.
+        (its ends, the greatest value of the first row -> weight), are below ``tolerance`` [row] of the greatest value
+        on it, or are roundings, and the first row's values do not vary by more than ``ratio``; or where it is
+        ``narrow`` (its ends -> how narrow). The function may be off as if its points were, by ``rounding`` relative to
+        themselves.
         """
         low, high = edges[:-1], edges[1:]
         held: list[tuple[Floats, ...]] = []
