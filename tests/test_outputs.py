@@ -21,7 +21,7 @@ import roughmdr as rm
 from roughmdr.batch.parts import parts_of
 from roughmdr.cli import main
 from roughmdr.labelled import Array, Labelled
-from roughmdr.netcdf import most_bytes, write_arrays
+from roughmdr.netcdf_writing import most_bytes, write_arrays
 from roughmdr.store import destination
 from roughmdr.store import read as read_result
 

@@ -4,6 +4,7 @@ Next to a pole no polynomial holds the density: there the fractions of the heigh
 the piece is so narrow that it hardly matters where on it they do.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from roughmdr.expected.integral import mass
 from roughmdr.expected.table import ORDER, Table
 
 _TOLERANCE, _RATIO = 1e-13, 1e3  # how right it is on each piece, of all heights, and how much it may vary there
+_MISSING = 1e-12  # of all heights: less is roundings, which must not count as the highest of a heavy tail
 _NARROWEST = 2.0**-44  # of the scale of the heights, or of the height itself: narrower pieces are not halved
 _ROUNDING = 2.0**-51  # of a height
 _NOISY = 1e-2  # polynomials that are off by less than this part are those of a smooth density with roundings
@@ -60,9 +62,7 @@ class HeightTable(NamedTuple):
         parts = 0.5 * width * (coefficients[:, 0] @ _INTEGRALS)
         loose, unknown = np.zeros_like(parts), np.zeros_like(parts)
         if heights.fractions is not None:
-            below, above = heights.fractions(np.append(table.low, table.high[-1]))
-            counted = np.where(below[1:] < above[1:], below[1:] - below[:-1], above[:-1] - above[1:])
-            counted = np.where(np.isfinite(counted), counted.clip(min=0.0), 0.0)
+            counted = _counted(*heights.fractions(np.append(table.low, table.high[-1])))
             vague = ~(slack * width <= _TOLERANCE)
             scaled = vague & (slack * width < _NOISY * parts) & (np.abs(counted - parts) < _NOISY * parts)
             even = vague & ~scaled
@@ -71,9 +71,10 @@ class HeightTable(NamedTuple):
             coefficients[even, 0, 0] = (counted / width)[even]
             loose[even], loose[scaled] = counted[even], np.minimum(counted, slack * width)[scaled]
             unknown[~vague] = np.abs(counted - parts)[~vague]
-            unknown[0] += np.nan_to_num(below[0])
             parts = np.where(vague, counted, parts)
             slack = np.where(vague, 0.0, slack)
+            missing = abs(1.0 - float(parts.sum())) - float(unknown.sum())
+            unknown[-1] += missing if missing > _MISSING else 0.0
         unknown[-1] += heights.tail.share
         doubt = np.column_stack([slack, loose, unknown])
         if not (np.isfinite(coefficients).all() and np.isfinite(doubt).all()):
@@ -94,3 +95,16 @@ class HeightTable(NamedTuple):
         """A height [m] that about one of ``count`` summits reaches."""
         rest = self.below[-1] - self.below[1:]
         return self.origin + float(self.high[np.argmax(rest <= 1.0 / max(count, 1.0))])
+
+
+def _counted(below: Floats, above: Floats) -> Floats:
+    """The part of all heights on each piece, from the fractions below and above its edges, by the nearer tail.
+
+    Heights below all pieces count as on the first. Where no fraction is known, all that is missing may stand.
+    """
+    below[0], above[0] = 0.0, 1.0
+    if not (math.isfinite(below[-1]) and math.isfinite(above[-1])):  # as of kappa4 at its ends
+        below[-1], above[-1] = 1.0, 0.0
+    counted = np.where(below[1:] < above[1:], below[1:] - below[:-1], above[:-1] - above[1:])
+    missing = max(1.0 - float(np.nansum(counted)), 0.0)
+    return np.where(np.isfinite(counted), counted, missing).clip(min=0.0)
