@@ -63,8 +63,8 @@ def _dimensions(data: Labelled) -> Iterator[str]:
     if not all(data.sizes.values()):
         yield "a dimension has no length"
     runs = data.variables["status"].dims
-    if "step" in runs or "realization" in runs[:-1]:
-        yield f"status lies over {', '.join(runs)}; it must lie over swept keys and realization"
+    if "step" in runs or "realization" in runs[:-1] or len(set(runs)) < len(runs):
+        yield f"status lies over {', '.join(runs)}; it must lie over swept keys, each once, and realization"
     if "realization" in data.sizes and "realization" not in runs:
         yield "status does not lie over realization"
     if "realization" not in data.sizes and "realization_count" not in data.variables:

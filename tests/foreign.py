@@ -13,8 +13,8 @@ ODD = "\x1b[31m\x1b]0;t\x07 \x9b2J \x85 \u202e \u2066 \u200b \r \x00 \x7f é"
 """What a terminal acts on, and an innocent letter."""
 _HEX = "F" * 5000
 _TEXTS = (
-    *("", "text", ODD.replace("\x00", ""), "1e-3", "1 mm", "nan", "days since 2000-01-01", "m", "N", "x" * 100_000),
-    *("[", "[" * 3000, f"a = {'[' * 300}{']' * 300}", f"{'x.' * 3000}y = 1", f"a = 0x{_HEX}", "a = nan"),
+    *("", "text", ODD.replace("\x00", ""), "1e-3", "1 mm", "days since 2000-01-01", "m", "N", "x" * 100_000),
+    *("[", "[" * 3000, f"a = {'[' * 300}{']' * 300}", f"{'x.' * 3000}y = 1", f"a = 0x{_HEX}"),
     *("batch = 3", "[batch]\nestimator = 3", f"[batch]\nestimator = 0x{_HEX}", "sweep = 5", "[sweep]\na = [1]"),
     *("separation branch", "status force", "force_mean", "jkr", "cone", "tabulated", "power_law", "1"),
 )
