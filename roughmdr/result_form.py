@@ -29,7 +29,7 @@ _BRANCHES = ("loading", "unloading")
 
 def fault_in(data: Labelled) -> str:
     """Why arrays are no result; empty where they are one."""
-    for faults in (_missing, _attributes, _dimensions, _arrays, _curves, _numbers):
+    for faults in (_missing, _attributes, _dimensions, _arrays, _pairs, _curves, _numbers):
         if fault := next(faults(data), ""):
             return fault
     return ""
@@ -63,8 +63,8 @@ def _dimensions(data: Labelled) -> Iterator[str]:
     if not all(data.sizes.values()):
         yield "a dimension has no length"
     runs = data.variables["status"].dims
-    if "step" in runs or "realization" in runs[:-1]:
-        yield f"status lies over {', '.join(runs)}; it must lie over swept keys and realization"
+    if "step" in runs or "realization" in runs[:-1] or len(set(runs)) < len(runs):
+        yield f"status lies over {', '.join(runs)}; it must lie over swept keys, each once, and realization"
     if "realization" in data.sizes and "realization" not in runs:
         yield "status does not lie over realization"
     if "realization" not in data.sizes and "realization_count" not in data.variables:
@@ -86,6 +86,14 @@ def _arrays(data: Labelled) -> Iterator[str]:
     for name, array in data.coordinates.items():
         if name not in BESIDE and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"
+
+
+def _pairs(data: Labelled) -> Iterator[str]:
+    """What goes with something else."""
+    if ("tabor_number" in data.variables) != ("adhesion_law" in data.variables):
+        yield "it holds one of tabor_number and adhesion_law without the other"
+    if (data.variables["status"].values == FAILED).any() and "remark" not in data.coordinates:
+        yield "runs failed, and no remark says why"
 
 
 def _curves(data: Labelled) -> Iterator[str]:

@@ -291,6 +291,24 @@ def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None
         assert str(fault).startswith(f"{folder / 'many.toml'}:{line}: {text}")
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "says"),
+    [
+        ("hurst", 0.8, "unknown key; it can be correlation, count, density"),
+        ("source", "RANDOM", "not available; did you mean 'random'?"),
+        ("source", "nonsens", "not available; it can be random, nayak, surface, file"),
+        ("Shape", "cone", "unknown key; did you mean 'shape'?"),
+    ],
+)
+def test_a_fault_is_told_alone(key: str, value: object, says: str) -> None:
+    """A key of another source is no key of this one, and no source is guessed at."""
+    with pytest.raises(rm.SceneError) as caught:
+        read(scene(asperities={**ASPERITIES, key: value}))
+    (fault,) = caught.value.faults
+    assert fault.key == f"asperities.{key}"
+    assert fault.message.startswith(says)
+
+
 def test_the_resolution_of_a_pull_off_counts_the_step_before_the_first_on_the_way_back() -> None:
     result = rm.run(scene(path={"separation": ["4 sigma", "-1 sigma", "2 sigma"]}, batch=None))
     force = result.force[0].to_numpy()

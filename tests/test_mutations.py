@@ -1,8 +1,9 @@
 """Scenes with one thing wrong, made by walking the schema: each is refused at its key and line and writes nothing."""
 
+import contextlib
 import copy
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,11 +12,15 @@ import pytest
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from pydantic import BaseModel
 from scenes import ASPERITIES, SCENE
 
 from roughmdr.cli import main
+from roughmdr.errors import SceneError
 from roughmdr.faults import sections_of
+from roughmdr.scene import read
 from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
 
@@ -255,6 +260,59 @@ def test_one_thing_wrong_is_refused_at_its_line(folder: Path, mutation: Mutation
     output = refused(folder, text)
     lines = [line for line in output.splitlines() if f"scene.toml:{line_of(text, mutation.key)}: " in line]
     assert any(mutation.key in line for line in lines), output
+
+
+SPELLINGS: dict[str, Callable[[str], str]] = {
+    "in capitals": str.upper,
+    "with a capital": str.capitalize,
+    "with a blank": " {}".format,
+    "with a blank behind": "{} ".format,
+    "with a hyphen": lambda key: key.replace("_", "-"),
+}
+KEYS = sorted(
+    {part for key in declared(Scene) for part in key.split(".")}
+    | {"distribution", "mean", "std", "loc", "scale", "min", "max", "mode", "linspace", "logspace", "num", "s", "c"}
+)
+
+
+def tables(base: str) -> list[str]:
+    """The tables of a scene, the whole among them."""
+    return ["", *(key for key in paths(BASES[base]) if isinstance(value_of(BASES[base], key), dict))]
+
+
+def with_key(base: str, at: str, key: str) -> dict[str, Any]:
+    table = copy.deepcopy(BASES[base])
+    (value_of(table, at) if at else table).setdefault(key, "1 um")
+    return table
+
+
+def assert_no_hint_suggests_what_was_given(folder: Path, table: dict[str, Any]) -> None:
+    with contextlib.chdir(folder):
+        try:
+            read(table)
+        except SceneError as error:
+            for fault in error.faults:
+                meant = re.findall("'([^']*)'", fault.message.partition("did you mean")[2])
+                assert not {fault.key, fault.key.rpartition(".")[2], fault.value.strip("'")} & set(meant), fault
+
+
+@pytest.mark.parametrize(("base", "at"), [(base, at) for base in ("every section", "moments") for at in tables(base)])
+def test_no_hint_suggests_a_key_that_stands_elsewhere(folder: Path, base: str, at: str) -> None:
+    for key in KEYS:
+        assert_no_hint_suggests_what_was_given(folder, with_key(base, at, key))
+
+
+@settings(deadline=None, max_examples=150)
+@given(base=st.sampled_from(sorted(BASES)), spelt=st.sampled_from(sorted(SPELLINGS)), data=st.data())
+def test_no_hint_suggests_what_is_spelt_otherwise(folder: Path, base: str, spelt: str, data: st.DataObject) -> None:
+    names = [key for key in paths(BASES[base]) if isinstance(value_of(BASES[base], key), str)]
+    if data.draw(st.booleans()):
+        at, key = data.draw(st.sampled_from(tables(base))), data.draw(st.sampled_from(KEYS))
+        table = with_key(base, at, SPELLINGS[spelt](key))
+    else:
+        table, key = copy.deepcopy(BASES[base]), data.draw(st.sampled_from(names))
+        put(table, key, SPELLINGS[spelt](value_of(table, key)))
+    assert_no_hint_suggests_what_was_given(folder, table)
 
 
 @pytest.mark.parametrize(

@@ -156,6 +156,24 @@ def test_a_top_beyond_the_neighbours_is_not_trusted(side: float, top: float) -> 
     assert found.height.tolist() == [pytest.approx(top, abs=1e-8)]
 
 
+@settings(deadline=None)
+@given(drops=st.lists(st.floats(0.01, 1.0), min_size=8, max_size=8), unit=st.sampled_from([1e-9, 1.0]))
+def test_the_paraboloid_goes_through_the_point_and_is_fitted_to_its_eight_neighbours(
+    drops: list[float], unit: float
+) -> None:
+    """Against least squares over the neighbours alone, in which the height of the point itself is no unknown."""
+    height = np.full((5, 5), -9.0)
+    height[1:4, 1:4] = -np.insert(drops, 4, 0.0).reshape(3, 3)
+    x, y = (axis.ravel() for axis in np.meshgrid([-0.5, 0.0, 0.5], [-0.7, 0.0, 0.7], indexing="ij"))
+    design = np.stack([x, y, 0.5 * x * x, x * y, 0.5 * y * y], axis=1)
+    others = np.arange(9) != 4
+    _, _, A, B, C = np.linalg.lstsq(design[others], height[1:4, 1:4].ravel()[others])[0]
+    if not (A * C - B * B > 1e-6 and A < 0.0):
+        return  # no dome
+    found = find_summits(HeightMap(unit * height, 0.5 * unit, 0.7 * unit))
+    assert found.parameters["radius"].tolist() == [pytest.approx(unit / np.sqrt(A * C - B * B), rel=1e-9)]
+
+
 def test_rounding_is_no_roughness(tmp_path: Path) -> None:
     x, y = np.arange(60.0)[:, None], np.arange(50.0)[None, :]
     for name, height in (("plane", 1e-3 * x + 2e-3 * y), ("dome", -((x - 30.0) ** 2) - (y - 25.0) ** 2)):

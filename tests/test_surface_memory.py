@@ -33,7 +33,7 @@ def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     height[100:104, 200:300] = np.nan
     np.save(folder / "gaps.npy", height)
     data = xr.Dataset({"height": (("x", "y"), height)}, coords={"x": at, "y": at})
-    packed = {"dtype": "int32", "scale_factor": 1e-16, "_FillValue": -(2**31)}
+    packed = {"dtype": "int32", "scale_factor": 1e-16, "_FillValue": -(2**31), "zlib": True, "chunksizes": (60, 500)}
     data.to_netcdf(folder / "packed.nc", encoding={"height": packed})
     return folder
 
@@ -68,6 +68,16 @@ def test_little_is_held_beside_the_map(
     assert peak < most * 8 * POINTS**2
     assert again.sizes == first.sizes
     np.testing.assert_allclose(again.height, first.height, rtol=1e-12)
+
+
+@given(rows=st.integers(1, 10**5), columns=st.integers(1, 10**8), together=st.integers(1, 10**4))
+def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> None:
+    parts = list(content.blocks(rows, columns, together))
+    assert [row for part in parts for row in (part.start, part.stop)][1:-1:2] == [part.start for part in parts[1:]]
+    assert (parts[0].start, parts[-1].stop) == (0, rows)
+    for part in parts:
+        assert part.start % together == 0
+        assert (part.stop - part.start - together) * columns < content._TOGETHER
 
 
 @settings(deadline=None, max_examples=60)

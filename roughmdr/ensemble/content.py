@@ -29,7 +29,10 @@ def check_points(shape: tuple[int, ...]) -> None:
         raise RoughmdrError(f"the map has {points} points; it needs at least 3 x 3, over two dimensions")
 
 
-def blocks(rows: int, columns: int) -> Iterator[slice]:
-    """Some rows at a time of so many with so many columns: a map is worked on in parts that need little beside it."""
-    size = max(1, _TOGETHER // columns)
+def blocks(rows: int, columns: int, together: int = 1) -> Iterator[slice]:
+    """Some rows at a time of so many with so many columns: a map is worked on in parts that need little beside it.
+
+    Rows that belong ``together``, so many of them, are not parted.
+    """
+    size = together * -(-_TOGETHER // (columns * together))
     return (slice(first, min(first + size, rows)) for first in range(0, rows, size))

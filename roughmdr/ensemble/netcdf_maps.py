@@ -35,9 +35,13 @@ def read_netcdf(path: Path, channel: str | None) -> Content:
 
 
 def _values(height: "xr.DataArray") -> NDArray[Any]:
-    """Read in blocks, since what is packed or has fill values is several times as large while it is unpacked."""
+    """Read in blocks, since what is packed or has fill values is several times as large while it is unpacked.
+
+    What the file compresses together is read together, and so only once.
+    """
     values = np.empty(height.shape, height.dtype)
-    for rows in blocks(*values.shape):
+    together = (height.encoding.get("chunksizes") or (1,))[0]
+    for rows in blocks(*values.shape, together):
         values[rows] = height[rows].to_numpy()
     return values
 
