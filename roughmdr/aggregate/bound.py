@@ -41,13 +41,12 @@ _mixed: Callable[..., bool]
 
 
 def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: float, greatest: Floats) -> float:
-    """The error [N] of ``count`` contacts of which |k| is at most ``slope`` and the computed force off by ``push``, both
-    reduced, and the computed indentation by ``swing`` of its terms.
+    """The error [N] of ``count`` contacts of which |k| comes to ``slope`` [N/m] and what the computed forces are off by
+    to ``push`` [N], while each computed indentation is off by ``swing`` of its terms.
     """
     deepest = greatest[DEPTH] if _adhesive else 0.0
     farthest = max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest
-    each = slope * greatest[RIGIDITY] * (4.0 * _UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push * greatest[LOAD]
-    return float(count * each)
+    return float(slope * (4.0 * _UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push)
 
 
 def bound(
@@ -56,6 +55,7 @@ def bound(
     forms: Floats,
     h: float,
     retracted: bool,
+    scales: Floats,
     greatest: Floats,
     held: Floats,
     found: Floats,
@@ -82,6 +82,7 @@ def bound(
         for i in range(count):
             slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(forms, i))))
             push = max(push, abs(_force(found[STATE, i], _own(forms, i))) * _errors(_own(forms, i))[0])
+    slope, push = count * slope * greatest[RIGIDITY], count * push * greatest[LOAD]
     return worst(count, z, h, slope, push, 0.0, greatest)
 
 
@@ -91,6 +92,7 @@ def bound_found(
     forms: Floats,
     h: float,
     retracted: bool,
+    scales: Floats,
     greatest: Floats,
     held: Floats,
     found: Floats,
@@ -110,5 +112,5 @@ def bound_found(
             if _magnitude is not None:
                 g, pushed = _magnitude(found[STATE, i], _own(forms, i))
                 off += own * pushed + _NEXT_TO_A_FOLD * each * k * g
-            slope, push, swing = max(slope, k), max(push, off), max(swing, each)
+            slope, push, swing = slope + scales[RIGIDITY, i] * k, push + scales[LOAD, i] * off, max(swing, each)
     return worst(count, z, h, slope, push, swing, greatest)

@@ -58,6 +58,8 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
         circling = i % 3 == 2 and i > _PATIENCE
         if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
+            if 0.0 < 4.0 * low < high < math.inf:  # a step up a steep power can lead hundreds of decades too far
+                better = math.sqrt(low) * math.sqrt(high)
             if not low < better < high:
                 return t
         t = better
