@@ -40,9 +40,7 @@ def groups(count: int) -> list[Group]:
     for kind, part in share.items():
         each = round(0.5 * count * part / sum(share.values()) + 0.5)
         for adhesive in (False, True):
-            made += [
-                Group(kind, adhesive, range(begin, min(begin + _CHUNK, each))) for begin in range(0, each, _CHUNK)
-            ]
+            made += [Group(kind, adhesive, range(begin, min(begin + _CHUNK, each))) for begin in range(0, each, _CHUNK)]
     return made
 
 

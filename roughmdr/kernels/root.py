@@ -82,7 +82,7 @@ def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
 
 
 def arrived(t: float, away: float, x: float, rung: float, row: Floats) -> bool:
-    """Whether a ``nearer`` from ``away`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
+    """Whether a step from so far ``away`` has come to the state on branch ``rung``: one lies beyond the last foot."""
     beyond = t - row[LAST]
     is_last = (rung == row[COUNT]) & (x > row[LAST_X])
     return bool(is_last & (beyond > row[NEAR] * t) & (away <= _FINE * beyond))

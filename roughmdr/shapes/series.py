@@ -88,7 +88,9 @@ class PowerSeries(Common):
     units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
     along: ClassVar[str] = "term"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, kink=_kink, strain=_strain, roundings=_roundings)
+    profile: ClassVar[Profile] = Profile(
+        _curve, _push, _swept, _place, _height, kink=_kink, strain=_strain, roundings=_roundings
+    )
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:
