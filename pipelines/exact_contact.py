@@ -1,7 +1,8 @@
-"""The exact force of one asperity at a given indentation, from closed forms with 60 digits, in a fraction of a millisecond.
+"""The exact force of one asperity at a given indentation, from closed forms with 60 digits, in about a millisecond.
 
-The state that a kernel found is where the search begins; what is found must be a root, to 33 digits, on the same stable
-branch. Profiles are those of DESIGN's table, g and a g - G (H 16, 17, 32, 33, 40, 41), none of them as the kernels have it.
+The state that a kernel found is where the search begins; what is found must be a root, to 33 digits, on the same
+stable branch. Profiles are those of DESIGN's table, g and a g - G (H 16, 17, 32, 33, 40, 41), none of them as the
+kernels write it.
 """
 
 from collections.abc import Callable
@@ -147,6 +148,7 @@ class Exact:
     def __init__(self, shape: Shape, modulus: float, work: float) -> None:
         self.profile = profile(shape)
         self.power = Twin(shape, modulus, work) if isinstance(shape, PowerShape) else None
+        """Its folds have a closed form."""
         self.modulus = mp.mpf(modulus)
         self.per_root = mp.sqrt(2 * mp.pi * mp.mpf(work) / self.modulus)
 
@@ -162,10 +164,12 @@ class Exact:
 
     def fold(self) -> Real:
         """The a [m] where a power law lets go."""
+        if self.power is None:
+            raise ValueError("only the folds of power laws have a closed form")
         return self.power.fold("indentation")
 
     def state(self, indentation: Real, begin: float, low: Real, high: Real) -> Real | None:
-        """The t of an indentation [m] on the stable branch from low to high, from ``begin`` on; None where none is found.
+        """The t of an indentation [m] on the stable branch from low to high; None where none is found near ``begin``.
 
         By secants; where they lead out of the branch by halves.
         """

@@ -16,7 +16,7 @@ from roughmdr.aggregate.staircase import staircase
 from roughmdr.arguments import Floats
 from roughmdr.kernels.laws import Law, choose
 from roughmdr.kernels.row import COUNT, FOOT, TOP
-from roughmdr.shapes import SHAPES, Curved, Shape
+from roughmdr.shapes import SHAPES, Shape
 
 NEAREST = 1e-12
 """To a fold, over its depth: nearer ones are not asked for."""
@@ -87,6 +87,11 @@ def _table(rng: np.random.Generator) -> Shape:
     return rm.Tabulated(r * length / r[-1], f * length * _power(rng, -4.0, 0.0))
 
 
+def _capped(rng: np.random.Generator) -> Shape:
+    radius = _length(rng)
+    return rm.CappedParaboloid(radius, radius * _power(rng, 0.0, 4.0), _length(rng))
+
+
 DRAW: dict[str, Callable[[np.random.Generator], Shape]] = {
     "paraboloid": lambda rng: rm.Paraboloid(_length(rng)),
     "cone": lambda rng: rm.Cone(_slope(rng)),
@@ -96,20 +101,15 @@ DRAW: dict[str, Callable[[np.random.Generator], Shape]] = {
     "truncated_cone": lambda rng: rm.TruncatedCone(_slope(rng), _length(rng)),
     "truncated_paraboloid": lambda rng: rm.TruncatedParaboloid(_length(rng), _length(rng)),
     "rounded_cone": lambda rng: rm.RoundedCone(_slope(rng), _length(rng)),
-    "capped_paraboloid": lambda rng: _capped(rng),
+    "capped_paraboloid": _capped,
     "rounded_punch": lambda rng: rm.RoundedPunch(_length(rng), _length(rng)),
     "power_series": _series,
     "tabulated": _table,
 }
 
 
-def _capped(rng: np.random.Generator) -> Shape:
-    radius = _length(rng)
-    return rm.CappedParaboloid(radius, radius * _power(rng, 0.0, 4.0), _length(rng))
-
-
 def found(kind: str, adhesive: bool, seed: int) -> tuple[Asperity, Found]:
-    """One asperity of a kind, with JKR's adhesion or without, at random; those that floats do not hold are passed over."""
+    """One asperity of a kind, at random, with JKR's adhesion or without; what floats do not hold is passed over."""
     rng = np.random.default_rng([list(SHAPES).index(kind), adhesive, seed])
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", rm.LimitWarning)
@@ -134,7 +134,7 @@ def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperit
     if law.curved and row[COUNT] == 0.0:
         return None
     natural = law.natural(modulus, work, width, rise, row)
-    exact = Exact(shape, modulus, work) if kind != "flat_punch" else Pinned(shape, modulus, work)
+    exact = Pinned(shape, modulus, work) if isinstance(shape, rm.FlatPunch) else Exact(shape, modulus, work)
     ends = _ends(law, row, exact, natural) if adhesive else []
     indentation = _indentation(rng, law, row, exact, natural, ends)
     if not math.isfinite(indentation) or indentation == 0.0 or (indentation < 0.0 and not adhesive):
@@ -169,7 +169,7 @@ def _indentation(
     natural: tuple[tuple[float, float], float, float, float],
     ends: Ends,
 ) -> float:
-    """At a distance of 1e-12 to 1e3 depths to the end of a branch; without adhesion at a radius of 1e-4 to 1e4 widths."""
+    """At 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
     if not ends:
         return float(natural[0][0] * law.distance(_power(rng, -4.0, 2.0), row))
     depth = max(-foot_value for _, _, foot_value, _ in ends)

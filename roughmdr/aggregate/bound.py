@@ -1,19 +1,19 @@
 """How far the sum of the forces of a block can be off.
 
-A kernel finds the state t of a contact at which the indentation D, as it computes it, is z - h. With all digits D(t) is
-off by some eta, and the right state is the t* at which D is z - h. So the force is off by what P(t) is computed wrongly
-by, and by |P(t) - P(t*)|. The second is at most m |k(t)| eta:
+A kernel finds the state t of a contact where the indentation D, as it computes it, is z - h. With all digits D(t)
+is off by some eta, and the right state is the t* with D(t*) = z - h. So the force is off by what P(t) is computed
+wrongly by, and by |P(t) - P(t*)|. That is at most m |k(t)| eta, whichever way k goes along the branch:
 
-- Far from a fold k is all but the same from t to t*, so that m is 1.
-- Next to a smooth fold D - D_c goes with y = t - t_c as y^2, where the fold is about to vanish as y^3, or as something
-  between; and P as y. With D* = D - eta down to D_c itself, |y - y*|/eta grows to y/(D - D_c) = 2 or 3 times dy/dD.
-  Upwards dy/dD falls. So m is 2 or 3, however close the fold is and however k goes along the rest of the branch.
-- Where t is so close to the fold that all digits of 2 sqrt(a) g' - dl' are lost, the computed k is some 1/u times a,
-  and |k| eta with eta >= u dl is no less than the force itself.
+- Far from a fold k is all but the same from t to t*, and m is 1.
+- Next to a smooth fold P goes with y = t - t_c, and D - D_c with y^2, where two folds are about to meet with y^3, or
+  with something between. Upwards dy/dD falls, and m is 1. Downwards t* is no further off than the fold itself, and
+  from there on y/(D - D_c) is 2 or 3 times dy/dD at t. So m is 2 or 3, however close the fold is.
+- Where t is so close to a fold that no digit of the slope of D is left, what is computed for |k| is some a/u, and |k|
+  eta, with eta >= u dl, no less than the force itself.
 
-eta is the rounding of z - h, of the depth and of x, at most 4 u (|z| + |h| + depth) for the two of them that next to a
-fold are not small as D - D_c is; and, where D comes from g - dl, what they are computed wrongly by, some u (g + dl). g is
-z - h + dl.
+eta is made of the roundings of z - h and of the depth, which times m are at most 4 u (|z| + |h| + depth); those of
+x are as small as D - D_c is there. Where D is computed as g - dl, the errors of both come to it, some u (g + dl),
+and g is z - h + dl. Where the state comes from the distance to the fold itself, it has none of these.
 """
 
 import math
@@ -41,13 +41,12 @@ _mixed: Callable[..., bool]
 
 
 def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: float, greatest: Floats) -> float:
-    """The error [N] of ``count`` contacts of which |k| is at most ``slope`` and the computed force off by ``push``, both
-    reduced, and the computed indentation by ``swing`` of its terms.
+    """The error [N] of ``count`` contacts whose |k| add up to ``slope`` [N/m] and the errors of whose forces, each at
+    its state, to ``push`` [N]; z - h, as a term of the computed indentation, has a relative error of ``swing``.
     """
     deepest = greatest[DEPTH] if _adhesive else 0.0
     farthest = max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest
-    each = slope * greatest[RIGIDITY] * (4.0 * _UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push * greatest[LOAD]
-    return float(count * each)
+    return float(slope * (4.0 * _UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push)
 
 
 def bound(
@@ -56,6 +55,7 @@ def bound(
     forms: Floats,
     h: float,
     retracted: bool,
+    scales: Floats,
     greatest: Floats,
     held: Floats,
     found: Floats,
@@ -82,6 +82,7 @@ def bound(
         for i in range(count):
             slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(forms, i))))
             push = max(push, abs(_force(found[STATE, i], _own(forms, i))) * _errors(_own(forms, i))[0])
+    slope, push = count * slope * greatest[RIGIDITY], count * push * greatest[LOAD]
     return worst(count, z, h, slope, push, 0.0, greatest)
 
 
@@ -91,6 +92,7 @@ def bound_found(
     forms: Floats,
     h: float,
     retracted: bool,
+    scales: Floats,
     greatest: Floats,
     held: Floats,
     found: Floats,
@@ -110,5 +112,5 @@ def bound_found(
             if _magnitude is not None:
                 g, pushed = _magnitude(found[STATE, i], _own(forms, i))
                 off += own * pushed + _NEXT_TO_A_FOLD * each * k * g
-            slope, push, swing = max(slope, k), max(push, off), max(swing, each)
+            slope, push, swing = slope + scales[RIGIDITY, i] * k, push + scales[LOAD, i] * off, max(swing, each)
     return worst(count, z, h, slope, push, swing, greatest)

@@ -123,7 +123,7 @@ def _loop(
                 settle(count, z, n, h, reach, begin, end, bottom, top, scales, held, found, terms)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or top[begin] > bottom[begin]
-                    error = bound(count, z, n, h, retracted, greatest, held, found, terms)
+                    error = bound(count, z, n, h, retracted, scales, greatest, held, found, terms)
                     accumulate(total[ERROR], carried[ERROR], step, error)
             if _adhesive:
                 held[count:count_before] = 0.0  # out of reach

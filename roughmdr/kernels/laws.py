@@ -75,7 +75,7 @@ class Law(NamedTuple):
     nearer: Callable[..., tuple[float, float, float]] | None = None
     """(state, x, form) -> the state one step nearer, how far away it was, and d(state)/dx."""
     arrived: Callable[..., bool] | None = None
-    """(state, away, x, rung, form) -> whether a step from so far away has come to the state on branch number ``rung``."""
+    """(state, away, x, rung, form) -> whether a step from so far away has come to the state on branch ``rung``."""
     state_on: Kernel | None = None
     """(x, rung, form) -> the state on branch number ``rung``."""
     rung: Kernel | None = None

@@ -58,6 +58,8 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
         circling = i % 3 == 2 and i > _PATIENCE
         if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
+            if 0.0 < 4.0 * low < high < math.inf:  # a step up a steep power can lead hundreds of decades too far
+                better = math.sqrt(low) * math.sqrt(high)
             if not low < better < high:
                 return t
         t = better
@@ -80,7 +82,7 @@ def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
 
 
 def arrived(t: float, away: float, x: float, rung: float, row: Floats) -> bool:
-    """Whether a ``nearer`` from ``away`` has come to the state on branch number ``rung``: only one lies beyond the last foot."""
+    """Whether a step from so far ``away`` has come to the state on branch ``rung``: one lies beyond the last foot."""
     beyond = t - row[LAST]
     is_last = (rung == row[COUNT]) & (x > row[LAST_X])
     return bool(is_last & (beyond > row[NEAR] * t) & (away <= _FINE * beyond))

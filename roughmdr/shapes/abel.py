@@ -30,8 +30,8 @@ def _beyond(knot: float, a: float, place: float, base: float) -> float:
 
 @njit
 def integrals(place: Floats, base: Floats, knots: Floats, coefficients: Floats) -> Floats:
-    """g, g' and ∫ x g' dx at each x = sqrt(place^2 + base^2) > 0, of f' = c0 + c1 s + c2 s^2 over s = r - knot, the last
-    piece without end; ``base`` is a knot, 0 among them.
+    """g, g' and ∫ x g' dx at each x = sqrt(place^2 + base^2) > 0, base a knot or 0, of f' = c0 + c1 s + c2 s^2 over
+    s = r - knot, the last piece without end.
 
     Angles and s are formed without differences of numbers that are nearly equal; next to a knot, where g' begins like
     the root of the way from it, x itself has too few digits.

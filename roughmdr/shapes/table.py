@@ -4,8 +4,8 @@ A form holds [number of dips, dips (from, to) ..., number of pieces, their begin
 knot, scale, middle, strain at its begin, the sums of the magnitudes of the coefficients of g and of ∫ x g' dx and the
 coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a constant, the strain at the end
 and coefficients; then the number of knots and for each its r, f and the coefficients of f' over r - knot]. Over a piece
-these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the kink of a root at every knot;
-beyond the end g - steepness a is one in 1/a^2.
+these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the
+kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
 """
 
 import math
