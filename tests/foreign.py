@@ -35,17 +35,8 @@ _ATTRIBUTES = (
 )
 _NAMES = (
     *("force", "force_mean", "force_sem", "contact_area", "status", "separation", "branch", "realization_count"),
-    *(
-        "adhesion_law",
-        "tabor_number",
-        "accuracy_method",
-        "accuracy_reached",
-        "cell_key",
-        "remark",
-        "foo",
-        "c\x9b\u202ed",
-    ),
-    *("height", "radius", "slope", "x", "y", "r", "f", "exponent", "coefficient"),
+    *("adhesion_law", "tabor_number", "accuracy_method", "accuracy_reached", "cell_key", "remark", "foo"),
+    *("height", "radius", "slope", "x", "y", "r", "f", "exponent", "coefficient", "odd\x9b\u202e"),
 )
 _DIMENSIONS = ("realization", "step", "cell", "asperity", "x", "y", "adhesion_work", "odd\x9b\u202e")
 _KINDS = ("f8", "f4", "i8", "i4", "i1", "u8", "S1", "O")
