@@ -41,7 +41,7 @@ def _values(height: "xr.DataArray") -> NDArray[Any]:
     """
     values = np.empty(height.shape, height.dtype)
     together = (height.encoding.get("chunksizes") or (1,))[0]
-    for rows in blocks(*values.shape, together=together):
+    for rows in blocks(values.shape[0], values.shape[1], together):
         values[rows] = height[rows].to_numpy()
     return values
 
