@@ -3,7 +3,6 @@
 Exit status: 0 done, 2 wrong input, 130 interrupted; 1 anything else: runs failed, or what was begun could not go on.
 """
 
-import errno
 import gc
 import io
 import os
@@ -12,14 +11,14 @@ import sys
 import time
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
-from roughmdr.wording import harmless
+from roughmdr.errors import RoughmdrError, SceneError, Unfinished
+from roughmdr.terminal import say, say_error, say_warning
 
 if TYPE_CHECKING:
     from roughmdr.labelled import Labelled
@@ -34,71 +33,23 @@ class _Group(click.Group):
     def invoke(self, ctx: click.Context) -> object:
         try:
             with warnings.catch_warnings():
-                warnings.showwarning = _warn
+                warnings.showwarning = say_warning
                 return super().invoke(ctx)
         except click.ClickException as error:
             message = io.StringIO()
             error.show(message)
-            _say(message.getvalue().removesuffix("\n"), err=True)
+            say(message.getvalue().removesuffix("\n"), err=True)
             sys.exit(error.exit_code)
         except RoughmdrError as error:
-            _stop(error)
+            say_error(error)
+            sys.exit(_NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
         except MemoryError as error:
-            _say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
+            say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
             sys.exit(_NOT_ALL)
         except (KeyboardInterrupt, click.Abort) as interrupt:
-            _say(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
+            say(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
             # Threads may still compute, and what they finish is not waited for.
             os._exit(_INTERRUPTED)
-
-
-def _say(text: str, *, err: bool = False) -> None:
-    """Print what may come from a file, and so may hold what a terminal acts on."""
-    _print(harmless(text), err=err)
-
-
-def _print(text: str, *, err: bool) -> None:
-    """Print what is harmless; in colour where that is a terminal and NO_COLOR is not set.
-
-    The standard error stream may lead nowhere; RoughmdrError where the standard output cannot be written.
-    """
-    stream = sys.stderr if err else sys.stdout
-    encoding = getattr(stream, "encoding", None) or "utf-8"
-    text = text.encode(encoding, "backslashreplace").decode(encoding)
-    try:
-        click.echo(text, err=err, color=False if os.environ.get("NO_COLOR") else None)
-    except OSError as error:
-        if error.errno == errno.EPIPE and not err:
-            raise  # whoever read it has seen enough: click ends without a word
-        with suppress(OSError):  # or the end of Python would write it again
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-        if not err:
-            raise RoughmdrError(f"the standard output cannot be written: {error.strerror}") from None
-
-
-def _warn(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
-    _say(f"roughmdr: {category.__name__}: {message}", err=True)
-
-
-def _stop(error: RoughmdrError) -> NoReturn:
-    """The message on the standard error stream, and the exit status."""
-    faults = error.faults if isinstance(error, SceneError) else ()
-    for line in map(_coloured, faults) if faults else map(harmless, str(error).splitlines()):
-        _print(f"roughmdr: {line}", err=True)
-    sys.exit(_NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
-
-
-def _coloured(fault: Fault) -> str:
-    key, value, text, place = map(harmless, fault)
-    message, hint, name = text.partition("did you mean")
-    return str(
-        Fault(
-            place=place and click.style(place, bold=True),
-            key=key and click.style(key, fg="cyan", bold=True),
-            value=value and click.style(value, fg="red"),
-            message=message + (hint and click.style(hint + name, fg="green")),
-        )
-    )
 
 
 @contextmanager
@@ -194,11 +145,11 @@ def run(
         tls=_tls(tls_ca, tls_cert, tls_key),
     )
     if not quiet:
-        _say(describe_result(result, time.perf_counter() - started))
-        _say(f"result       {click.format_filename(output)}")
+        say(describe_result(result, time.perf_counter() - started))
+        say(f"result       {click.format_filename(output)}")
     if failed := describe_failed(result):
         if quiet:
-            _say(f"roughmdr: {failed}", err=True)
+            say(f"roughmdr: {failed}", err=True)
         sys.exit(_NOT_ALL)
 
 
@@ -227,7 +178,7 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
     from roughmdr.plan import make_plan
 
     planned = make_plan(asked)
-    _say(describe_plan(planned, estimate(planned, workers), workers))
+    say(describe_plan(planned, estimate(planned, workers), workers))
 
 
 @main.command()
@@ -264,9 +215,9 @@ def plot(
                 found = compared(planned, names)
                 lines += found.lines
                 for line in found.remarks:
-                    _say(f"{title:<12} {line}")
+                    say(f"{title:<12} {line}")
     plot(data, output, names, lines)
-    _say(f"picture      {click.format_filename(output)}")
+    say(f"picture      {click.format_filename(output)}")
 
 
 @main.command()
@@ -281,18 +232,18 @@ def info(result: Path, cells: bool) -> None:
     if cells:
         from roughmdr.cell_table import describe_cells
 
-        _say(describe_cells(data))
+        say(describe_cells(data))
         return
     from roughmdr.describe import describe_origin, describe_result
 
-    _say(describe_result(data))
-    _say(describe_origin(data, result.stat().st_size))
+    say(describe_result(data))
+    say(describe_origin(data, result.stat().st_size))
 
 
 def _warn_of(file: Path, result: "Labelled") -> None:
     """Say so where the numbers in a file are not to be believed."""
     if fault := result.what_was_changed():
-        click.echo(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
+        say(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
 
 
 @main.command()
@@ -309,7 +260,7 @@ def new(scene: Path) -> None:
         raise StoreError(f"{scene}: is there already; give a new name")
     with replacing(scene) as temporary:
         temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
-    _say(f"scene        {click.format_filename(scene)}")
+    say(f"scene        {click.format_filename(scene)}")
 
 
 @main.command()
@@ -339,5 +290,5 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
         check_kind(output, "ensemble")
     made = make(asked.asperities, asked.seed, realization).labelled()
     write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
-    _say(describe_ensemble(made))
-    _say(f"ensemble     {click.format_filename(output)}")
+    say(describe_ensemble(made))
+    say(f"ensemble     {click.format_filename(output)}")
