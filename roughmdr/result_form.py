@@ -50,7 +50,7 @@ def _attributes(data: Labelled) -> Iterator[str]:
     try:
         scene = table_of(data.attrs["scene"])
     except ValueError as error:
-        yield f"its scene is not valid TOML: {error}"
+        yield f"its scene cannot be read: not valid TOML: {error}"
         return
     for name in ("batch", "sweep"):
         if not isinstance(scene.get(name, {}), dict):

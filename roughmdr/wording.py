@@ -36,13 +36,13 @@ def printable(key: str) -> str:
     return key if key.isprintable() else repr(key)
 
 
-def shown(value: object) -> str:
-    """A value as it stands in the scene, cut where it is long."""
+def shown(value: object, most: int = 60) -> str:
+    """A value as it stands in the scene, cut where it has more letters than ``most``."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables without end
         return "..."
-    return text if len(text) <= 60 else text[:57] + "..."
+    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def in_cells(lines: Iterable[str], cells: int) -> list[str]:

@@ -14,6 +14,7 @@ from roughmdr.tables import table_of
 from roughmdr.wording import shown
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
+_LONG = 1000  # letters of a value, as of a path or a list of numbers, in a message
 _NO_MATTER = ("title", "output", "batch", "accuracy", "sweep.mode")
 """Keys of a scene that do not change what a realisation comes to; what estimates it stands in the key itself."""
 _MATTER = ("batch.estimator", "accuracy.method")
@@ -71,7 +72,7 @@ def changes(old: str, new: str) -> Iterator[str]:
         if key.startswith(_NO_MATTER) and key not in _MATTER:
             continue
         if before.get(key) != after.get(key):
-            was, now = (shown(side[key]) if key in side else "not given" for side in (before, after))
+            was, now = (shown(side[key], _LONG) if key in side else "not given" for side in (before, after))
             yield f"{key} was {was}, is {now}"
 
 
