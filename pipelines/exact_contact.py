@@ -1,6 +1,6 @@
 """The exact force of one asperity at a given indentation, from closed forms with 60 digits, in about a millisecond.
 
-The state that a kernel found is where the search begins; what is found must be a root, to 33 digits, on the same
+The state that a kernel found is where the search begins; what is found must be a root, to 28 digits, on the same
 stable branch. Profiles are those of DESIGN's table, g and a g - G (H 16, 17, 32, 33, 40, 41), none of them as the
 kernels write it.
 """
@@ -14,7 +14,7 @@ import roughmdr as rm
 from roughmdr.shapes import Shape
 
 _SMALL = mp.mpf("1e-15")
-_CLOSE = mp.mpf("1e-33")  # tables have 40 digits
+_CLOSE = mp.mpf("1e-28")  # tables have 40 digits, of which next to a knot a dozen are lost
 _PATIENCE = 60
 
 
