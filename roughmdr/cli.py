@@ -47,7 +47,7 @@ class _Group(click.Group):
             say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
             sys.exit(_NOT_ALL)
         except (KeyboardInterrupt, click.Abort) as interrupt:
-            say(f"roughmdr: {interrupt or 'interrupted; nothing was written'}", err=True)
+            say(f"roughmdr: {str(interrupt) or 'interrupted; nothing was written'}", err=True)
             # Threads may still compute, and what they finish is not waited for.
             os._exit(_INTERRUPTED)
 

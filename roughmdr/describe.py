@@ -159,7 +159,7 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
 
 def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
     """Which laws of adhesion were taken, where the Tabor number is known."""
-    if "tabor_number" in result.variables:
+    if {"tabor_number", "adhesion_law"} <= set(result.variables):
         law = result.variables["adhesion_law"]
         names = law.attrs["flag_meanings"].split()
         values = law.values[done_of(result)]
@@ -176,8 +176,10 @@ def describe_failed(result: Labelled) -> str:
     if not failed.any():
         return ""
     what = "runs" if "realization" in result.sizes else "cells"
-    first = printable(str(result.coordinates["remark"].values[failed][0]).split("\n")[0])
-    return f"{int(failed.sum())} of {status.size} {what} failed ({first}); the same command computes them again"
+    reason = ""
+    if "remark" in result.coordinates:
+        reason = f" ({printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
+    return f"{int(failed.sum())} of {status.size} {what} failed{reason}; the same command computes them again"
 
 
 def _open_ends(result: Labelled) -> Iterator[tuple[str, str]]:

@@ -3,6 +3,7 @@
 Most of these distributions stand within one rounding of an end, or bear most where next to none of them stands.
 """
 
+import copy
 import math
 
 import numpy as np
@@ -165,3 +166,31 @@ def test_random_distributions_of_scipy() -> None:
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_many_random_distributions_of_scipy(seed: int) -> None:
     of_all_families(seed, 150)
+
+
+@pytest.mark.parametrize(
+    "radius", [{"distribution": "pareto", "b": 0.8}, {"distribution": "beta", "a": 0.05, "b": 0.05}]
+)
+def test_where_the_path_has_its_steps_changes_nothing(radius: dict[str, object]) -> None:
+    """Without adhesion contacts have no memory: a force that most steps do not have is as right as one that they do."""
+    height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
+    paths = [[2 * UM, 0.0], [2 * UM, 0.0] * 4 + [2 * UM], [2 * UM, 1.9 * UM, 1.8 * UM, 1.7 * UM, 0.0, 2 * UM]]
+    laws = [expected(height, path, asperities={"radius": {**radius, "loc": 0.0, "scale": "50 um"}}) for path in paths]
+    forces = [float(law.force.max()) for law in laws]
+    assert max(forces) / min(forces) - 1.0 <= 2.0 * max(float(law.numerical_error) for law in laws)
+
+
+@pytest.mark.parametrize("s", [0.5, 3.0, 5.0])
+def test_a_step_back_leaves_the_loading_as_it_is(s: float) -> None:
+    """Large radii bear what next to none of the asperities have; a rule with cuts must not leave them out."""
+    height = {"distribution": "expon", "loc": 0.0, "scale": UM}
+    more = {
+        "material": {"effective_modulus": 1e9},
+        "adhesion": {"model": "jkr", "work": 0.05},
+        "asperities": {"radius": {"distribution": "lognorm", "s": s, "loc": 0.0, "scale": "50 um"}},
+    }
+    path = [3 * UM, UM, 0.1 * UM]
+    loading, turned = (expected(height, steps, **copy.deepcopy(more)) for steps in (path, [*path, 0.4 * UM]))
+    stated = float(loading.numerical_error + turned.numerical_error)
+    apart = np.abs(loading.force.to_numpy() - turned.force.to_numpy()[:3]).max()
+    assert apart <= stated * float(np.abs(turned.force).max())

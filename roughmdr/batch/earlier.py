@@ -97,12 +97,13 @@ def check_no_less(target: Path, old: Labelled, new: Labelled, keys: Sequence[set
     """StoreError where a result has fewer realisations of a cell than the one at ``target`` whose place it would take.
 
     With [accuracy] that is known only when it is there, and so it is of runs that failed; ``keys`` as in is_finished.
+    Cells of another scene do not count: runs of this one were kept beside them since --fresh was given.
     """
     cell_of = {key: number for number, may in enumerate(keys) for key in may}
     counts = _counts(new)
     found = [max(counts.get(key, 0) for key in may) for may in keys]
     for key, count in _counts(old).items():
-        if count > found[cell_of[key]]:
+        if key in cell_of and count > found[cell_of[key]]:
             raise StoreError(
                 f"{target}: holds {count} realisations of a cell, of which there would be {found[cell_of[key]]}: "
                 f"{_WAYS_OUT}"

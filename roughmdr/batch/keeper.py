@@ -24,6 +24,7 @@ class Keeper:
     def __init__(self, target: Path, stack: ExitStack) -> None:
         self.target, self._stack = target, stack
         self.parts: Parts | None = None
+        self._cleared = False
         self._writer: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
         if len(os.fsencode(parts_of(target).name)) <= _LONGEST:
@@ -31,6 +32,7 @@ class Keeper:
 
     def clear(self) -> None:
         """Take away what an earlier run kept."""
+        self._cleared = True
         if self.parts is not None:
             self.parts.remove()
 
@@ -83,7 +85,8 @@ class Keeper:
         """What is safe, in words; empty where nothing is."""
         if self.parts is None or self.parts.empty or not self.parts.folder.is_dir():
             return ""
-        return f"what is finished is kept in {self.parts.folder}; the same command goes on from there"
+        again = "the same command without --fresh" if self._cleared else "the same command"
+        return f"what is finished is kept in {self.parts.folder}; {again} goes on from there"
 
 
 @contextmanager

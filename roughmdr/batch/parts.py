@@ -28,6 +28,8 @@ from roughmdr.store import cannot_be_written, sync_folder
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 _LOCK, _MANIFEST, _SHARD = "lock", "manifest.jsonl", "{:06d}.npz"
 _SHARD_NAME = re.compile(r"[0-9]{6,}\.npz")
+_OWN = re.compile(rf"{re.escape(_MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
+"""Names of all that is written to the folder beside the lock: nothing else is taken away."""
 
 
 def parts_of(target: Path) -> Path:
@@ -102,11 +104,11 @@ class Parts:
         self._next += 1
 
     def remove(self) -> None:
-        """Take the folder away, the lock last: while anything is in it, it is locked."""
+        """Take away all that was written to the folder but the lock: while anything is in it, it is locked."""
         with cannot_be_written(self.folder):
             (self.folder / _MANIFEST).unlink(missing_ok=True)  # first: without it nothing else counts
             for path in self.folder.iterdir():
-                if path.name != _LOCK:
+                if _OWN.fullmatch(path.name):
                     shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
         self.scene, self._lines, self._next = "", [], 1
 
@@ -155,7 +157,8 @@ def locked_parts(target: Path) -> Iterator[Parts]:
     try:
         with cannot_be_written(folder):
             for path in folder.glob("*.tmp"):
-                path.unlink()
+                if _OWN.fullmatch(path.name):
+                    path.unlink()
             parts = Parts(folder)
         try:
             yield parts

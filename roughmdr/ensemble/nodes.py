@@ -16,7 +16,8 @@ END = 10.0
 _NEARER_ENDS = (END, 8.0, 6.5, 5.0)  # of these the first that the inverse of a distribution leads to
 _FARTHER_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)  # where the upper tail is heavy; 37 is the last
 _BULK = 3.0  # normal scores between which most heights lie: 99.7 %
-_LAST = 8.5  # normal score beyond which parameters are left out: their share is 1e-17
+LAST = 8.5
+"""The normal score beyond which a rule with cuts leaves parameters out: their share is 1e-17."""
 _QUARTER = 0.6745  # normal score that a quarter of all heights lie above
 _STEEPEST = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
 _NEGLIGIBLE = 1e-16  # of the force that the bulk bears
@@ -142,12 +143,12 @@ class Rule(NamedTuple):
     @classmethod
     def between(cls, cuts: list[float], order: int) -> "Rule":
         """Gauss's rule for what is smooth in the root of the distance to ``cuts``: ``order`` scores in each part."""
-        ends = np.unique(np.clip([-_LAST, *cuts, _LAST], -_LAST, _LAST))
+        ends = np.unique(np.clip([-LAST, *cuts, LAST], -LAST, LAST))
         nodes, weights = np.polynomial.legendre.leggauss(order)
         y, weights = 0.5 * (1.0 + nodes), 0.5 * weights
         scores, shares = [], []
         for low, high in pairwise(ends):
-            begins, ends_there = low > -_LAST, high < _LAST
+            begins, ends_there = low > -LAST, high < LAST
             if begins and ends_there:
                 way, speed = y * y * (3.0 - 2.0 * y), 6.0 * y * (1.0 - y)
             elif begins:

@@ -51,6 +51,7 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
     separation = asked.route.separation
     steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
     if not asked.hysteretic:
+        steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
         steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
     rows = tuple(row for row in asked.rows if row != STIFFNESS)
 

@@ -11,10 +11,13 @@ import numpy as np
 from roughmdr.aggregate import Route
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.arguments import Floats
-from roughmdr.ensemble.nodes import Rule
+from roughmdr.ensemble import Source
+from roughmdr.ensemble.nodes import LAST, Rule
+from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Asked, contacts_of, dissipated_of, set_up, totals_of
 
 _MOST = 32  # steps; where more would be parted it takes longer than it is worth
+_FAR = 100.0  # times the median: beyond the last score stands 1e-17 of all, and nothing grows faster than its square
 _SCAN = 40  # scores at which the depth is looked at
 _ORDERS = (40, 56)  # on each side of a cut; the second tells how right the first is
 
@@ -28,11 +31,17 @@ class Parted(NamedTuple):
 
     @classmethod
     def of(cls, asked: Asked) -> "Parted | None":
-        """None where there is nothing to part, or no single parameter to part it by, or too many steps need it."""
-        if not asked.hysteretic or asked.law.branched or not asked.source.one_parameter:
+        """None where there is nothing to part, or no single parameter to part it by, or too many steps need it.
+
+        Nor is the rule parted where it would leave out parameters that are felt, or that no contact can have.
+        """
+        if not asked.hysteretic or asked.law.branched or not asked.source.one_parameter or _far(asked.source):
             return None
         scan = Rule.between([], _SCAN)
-        depths = _depths(asked, scan.scores)
+        try:
+            depths = _depths(asked, scan.scores)
+        except RoughmdrError:
+            return None
         heights = dict.fromkeys(asked.source.nodes(scan).heights)
         ends = [end for own in heights for end in (own.low, own.high)] if len(heights) == 1 else []
         kinks = _kinks(asked.route, ends, float(depths.min()), float(depths.max()))
@@ -57,6 +66,15 @@ class Parted(NamedTuple):
         coarse, fine = found
         fine[ERROR] += abs(fine[FORCE] - coarse[FORCE])
         return fine
+
+
+def _far(source: Source) -> bool:
+    """Whether parameters beyond the scores of a parted rule may be felt."""
+    for parameter in source.drawn_parameters:
+        low, middle, high = parameter(np.array([-LAST, 0.0, LAST]))
+        if not max(high / middle, middle / low) < _FAR:
+            return True
+    return False
 
 
 def _depths(asked: Asked, scores: Floats) -> Floats:

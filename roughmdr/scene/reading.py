@@ -1,5 +1,6 @@
 """From a TOML file, a result or a dictionary to a validated scene; every fault is found before anything is computed."""
 
+import os
 import re
 from collections.abc import Iterable
 from functools import reduce
@@ -18,7 +19,7 @@ from roughmdr.scene.lines import key_lines, line_of
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.tables import table_of
-from roughmdr.wording import printable
+from roughmdr.wording import printable, shown
 
 _PATHS = (("asperities", "file"),)
 """Keys that name a file: in a scene relative to the scene, in --set to the current folder."""
@@ -40,6 +41,8 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
         path, label, text, table = source.file, "scene", "", table_of(source.toml)
     elif isinstance(source, dict):
         path, label, text, table = None, "scene", "", _plain(source)
+    elif not isinstance(source, str | os.PathLike):
+        raise SceneError(f"scene is {shown(source)}; it must be a path, a dictionary or a Scene")
     else:
         path, label, text = Path(source), str(source), _text(Path(source))
         try:
