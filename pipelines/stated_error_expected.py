@@ -39,6 +39,9 @@ _HALVINGS = 40
 _WIDTHS = np.concatenate([4.0 ** np.arange(-18.0, 0.0), np.arange(1.0, 40.0), 40.0 * 2.0 ** np.arange(10.0)])
 """Edges of panels over heights, from the lowest, in widths of their distribution."""
 _OCTAVES = np.arange(-8.0, 12.0)  # edges about the depth that contacts are measured by, in powers of 4
+_OCTAVES_OF_LEAPS = np.arange(-12.0, -1.0)  # edges about a leap, in powers of 4 of that depth
+_LEAPS_BELOW = 2.0  # depths above the foot of a branch
+_FINE_SCAN, _CLOSER = 2_000, 3  # indentations between which leaps are looked for, and scans ever closer to one
 
 
 @cache
@@ -199,7 +202,7 @@ class Tip:
         lowest, highest, width = self.heights.low - h, self.heights.high - h, self.heights.scale
         near = foot + (self.contact.depth[0] if self.contact.law.adhesive else end - foot) * 4.0**_OCTAVES
         ends = [lowest + width * _WIDTHS, highest - width * _WIDTHS[_WIDTHS < 1.0]]
-        edges = np.concatenate([[begin, end], near, *ends, self._corners])
+        edges = np.concatenate([[begin, end], near, *ends, self._corners, self._beside_leaps])
         return np.unique(edges[(edges >= begin) & (edges <= end)])
 
     @cached_property
@@ -212,6 +215,26 @@ class Tip:
             return np.zeros(0)
         radii = [float(b) for b in profile(self.shape).kinks]
         return np.array([float(self.shape.g(b)) - stretch_at(b, modulus, adhesion.work) for b in radii])
+
+    @cached_property
+    def _beside_leaps(self) -> Floats:
+        """Indentations [m] about those at which the force all but leaps, since two folds nearly part the branch."""
+        law, depth = self.contact.law, self.contact.depth[0]
+        if not law.adhesive or self.contact.adhesion.cohesive:
+            return np.zeros(0)
+        found = [np.zeros(0)]
+        for branch, (foot, top) in enumerate(self.arcs):
+            edges = np.linspace(0.0, min(_LEAPS_BELOW * depth, top - foot), _FINE_SCAN)
+            rate = np.abs(np.diff(self._bears(branch, edges)))
+            for i in np.flatnonzero((rate[1:-1] > rate[:-2]) & (rate[1:-1] > rate[2:])) + 1:
+                low, high = edges[i - 1], edges[i + 2]
+                for _ in range(_CLOSER):
+                    near = np.linspace(low, high, _SCAN)
+                    k = int(np.abs(np.diff(self._bears(branch, near))).argmax())
+                    low, high = near[max(k - 1, 0)], near[min(k + 2, _SCAN - 1)]
+                steps = depth * 4.0**_OCTAVES_OF_LEAPS
+                found.append(foot + 0.5 * (low + high) + np.concatenate([-steps, [0.0], steps]))
+        return np.concatenate(found)
 
     @property
     def _opening(self) -> float:

@@ -4,12 +4,9 @@ Exit status: 0 done, 2 wrong input, 130 interrupted; 1 anything else: runs faile
 """
 
 import gc
-import io
-import os
 import shlex
 import sys
 import time
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,39 +14,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roughmdr.errors import RoughmdrError, SceneError, Unfinished
-from roughmdr.terminal import say, say_error, say_warning
+from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.terminal import NOT_ALL, Group, say
 
 if TYPE_CHECKING:
     from roughmdr.labelled import Labelled
     from roughmdr.runner import Tls
-
-_NOT_ALL, _WRONG_INPUT, _INTERRUPTED = 1, 2, 130
-
-
-class _Group(click.Group):
-    """A command group that turns errors raised on purpose, and the end of the memory, into messages."""
-
-    def invoke(self, ctx: click.Context) -> object:
-        try:
-            with warnings.catch_warnings():
-                warnings.showwarning = say_warning
-                return super().invoke(ctx)
-        except click.ClickException as error:
-            message = io.StringIO()
-            error.show(message)
-            say(message.getvalue().removesuffix("\n"), err=True)
-            sys.exit(error.exit_code)
-        except RoughmdrError as error:
-            say_error(error)
-            sys.exit(_NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
-        except MemoryError as error:
-            say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
-            sys.exit(_NOT_ALL)
-        except (KeyboardInterrupt, click.Abort) as interrupt:
-            say(f"roughmdr: {str(interrupt) or 'interrupted; nothing was written'}", err=True)
-            # Threads may still compute, and what they finish is not waited for.
-            os._exit(_INTERRUPTED)
 
 
 @contextmanager
@@ -68,7 +38,7 @@ def _command() -> str:
     return f"roughmdr {shlex.join(sys.argv[1:])}".encode("utf-8", "replace").decode()
 
 
-@click.group(cls=_Group, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="roughmdr")
 def main() -> None:
     """Rough, multi-asperity contact, with and without adhesion: a scene in, a load-separation law out."""
@@ -150,7 +120,7 @@ def run(
     if failed := describe_failed(result):
         if quiet:
             say(f"roughmdr: {failed}", err=True)
-        sys.exit(_NOT_ALL)
+        sys.exit(NOT_ALL)
 
 
 def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":

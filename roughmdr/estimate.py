@@ -64,7 +64,10 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     rounds = Rounds(plan)
     first = rounds.begin()
     prepare_all(plan, first)
-    start_up, resident = _start_up(plan.cells[0]), _resident()
+    try:
+        start_up, resident = _start_up(plan.cells[0]), _resident()
+    except OSError as error:  # of the folder for temporary files
+        raise RoughmdrError(f"a run of next to nothing cannot be timed here: {error.strerror}") from None
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
     costs, failures = _costs(plan, rounds, sorted(chosen.tolist()))
     variables, steps = plan.scene.output.variables, plan.cells[0].route.separation.size

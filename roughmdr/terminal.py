@@ -1,14 +1,64 @@
-"""What is printed, escaped: nothing that comes from a file reaches the terminal as a command to it."""
+"""Messages and exit statuses of the command line.
+
+Text that comes from a file is escaped, so that the terminal does not act on it.
+"""
 
 import errno
+import io
 import os
 import sys
+import warnings
 from contextlib import suppress
+from typing import Any, TextIO
 
 import click
 
-from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
 from roughmdr.wording import harmless
+
+NOT_ALL = 1
+"""Exit status where runs failed, or what was begun could not go on."""
+_WRONG_INPUT, _INTERRUPTED = 2, 130
+
+
+class Command(click.Command):
+    """A command whose help may fail to be printed."""
+
+    def make_context(self, *args: Any, **options: Any) -> click.Context:
+        """Read the arguments; for --help and --version click prints the answer here."""
+        try:
+            return super().make_context(*args, **options)
+        except OSError as error:
+            say_error(_unwritable(sys.stdout, error))
+            sys.exit(_WRONG_INPUT)
+
+
+class Group(Command, click.Group):
+    """A command group that turns errors raised on purpose, and the end of the memory, into messages."""
+
+    command_class = Command
+
+    def invoke(self, ctx: click.Context) -> object:
+        """Run a command."""
+        try:
+            with warnings.catch_warnings():
+                warnings.showwarning = say_warning
+                return super().invoke(ctx)
+        except click.ClickException as error:
+            message = io.StringIO()
+            error.show(message)
+            say(message.getvalue().removesuffix("\n"), err=True)
+            sys.exit(error.exit_code)
+        except RoughmdrError as error:
+            say_error(error)
+            sys.exit(NOT_ALL if isinstance(error, Unfinished) else _WRONG_INPUT)
+        except MemoryError as error:
+            say(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
+            sys.exit(NOT_ALL)
+        except (KeyboardInterrupt, click.Abort) as interrupt:
+            say(f"roughmdr: {str(interrupt) or 'interrupted; nothing was written'}", err=True)
+            # Threads may still compute, and what they finish is not waited for.
+            os._exit(_INTERRUPTED)
 
 
 def say(text: str, *, err: bool = False) -> None:
@@ -41,10 +91,16 @@ def _print(text: str, *, err: bool) -> None:
     except OSError as error:
         if error.errno == errno.EPIPE and not err:
             raise  # whoever read it has seen enough: click ends without a word
-        with suppress(OSError):  # or the end of Python would write it again
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        unwritable = _unwritable(stream, error)
         if not err:
-            raise RoughmdrError(f"the standard output cannot be written: {error.strerror}") from None
+            raise unwritable from None
+
+
+def _unwritable(stream: TextIO, error: OSError) -> RoughmdrError:
+    """The error of a stream that cannot be written, which is led nowhere: the end of Python would write it again."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    return RoughmdrError(f"the standard output cannot be written: {error.strerror}")
 
 
 def _coloured(fault: Fault) -> str:

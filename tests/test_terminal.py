@@ -154,7 +154,10 @@ def test_a_scene_may_come_through_a_pipe(folder: Path) -> None:
     assert (done.returncode, "longer than 16777216 bytes" in done.stderr) == (2, True), done.stderr
 
 
-@pytest.mark.parametrize("arguments", [["info", "curves.nc"], ["plan", "curves.toml"], ["info", "none.nc"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [["info", "curves.nc"], ["plan", "curves.toml"], ["info", "none.nc"], ["--help"], ["run", "--help"], ["--version"]],
+)
 def test_a_full_disk_behind_the_output_is_told_in_one_line(folder: Path, arguments: list[str]) -> None:
     with open("/dev/full", "w") as full:
         done = command(*arguments, cwd=folder, stdout=full)

@@ -34,11 +34,8 @@ class UpperTail(NamedTuple):
     """Index of extreme values: heights grow as share^-xi."""
 
     def over_edge(self, growth: float) -> float:
-        """What the tail bears over what one height at its edge bears, where that grows as the height^growth.
-
-        The integral of (p/share)^(-growth xi) dp from 0 to share; inf where it has no bound.
-        """
-        return self.share / (1.0 - growth * self.xi) if growth * self.xi < 1.0 else math.inf
+        """What the tail bears over what one height at its edge bears, where that grows as the height^growth."""
+        return self.share * float(mean_over_edge(np.array(growth * self.xi)))
 
 
 class Heights(NamedTuple):
@@ -111,20 +108,26 @@ def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], f
     if low < 0.0 < high:
         edges.append(0.0)  # where families that have a pole within have it
     for farther, y in zip(_FARTHER_ENDS, of_scores(np.array(_FARTHER_ENDS)).tolist(), strict=True):
-        if score < END or not high < y < _WIDEST * scale or _share(score) * (high / scale) ** _STEEPEST < _NEGLIGIBLE:
+        felt = share_above(score) * (high / scale) ** _STEEPEST >= _NEGLIGIBLE
+        if score < END or not felt or not high < y < _WIDEST * scale:
             break
         before, (score, high) = (score, high), (farther, y)
         edges.append(y)
     rising = before[1] > 0.0 and high > before[1]
-    index = math.log(high / before[1]) / math.log(_share(before[0]) / _share(score)) if rising else 0.0
-    return tuple(sorted(set(edges))), scale, UpperTail(_share(score), index)
+    xi = math.log(high / before[1]) / math.log(share_above(before[0]) / share_above(score)) if rising else 0.0
+    return tuple(sorted(set(edges))), scale, UpperTail(share_above(score), xi)
 
 
-def _share(score: float) -> float:
-    """Of all heights, those above a normal score."""
+def share_above(score: float) -> float:
+    """The part of all that stands above a normal score."""
     from scipy.special import ndtr
 
     return float(ndtr(-score))
+
+
+def mean_over_edge(index: Floats) -> Floats:
+    """The mean over a tail, over the value at its edge, of what grows as share^-index; inf where it has no bound."""
+    return np.where(index < 1.0, 1.0 / np.where(index < 1.0, 1.0 - index, 1.0), math.inf)
 
 
 class Rule(NamedTuple):

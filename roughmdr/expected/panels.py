@@ -12,20 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.arguments import Floats
-from roughmdr.ensemble.nodes import Rule
+from roughmdr.ensemble.nodes import Rule, mean_over_edge, share_above
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Node
 
-_ENDS = (
-    3.0,
-    4.5,
-    6.0,
-    8.5,
-    12.0,
-    17.0,
-    24.0,
-    37.0,
-)  # normal scores: of panels, and beyond which parameters may be left out
+# Normal scores at which panels end, and beyond which parameters may be left out.
+_ENDS = (3.0, 4.5, 6.0, 8.5, 12.0, 17.0, 24.0, 37.0)
 _USUAL_END = 8.5  # nearer ones only where no contact is representable there
 _ORDER = 10
 _MOST_NODES = 2_000
@@ -63,8 +55,6 @@ def halve_panels(set_up: SetUp, curves: Curves) -> Halved:
     made = _ORDER * len(doubtful)
     while doubtful:
         greatest = np.abs(sum(panel.sums for panel in [*accepted, *doubtful])).max(axis=1, keepdims=True)
-        if made >= _MOST_NODES:
-            break
         middles = [0.5 * (panel.low + panel.high) for panel in doubtful]
         ends = [(panel.low, middle, panel.high) for panel, middle in zip(doubtful, middles, strict=True)]
         halves = _panels([pair for three in ends for pair in pairwise(three)], set_up, curves)
@@ -95,7 +85,7 @@ class _End(NamedTuple):
 
 def _end(side: float, set_up: SetUp, curves: Curves) -> _End:
     """The end of the rule on one side: where next to nothing is left, or no contact is representable beyond."""
-    share_before, before = 1.0, curves(set_up(_point(0.0)))
+    share_before, before = share_above(0.0), curves(set_up(_point(0.0)))
     bulk = np.abs(before).max(axis=1, keepdims=True)
     score, lost = 0.0, np.full_like(before, math.inf)
     for end in _ENDS:
@@ -103,8 +93,8 @@ def _end(side: float, set_up: SetUp, curves: Curves) -> _End:
             own = curves(set_up(_point(side * end)))
         except (RoughmdrError, ArithmeticError):
             break
-        share = _share(end)
-        lost = share * _over_edge(np.abs(own), np.abs(before), share_before / share)
+        share = share_above(end)
+        lost = share * np.abs(own) * mean_over_edge(_index(np.abs(own), np.abs(before), share_before / share))
         score, share_before, before = end, share, own
         bulk = np.maximum(bulk, share * np.abs(own).max(axis=1, keepdims=True))
         if score >= _USUAL_END and (lost <= _NEGLIGIBLE * bulk).all():
@@ -112,18 +102,12 @@ def _end(side: float, set_up: SetUp, curves: Curves) -> _End:
     return _End(score, lost)
 
 
-def _over_edge(own: Floats, before: Floats, ratio: float) -> Floats:
-    """The mean over a tail of what grows as a power of 1/share, as from ``before`` to ``own`` on shares of a ratio."""
+def _index(own: Floats, before: Floats, ratio: float) -> Floats:
+    """The power of 1/share, at least 0, by which values grow from ``before`` to ``own``, whose shares have a ratio."""
     index = np.zeros_like(own)
     both = (own > before) & (before > 0.0)
     index[both] = np.log(own[both] / before[both]) / math.log(ratio)
-    return np.where(index < 1.0, own / np.where(index < 1.0, 1.0 - index, 1.0), math.inf)
-
-
-def _share(score: float) -> float:
-    from scipy.special import ndtr
-
-    return float(ndtr(-score))
+    return index
 
 
 def _point(score: float) -> Rule:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from roughmdr._extended import UNIT
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
 
@@ -17,7 +18,6 @@ _curve: Callable[..., tuple[float, float, float, float]]
 _push: Callable[..., float]
 _roundings: Callable[..., float]
 
-_UNIT = 2.0**-53
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
@@ -81,7 +81,7 @@ def pulled(a: float, row: Floats) -> tuple[float, float]:
 
 def errors(row: Floats) -> tuple[float, float]:
     """Both from the roundings of the profile and of dl."""
-    error = _UNIT * _roundings(row)
+    error = UNIT * _roundings(row)
     return error, error
 
 

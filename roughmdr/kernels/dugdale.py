@@ -20,6 +20,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from roughmdr._extended import UNIT
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 
@@ -31,7 +32,6 @@ margins: Callable[..., tuple[float, float, float, float, float, float, float]]
 strain: Callable[..., float]
 _roundings: Callable[..., float]
 
-_UNIT = 2.0**-53
 _ZONE_ERROR = 1e-12  # of the force: as it is tested
 _ZONE_ROUNDINGS = 32.0  # of the zone's share of the indentation
 
@@ -113,7 +113,7 @@ def pulled(a: float, row: Floats) -> tuple[float, float]:
 
 def errors(row: Floats) -> tuple[float, float]:
     """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
-    error = _UNIT * (_roundings(row) + _ZONE_ROUNDINGS)
+    error = UNIT * (_roundings(row) + _ZONE_ROUNDINGS)
     return max(_ZONE_ERROR, error), error
 
 

@@ -5,12 +5,11 @@ Reduced: x = delta/depth with depth = kappa rise, and the state t = a/width, so 
 
 import math
 
-from roughmdr._extended import Pair, two_product
+from roughmdr._extended import UNIT, Pair, two_product
 from roughmdr._jit import njit
 from roughmdr.shapes.kappa import kappa
 
 _KERNEL_ERROR = 1e-13  # of the force, as it is tested
-_UNIT = 2.0**-53
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
@@ -135,7 +134,7 @@ def energy_power(t: float, n: float) -> float:
 @njit
 def errors(n: float) -> tuple[float, float]:
     """A rounding of t moves t^(n + 1) by n + 1 of them."""
-    return _KERNEL_ERROR + 4.0 * _UNIT * n, 0.0
+    return _KERNEL_ERROR + 4.0 * UNIT * n, 0.0
 
 
 @njit

@@ -51,6 +51,9 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
             raise SceneError(f"{label}: not valid TOML: {error}{_hint(str(error), text)}") from None
     try:
         _settle(table, path.parent if path else Path())
+    except OSError as error:
+        raise SceneError(f"{label}: the current folder cannot be told: {error.strerror}") from None
+    try:
         changed = {_change(table, change) for change in changes}
         stem = path.stem if path else "scene"
         table.setdefault("title", "".join(letter if letter.isprintable() else "?" for letter in stem))
