@@ -19,7 +19,7 @@ LOG_3 = (1.0986122886681098, -9.07129723500153e-17)
 _ODD = tuple(1.0 / j for j in range(1, 23, 2))
 _ODD_REST = tuple(float(Fraction(1, j) - Fraction(1.0 / j)) for j in range(1, 23, 2))
 PI = (3.141592653589793, 1.2246467991473532e-16)
-UNIT = 2.0**-53
+ROUNDING = 2.0**-53
 """The largest relative error of one rounding of a float."""
 
 

@@ -54,6 +54,13 @@ def test_what_is_no_quantity_is_refused(value: object, dimension: str, says: str
         quantity(value, dimension)
 
 
+def test_a_long_unit_is_shown_cut() -> None:
+    for dimension in ("m", "1"):
+        with pytest.raises(RoughmdrError) as refused:
+            quantity("1 " + "m" * 100_000, dimension)
+        assert len(str(refused.value)) < 200
+
+
 def test_effective_modulus() -> None:
     assert rm.effective_modulus(3e6, 0.49) == pytest.approx(3e6 / (1 - 0.49**2), rel=1e-15)
     both = 1 / ((1 - 0.09) / 70e9 + (1 - 0.0625) / 210e9)

@@ -20,7 +20,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr._extended import UNIT
+from roughmdr._extended import ROUNDING
 from roughmdr.aggregate.block import least
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
 from roughmdr.aggregate.settle import FORCE, RADIUS, STATE, STIFFNESS
@@ -46,7 +46,7 @@ def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: flo
     """
     deepest = greatest[DEPTH] if _adhesive else 0.0
     farthest = max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest
-    return float(slope * (4.0 * UNIT + _NEXT_TO_A_FOLD * swing) * farthest + push)
+    return float(slope * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * swing) * farthest + push)
 
 
 def bound(
@@ -74,7 +74,7 @@ def bound(
         if retracted:
             for i in range(count):
                 terms[i] = found[STATE, i] if held[i] > 0.0 else math.inf
-            low = max(min(low, least(terms, count)), UNIT)
+            low = max(min(low, least(terms, count)), ROUNDING)
     slope = max(abs(_stiffness(low, _own(forms, 0))), abs(_stiffness(high, _own(forms, 0))))
     least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
     push = max(least_push, abs(_force(high, _own(forms, 0)))) * _errors(_own(forms, 0))[0]
@@ -107,7 +107,7 @@ def bound_found(
             if _adhesive:
                 stretch, share = _pulled(found[RADIUS, i], _own(forms, i))
                 if k == math.inf:  # on the fold itself
-                    k = share / stretch / UNIT
+                    k = share / stretch / ROUNDING
             off = own * (abs(found[FORCE, i]) + 2.0 * share) + 2.0 * _NEXT_TO_A_FOLD * each * k * stretch
             if _magnitude is not None:
                 g, pushed = _magnitude(found[STATE, i], _own(forms, i))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr._extended import UNIT
+from roughmdr._extended import ROUNDING
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
 
@@ -17,7 +17,6 @@ from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
 _curve: Callable[..., tuple[float, float, float, float]]
 _push: Callable[..., float]
 _roundings: Callable[..., float]
-
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
@@ -81,7 +80,7 @@ def pulled(a: float, row: Floats) -> tuple[float, float]:
 
 def errors(row: Floats) -> tuple[float, float]:
     """Both from the roundings of the profile and of dl."""
-    error = UNIT * _roundings(row)
+    error = ROUNDING * _roundings(row)
     return error, error
 
 

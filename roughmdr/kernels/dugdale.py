@@ -20,7 +20,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr._extended import UNIT
+from roughmdr._extended import ROUNDING
 from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 
@@ -113,7 +113,7 @@ def pulled(a: float, row: Floats) -> tuple[float, float]:
 
 def errors(row: Floats) -> tuple[float, float]:
     """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
-    error = UNIT * (_roundings(row) + _ZONE_ROUNDINGS)
+    error = ROUNDING * (_roundings(row) + _ZONE_ROUNDINGS)
     return max(_ZONE_ERROR, error), error
 
 

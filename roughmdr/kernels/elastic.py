@@ -5,7 +5,7 @@ Reduced: x = delta/depth with depth = kappa rise, and the state t = a/width, so 
 
 import math
 
-from roughmdr._extended import UNIT, Pair, two_product
+from roughmdr._extended import ROUNDING, Pair, two_product
 from roughmdr._jit import njit
 from roughmdr.shapes.kappa import kappa
 
@@ -134,7 +134,7 @@ def energy_power(t: float, n: float) -> float:
 @njit
 def errors(n: float) -> tuple[float, float]:
     """A rounding of t moves t^(n + 1) by n + 1 of them."""
-    return _KERNEL_ERROR + 4.0 * UNIT * n, 0.0
+    return _KERNEL_ERROR + 4.0 * ROUNDING * n, 0.0
 
 
 @njit
