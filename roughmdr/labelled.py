@@ -49,11 +49,11 @@ class Labelled(NamedTuple):
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
 
     def checksum(self) -> str:
-        """A hash of the scene and of all arrays, with their units, but for the one that depends on the clock."""
+        """A hash of the scene and of all arrays but the one that depends on the clock."""
         digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
         for name, array in sorted((self.variables | self.coordinates).items()):
             if name != "run_time":
-                digest.update(f"{name} {array.dims} {array.attrs.get('units')}".encode())
+                digest.update(name.encode() + str(array.dims).encode())
                 for part in _bytes_of(array.values):
                     digest.update(part)
         return digest.hexdigest()
