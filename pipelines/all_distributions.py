@@ -79,7 +79,7 @@ class Scene(NamedTuple):
         return terms.mean(axis=1), _SIGMAS * terms.std(axis=1) / math.sqrt(_DRAWS)
 
     def _integrated(self) -> tuple[Floats, Floats]:
-        """The same by quadrature in the probability."""
+        """The expected law by quadrature in the probability."""
         if self.of == "heights":
             found = np.array([mean_of_heights(self.frozen, h, 1.5) for h in self.separation]) * math.sqrt(_RADIUS)
             return found[:, 0], found[:, 1]

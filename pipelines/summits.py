@@ -60,7 +60,7 @@ def law_of_maps() -> SummitLaw:
 
 
 def fitted(series: Series, points: int) -> Summits:
-    """What paraboloids through points of a grid, fitted to their neighbours, find; they tell no mean curvature."""
+    """Heights and curvatures of paraboloids through points of a grid, fitted to their neighbours; no mean curvature."""
     spacing = series.size / points
     found = find_summits(HeightMap(series.on_grid(points), spacing, spacing, periodic=True))
     return Summits(found.height, np.full_like(found.height, np.nan), found.parameters["radius"])

@@ -74,7 +74,7 @@ class Labelled(NamedTuple):
 
 
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
-    """What a hash is made of: numbers as they are, texts with a zero between them; a part at a time."""
+    """The bytes to hash: numbers as they are, texts with a zero between them; a part at a time."""
     if values.dtype.kind not in "OU":
         yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
         return

@@ -32,7 +32,7 @@ _PIECE = 2**16  # elements of an array that are in the library at a time
 
 
 def load(path: Path) -> Labelled:
-    """All that is in a file; RoughmdrError where it cannot be read."""
+    """Read a whole file; RoughmdrError where it cannot be read."""
     with _opened(path) as file:
         file.set_auto_mask(False)
         return _arrays(file)

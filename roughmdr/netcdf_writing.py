@@ -79,7 +79,7 @@ def _reserve(path: Path, size: int) -> None:
 
 
 def most_bytes(data: Labelled) -> int:
-    """What a file of these arrays takes at most."""
+    """The most bytes that a file of these arrays takes."""
     arrays = [*data.variables.values(), *data.coordinates.values()]
     attrs = [data.attrs, *(array.attrs for array in arrays)]
     said = sum(_ATTRIBUTE + len(str(value).encode()) for some in attrs for value in some.values())

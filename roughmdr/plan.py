@@ -41,7 +41,7 @@ class Plan(NamedTuple):
 
     @property
     def doubts(self) -> list[str]:
-        """What of the asperities may not be what was meant; in how many cells, where not in all."""
+        """Warn of asperities that may not be as they were meant; in how many cells, where not in all."""
         return in_cells((text for cell in self.cells for text in cell.scene.asperities.doubts), len(self.cells))
 
     def name_of(self, cell: int, realization: int) -> str:

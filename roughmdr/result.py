@@ -90,7 +90,7 @@ def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tup
 
 
 def _warnings(plan: Plan, found: Found) -> list[str]:
-    """What makes the numbers doubtful: said of the scene and the ensembles, and of the most that contacts come to."""
+    """Warn of numbers that are doubtful: for the scene, for the ensembles, or for the most that contacts come to."""
     beside = found.beside
     done = beside["status"] == DONE
     said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]

@@ -1,4 +1,4 @@
-"""What a file must hold to be a result: checked once, where it is read, so that nothing else needs to ask.
+"""The arrays and attributes that make a file a result: checked once, where it is read, so that nothing else asks.
 
 Anyone may have changed the file. A result may hold more than is listed here; nothing here may be of another kind.
 """
@@ -89,7 +89,7 @@ def _arrays(data: Labelled) -> Iterator[str]:
 
 
 def _pairs(data: Labelled) -> Iterator[str]:
-    """What goes with something else."""
+    """Find what lacks its counterpart."""
     if ("tabor_number" in data.variables) != ("adhesion_law" in data.variables):
         yield "it holds one of tabor_number and adhesion_law without the other"
     if (data.variables["status"].values == FAILED).any() and "remark" not in data.coordinates:
@@ -113,7 +113,7 @@ def _curves(data: Labelled) -> Iterator[str]:
 
 
 def _numbers(data: Labelled) -> Iterator[str]:
-    """What the numbers are, now that they are of the right kind and in the right place."""
+    """Find numbers that no run writes, now that arrays are of the right kind and in the right place."""
     status = data.variables["status"].values
     if not np.isin(status, (DONE, FAILED, NOT_RUN)).all():
         yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"

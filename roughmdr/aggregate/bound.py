@@ -98,7 +98,7 @@ def bound_found(
     found: Floats,
     terms: Floats,
 ) -> float:
-    """The same where P and k were found with the state: one by one, so that nothing is asked of how k goes."""
+    """The bound where P and k were found with the state: one by one, so that nothing is asked of how k goes."""
     slope, push, swing = 0.0, 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:

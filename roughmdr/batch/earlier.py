@@ -78,7 +78,7 @@ def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Pla
 
 
 def _what_would_go(old: Labelled, plan: Plan, held: Held) -> str:
-    """What of a result would be lost: cells, variables, curves or realisations; empty for nothing."""
+    """Name the part of a result that would be lost: cells, variables, curves or realisations; empty for nothing."""
     strangers = sum(not held.wants([key]) for key in _keys(old))
     if strangers:
         return f"{strangers} cell{'s' * (strangers > 1)} more"

@@ -1,4 +1,4 @@
-"""What a result takes, on disk and in memory, before there is one."""
+"""The size of a result, on disk and in memory, before there is one."""
 
 from roughmdr.plan import Plan
 
@@ -13,7 +13,7 @@ def file_bytes(plan: Plan, runs: int) -> int:
 
 
 def held_bytes(plan: Plan, runs: int) -> int:
-    """What is held of them while the result is put together: as they came, and in their places."""
+    """The bytes that are held while the result is put together: runs as they came, and in their places."""
     return _BRANCH * _steps(plan) + 2 * _values(plan, runs)
 
 

@@ -34,7 +34,7 @@ class UpperTail(NamedTuple):
     """Index of extreme values: heights grow as share^-xi."""
 
     def over_edge(self, growth: float) -> float:
-        """What the tail bears over what one height at its edge bears, where that grows as the height^growth."""
+        """The force of the tail over that of one height at its edge, where a force grows as the height^growth."""
         return self.share * float(mean_over_edge(np.array(growth * self.xi)))
 
 

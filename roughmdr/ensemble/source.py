@@ -47,7 +47,7 @@ class Source(Section):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What of the section may not be what was meant, in words."""
+        """Warn, in words, of the parts of the section that may not be as they were meant."""
         return ()
 
     @property

@@ -84,7 +84,7 @@ def _rows(variables: Iterable[str]) -> tuple[int, ...]:
 
 
 def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
-    """What to say of errors over the largest force, and of other variables; OutOfRange where that leaves nothing."""
+    """Warn of errors over the largest force, and of other variables; OutOfRange where nothing is right."""
     if not error <= _WORTHLESS:
         raise OutOfRange(
             f"the expected law of these asperities is right only to {error:.1g} of its largest force: the "
@@ -117,7 +117,7 @@ def _reached(nodes: list[Node], closest: float, count: float) -> Floats:
 
 
 def _beyond(nodes: list[Node], closest: float) -> float:
-    """What the heights that are left out above bear [N], of an asperity, with the flat at ``closest`` [m].
+    """The force [N] on the heights that are left out above, of an asperity, with the flat at ``closest`` [m].
 
     inf where their mean force has no bound.
     """

@@ -49,7 +49,7 @@ def at_one(index: int, form: Form) -> tuple[float, float]:
 
 
 def _few(form: Form) -> float:
-    """What a dozen operations, and the powers of t up to the third, come to."""
+    """Those of a dozen operations, and of the powers of t up to the third."""
     return 16.0
 
 
