@@ -111,6 +111,24 @@ def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[s
     assert float(law.numerical_error) < 1e-10
 
 
+@pytest.mark.parametrize("c", [0.6, 0.8, 0.95, 1.2])
+def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
+    """The mean force of Lomax's radii goes with that of their root, the area with that of the radii themselves."""
+    height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
+    radius = {"distribution": "lomax", "c": c, "loc": 0.0, "scale": "50 um"}
+    both = {"asperities": {"radius": radius}, "output": {"variables": ["force", "contact_area"]}}
+    alone = expected(height, [0.0], **{**copy.deepcopy(both), "output": {"variables": ["force"]}})
+    root = math.gamma(1.5) * math.gamma(c - 0.5) / math.gamma(c) * math.sqrt(5e-5)
+    force = 1000.0 * 4.0 / 3.0 * 4e6 * root * UM**1.5 / 2.5
+    assert float(alone.force[0]) == pytest.approx(force, rel=float(alone.numerical_error))
+    if c < 1.0:
+        with pytest.raises(rm.OutOfRange, match="ask for the force alone"):
+            expected(height, [0.0], **both)
+    else:
+        area = 1000.0 * math.pi * 5e-5 / (c - 1.0) * UM / 2.0
+        assert float(expected(height, [0.0], **both).contact_area[0]) == pytest.approx(area, rel=1e-6)
+
+
 def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
     """What the expected law states decides whether it is enough: here of heights next to a pole."""
     for own, relative in (({"a": 0.03}, 1e-2), ({"a": 3.0, "b": 0.05}, 1e-2)):

@@ -91,6 +91,12 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
             "integrals over the heights and shape parameters do not converge; estimator 'stratified' or 'sampled' has "
             "no such limit"
         )
+    if not error_of_others <= _WORTHLESS:
+        raise OutOfRange(
+            f"the force of the expected law of these asperities is right to {error:.1g} of its largest, but another "
+            f"variable only to {error_of_others:.1g} of its own, as where it has no mean: ask for the force alone, or "
+            "for estimator 'stratified' or 'sampled'"
+        )
     if error > _DOUBTFUL:
         return (
             f"an expected law that is right only to {error:.1g} of its largest force, other variables perhaps to less: "
