@@ -108,8 +108,9 @@ def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], f
     if low < 0.0 < high:
         edges.append(0.0)  # where families that have a pole within have it
     for farther, y in zip(_FARTHER_ENDS, of_scores(np.array(_FARTHER_ENDS)).tolist(), strict=True):
-        felt = share_above(score) * (high / scale) ** _STEEPEST >= _NEGLIGIBLE
-        if score < END or not felt or not high < y < _WIDEST * scale:
+        if score < END or not high < y < _WIDEST * scale:
+            break
+        if share_above(score) * (high / scale) ** _STEEPEST < _NEGLIGIBLE:
             break
         before, (score, high) = (score, high), (farther, y)
         edges.append(y)
