@@ -40,6 +40,7 @@ _WIDTHS = np.concatenate([4.0 ** np.arange(-18.0, 0.0), np.arange(1.0, 40.0), 40
 """Edges of panels over heights, from the lowest, in widths of their distribution."""
 _OCTAVES = np.arange(-8.0, 12.0)  # edges about the depth that contacts are measured by, in powers of 4
 _OCTAVES_OF_LEAPS = np.arange(-12.0, -1.0)  # edges about a leap, in powers of 4 of that depth
+_LEAP = 3.0  # times the usual rate of the force
 _LEAPS_BELOW = 2.0  # depths above the foot of a branch
 _FINE_SCAN, _CLOSER = 2_000, 3  # indentations between which leaps are looked for, and scans ever closer to one
 
@@ -226,7 +227,8 @@ class Tip:
         for branch, (foot, top) in enumerate(self.arcs):
             edges = np.linspace(0.0, min(_LEAPS_BELOW * depth, top - foot), _FINE_SCAN)
             rate = np.abs(np.diff(self._bears(branch, edges)))
-            for i in np.flatnonzero((rate[1:-1] > rate[:-2]) & (rate[1:-1] > rate[2:])) + 1:
+            steep = np.maximum(np.maximum(rate[:-2], rate[2:]), _LEAP * np.median(rate))
+            for i in np.flatnonzero(rate[1:-1] > steep) + 1:
                 low, high = edges[i - 1], edges[i + 2]
                 for _ in range(_CLOSER):
                     near = np.linspace(low, high, _SCAN)
