@@ -18,6 +18,9 @@ from roughmdr.arguments import Floats
 _END = 37.0  # normal score beyond which no double holds the probability
 _END_NUMERICAL = 8.0  # where scipy finds the inverse by numbers: from 1 - p, which has no digits beyond
 _HALVINGS, _AGREE = 40, 1e-14  # of a panel; of the mean
+_MOST_PANELS = 1_000  # that are halved at once: more of them part by the noise of inverses that are found by numbers
+_END_OF_SCORES = 8.5  # of two quantities that go together
+_FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -77,6 +80,8 @@ def _mean(frozen: Any, begin: float, quantity: Callable[[Floats], Floats]) -> Me
         value, doubt = value + float(halves[:, right].sum()), doubt + float(apart[right].sum())
         low, middle, high = low[~right], middle[~right], high[~right]
         rough = halves[:, ~right].ravel()
+        if low.size > _MOST_PANELS:
+            return Mean(value + float(rough.sum()), doubt + float(apart[~right].sum()) + last)
         if low.size == 0:
             break
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
@@ -93,3 +98,32 @@ def mean_of_heights(frozen: Any, separation: float, exponent: float) -> Mean:
 def mean_of_radii(frozen: Any, exponent: float) -> Mean:
     """The mean of R^exponent over radii R [m]."""
     return _mean(frozen, -math.inf, lambda R: np.maximum(R, 0.0) ** exponent)
+
+
+def mean_of_correlated(
+    frozen: Any, separation: float, exponent: float, factor: Callable[[Floats], Floats], correlation: float
+) -> float:
+    """The mean of factor(t) max(z - separation, 0)^exponent over heights z [m] that go with normal scores t.
+
+    Gauss's rule in the score, and in the part of the score of z that does not go with it: right to some 1e-12.
+    """
+    below, above = float(frozen.cdf(separation)), float(frozen.sf(separation))
+    begin = float(ndtri(below)) if below < above else -float(ndtri(above))
+    spread = math.sqrt((1.0 - correlation) * (1.0 + correlation))
+    scores, weights = _panels(np.linspace(-_END_OF_SCORES, _END_OF_SCORES, 15))
+    total = 0.0
+    for score, weight, times in zip(scores, weights, factor(scores), strict=True):
+        first = max((begin - correlation * score) / spread, -_END_OF_SCORES)
+        if first < _END_OF_SCORES:
+            own, share = _panels(first + (_END_OF_SCORES - first) * np.linspace(0.0, 1.0, 9) ** 4)
+            heights = quantiles(frozen, correlation * score + spread * own)
+            total += weight * times * float(share @ np.maximum(heights - separation, 0.0) ** exponent)
+    return total
+
+
+def _panels(edges: Floats) -> tuple[Floats, Floats]:
+    """Scores and weights of Gauss's rule on panels, for the normal density."""
+    low, high = edges[:-1, None], edges[1:, None]
+    scores = (0.5 * (low + high) + 0.5 * (high - low) * _FINE_NODES).ravel()
+    weights = (0.5 * (high - low) * _FINE_WEIGHTS).ravel() * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi)
+    return scores, weights

@@ -13,7 +13,7 @@ from all_distributions import Scene, draw, families, judge
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from plain_probability import mean_of_heights, mean_of_radii
+from plain_probability import mean_of_correlated, mean_of_heights, mean_of_radii
 
 import roughmdr as rm
 from roughmdr.ensemble.distributions import Distribution
@@ -45,7 +45,7 @@ def expected(height: dict[str, object], separation: list[float], **more: object)
         **({"batch": {"estimator": "expected"}} if "accuracy" not in more else {}),
         **more,
     }
-    return rm.run(scene).isel(realization=0)
+    return rm.run(scene).isel(realization=0, missing_dims="ignore")
 
 
 @pytest.mark.parametrize(("family", "own"), POLES)
@@ -127,6 +127,51 @@ def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
     else:
         area = 1000.0 * math.pi * 5e-5 / (c - 1.0) * UM / 2.0
         assert float(expected(height, [0.0], **both).contact_area[0]) == pytest.approx(area, rel=1e-6)
+
+
+BOUNDED = [
+    ("uniform", {}),
+    ("beta", {"a": 2.0, "b": 2.0}),
+    ("beta", {"a": 0.3, "b": 0.5}),
+    ("expon", {}),
+    ("weibull_max", {"c": 2.0}),
+]
+
+
+@pytest.mark.parametrize(("family", "own"), BOUNDED)
+@pytest.mark.parametrize("spearman", [-0.9, 0.99])
+def test_heights_that_go_with_an_extreme_radius_may_all_be_one(
+    family: str, own: dict[str, float], spearman: float
+) -> None:
+    """With the smallest or the largest radii all heights stand next to an end, where no float tells them apart."""
+    frozen = getattr(scipy.stats, family)(**own, scale=2 * UM)
+    separation = frozen.ppf([0.6, 0.3, 0.01]).tolist()
+    s = math.sqrt(math.log(1.01))  # of radii whose std is a tenth of their mean
+    radius = {"distribution": "lognormal", "mean": 5e-5, "std": 5e-6}
+    asperities = {"radius": radius, "correlation": {"radius": spearman}}
+    law = expected({"distribution": family, **own, "loc": 0.0, "scale": 2 * UM}, separation, asperities=asperities)
+
+    def root(scores: np.ndarray) -> np.ndarray:
+        return np.exp(0.5 * (math.log(5e-5) - 0.5 * s * s + s * scores))
+
+    correlation = 2.0 * math.sin(math.pi * spearman / 6.0)  # of normal scores
+    means = [mean_of_correlated(frozen, h, 1.5, root, correlation) for h in separation]
+    force = 1000.0 * 4.0 / 3.0 * 4e6 * np.array(means)
+    off = float(np.abs(law.force - force).max() / force.max())
+    assert off <= float(law.numerical_error) + 1e-11
+    assert float(law.numerical_error) < 1e-7
+
+
+@pytest.mark.parametrize("cut", [{"max": "2 um"}, {"max": "4 um"}, {"min": "-2 um"}, {"min": 0.0}])
+def test_heights_that_are_cut_and_go_with_the_radius(cut: dict[str, object]) -> None:
+    """Of draws as many as tell 1 % the mean is no other."""
+    height = {"distribution": "normal", "std": "1 um", "mean": 0.0, **cut}
+    radius = {"distribution": "lognormal", "mean": 5e-5, "std": 5e-6}
+    more = {"asperities": {"radius": radius, "correlation": {"radius": -0.9}}}
+    law = expected(height, [1.5 * UM, 0.0], **copy.deepcopy(more))
+    batch = {"estimator": "stratified", "realizations": 64}
+    drawn = expected(height, [1.5 * UM, 0.0], **more, batch=batch, output={"keep": "statistics"})
+    np.testing.assert_allclose(law.force, drawn.force_mean, rtol=0.01)
 
 
 def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:

@@ -22,6 +22,7 @@ _QUARTER = 0.6745  # normal score that a quarter of all heights lie above
 _STEEPEST = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
 _NEGLIGIBLE = 1e-16  # of the force that the bulk bears
 _NEXT_TO_LOC = 1e-14  # of the scale
+_POINT = 2.0**-48  # of a height, or of the scale of the distribution: no heights lie nearer together than that
 _WIDEST = 1e100  # of the scale: farther heights are not integrated
 
 
@@ -67,7 +68,7 @@ class Heights(NamedTuple):
     def of(cls, distribution: Distribution) -> "Heights":
         """Heights that have a distribution of their own."""
         own = distribution.from_loc
-        return cls(own.density, own.fractions, *_extent(own.of_scores), distribution.loc)
+        return cls(own.density, own.fractions, *_extent(own.of_scores, own.scale), distribution.loc)
 
     @classmethod
     def given(cls, distribution: Distribution, score: float, correlation: float) -> "Heights":
@@ -90,33 +91,43 @@ class Heights(NamedTuple):
                 lean = np.exp(0.5 * scores**2 - 0.5 * ((scores - middle) / spread) ** 2) / spread
             return np.where(np.isfinite(scores), own.density(y) * lean, 0.0)
 
-        return cls(density, fractions, *_extent(of_scores), distribution.loc)
+        return cls(density, fractions, *_extent(of_scores, own.scale), distribution.loc)
 
 
-def _extent(of_scores: Callable[[Floats], Floats]) -> tuple[tuple[float, ...], float, UpperTail]:
-    """Edges and scale of heights, and the tail beyond, from the heights y [m] that have some normal scores."""
+def _extent(of_scores: Callable[[Floats], Floats], unit: float) -> tuple[tuple[float, ...], float, UpperTail]:
+    """Edges and scale of heights, and the tail beyond, from the heights y [m] that have some normal scores.
+
+    ``unit`` is the scale of their distribution [m].
+    """
     low_bulk, lower, median, upper, bulk = of_scores(np.array([-_BULK, -_QUARTER, 0.0, _QUARTER, _BULK])).tolist()
-    scale = max(upper - lower, (bulk - median) / _BULK)  # the highest count, where most heights are next to a pole
+    point = _POINT * max(unit, abs(median))  # those that go with an extreme of another quantity may all be one
+    # The highest count, where most heights are next to a pole.
+    scale = max(upper - lower, (bulk - median) / _BULK, point)
     ends = np.array(_NEARER_ENDS)
     low = next((y for y in of_scores(-ends).tolist() if math.isfinite(y)), low_bulk)
     score, high = next(
         ((t, y) for t, y in zip(_NEARER_ENDS, of_scores(ends).tolist(), strict=True) if math.isfinite(y)), (_BULK, bulk)
     )
+    if high - low < point:
+        return (low - point, high + point), point, UpperTail(share_above(score), 0.0)
     if 0.0 < low < _NEXT_TO_LOC * scale:  # a pole may stand at loc: no float is as near to it as some heights
         low = 0.0
     edges, before = [low, low_bulk, bulk, high], (_BULK, bulk)
     if low < 0.0 < high:
         edges.append(0.0)  # where families that have a pole within have it
     for farther, y in zip(_FARTHER_ENDS, of_scores(np.array(_FARTHER_ENDS)).tolist(), strict=True):
-        if score < END or not high < y < _WIDEST * scale:
-            break
-        if share_above(score) * (high / scale) ** _STEEPEST < _NEGLIGIBLE:
+        if score < END or not _is_felt(score, high / scale) or not high < y < _WIDEST * scale:
             break
         before, (score, high) = (score, high), (farther, y)
         edges.append(y)
-    rising = before[1] > 0.0 and high > before[1]
+    rising = 0.0 < before[1] < high and _is_felt(score, high / scale)
     xi = math.log(high / before[1]) / math.log(share_above(before[0]) / share_above(score)) if rising else 0.0
     return tuple(sorted(set(edges))), scale, UpperTail(share_above(score), xi)
+
+
+def _is_felt(score: float, reach: float) -> bool:
+    """Whether heights above a normal score, which ``reach`` so many times the scale, may add to a mean force."""
+    return reach > 0.0 and math.log(share_above(score)) + _STEEPEST * math.log(reach) >= math.log(_NEGLIGIBLE)
 
 
 def share_above(score: float) -> float:
