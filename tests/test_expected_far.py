@@ -129,6 +129,21 @@ def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
         assert float(expected(height, [0.0], **both).contact_area[0]) == pytest.approx(area, rel=1e-6)
 
 
+@pytest.mark.parametrize("h", [1e-18, 1e-20, 1e-22, 1e-25, 0.0])
+def test_a_count_next_to_a_pole_is_right_or_refused(h: float) -> None:
+    """No more than the roundings of the scale from a pole: so near to it stand most of the heights."""
+    height = {"distribution": "gamma", "a": 0.01, "loc": 0.0, "scale": UM}
+    try:
+        count = float(expected(height, [UM, h]).contact_count[1])
+    except rm.OutOfRange as error:
+        assert "next to a pole" in str(error)  # noqa: PT017
+        assert 0.0 < h < 1e-13 * UM
+    else:
+        assert count == pytest.approx(1000.0 * scipy.stats.gamma(0.01, scale=UM).sf(h), rel=1e-9)
+    alone = expected(height, [UM, h], output={"variables": ["force"]})
+    assert float(alone.numerical_error) < 1e-6
+
+
 BOUNDED = [
     ("uniform", {}),
     ("beta", {"a": 2.0, "b": 2.0}),

@@ -160,7 +160,10 @@ netCDF4.Dataset.__exit__ = sync
 # Damaged
 
 
-@pytest.mark.parametrize("damage", ["torn line", "odd lines", "no first line", "shard", "no shard", "leftovers"])
+@pytest.mark.parametrize(
+    "damage",
+    ["torn line", "odd lines", "no first line", "shard", "no shard", "every shard", "nothing left", "leftovers"],
+)
 def test_only_what_is_damaged_is_computed_again(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
 ) -> None:
@@ -184,6 +187,11 @@ def test_only_what_is_damaged_is_computed_again(
         case "no shard":
             third.unlink()
             lost = had[2]["realizations"]
+        case "every shard" | "nothing left":
+            for line in had:
+                shard = parts / line["file"]
+                os.truncate(shard, 0 if damage == "nothing left" else shard.stat().st_size // 2)
+            lost = sum(line["realizations"] for line in had)
         case "leftovers":
             (parts / "000099.npz.tmp").write_bytes(b"half")
             (parts / "000098.npz").write_bytes(b"of no line")

@@ -57,8 +57,9 @@ def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Pla
     """
     matches, there = False, list[str]()
     if parts is not None and not parts.empty:
-        matches = sum(map(held.add, parts.held())) > 0
-        if not matches:
+        found = [held.add(read) for read in parts.held()]
+        matches = any(found)
+        if not matches and any(one is not None for one in found):  # else all are damaged, and nothing is lost
             there += _what_changed(parts.scene, parts.versions, plan)
     if old is not None and held.wants(_keys(old)):
         matches = True

@@ -22,11 +22,14 @@ class Held:
         """Whether a cell of one of the keys is among those that are wanted."""
         return not self._wanted.isdisjoint(keys)
 
-    def add(self, read: Callable[[], Shard | None]) -> bool:
-        """Note what is in a shard that can be read; whether it has cells that are wanted, in whatever variables."""
+    def add(self, read: Callable[[], Shard | None]) -> bool | None:
+        """Note the contents of a shard; whether it has cells that are wanted, in whatever variables.
+
+        None where it cannot be read.
+        """
         whole = read()
         if whole is None:
-            return False
+            return None
         self._more |= not self._wanted.issuperset(whole.keys)
         if not self.wants(whole.keys):
             return False

@@ -91,6 +91,12 @@ class HeightTable(NamedTuple):
         low, high = parts.reshape(ends.shape)
         return np.asarray(high - low)
 
+    def undecided(self, y: Floats) -> Floats:
+        """The part of all heights of which nothing tells whether they lie below y [m], as differences to the origin."""
+        piece = np.minimum(np.searchsorted(self.high, y), self.high.size - 1)
+        within = (self.low[piece] < y) & (y < self.high[piece])
+        return np.where(within, self.doubt[piece, 1], 0.0)
+
     def highest(self, count: float) -> float:
         """A height [m] that about one of ``count`` summits reaches."""
         rest = self.below[-1] - self.below[1:]

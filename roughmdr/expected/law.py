@@ -13,13 +13,13 @@ from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route
 from roughmdr.aggregate.law import ROW
 from roughmdr.aggregate.tabor import range_of
-from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
+from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE
 from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, converge
-from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
+from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.expected.parted import Parted
 
 _DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
@@ -49,6 +49,8 @@ def compute(
     if parted is not None:
         for step in parted.cuts:
             total[:, step] = parted.total(step, dissipating=dissipating)
+    if COUNT in rows and (most := total[COUNT].max()) > 0.0:
+        doubt_of_others = max(doubt_of_others, float(undecided_of(nodes, steps).max() / most))
     count = source.expected_count
     total *= count
     largest = float(np.abs(total[FORCE]).max())
@@ -94,8 +96,8 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
     if not error_of_others <= _WORTHLESS:
         raise OutOfRange(
             f"the force of the expected law of these asperities is right to {error:.1g} of its largest, but another "
-            f"variable only to {error_of_others:.1g} of its own, as where it has no mean: ask for the force alone, or "
-            "for estimator 'stratified' or 'sampled'"
+            f"variable only to {error_of_others:.1g} of its own, as where it has no mean, or where the flat ends next "
+            "to a pole of the density of heights: ask for the force alone, or for estimator 'stratified' or 'sampled'"
         )
     if error > _DOUBTFUL:
         return (

@@ -115,6 +115,15 @@ def totals_of(nodes: list[Node], separation: Floats, rows: tuple[int, ...], step
     return total, products
 
 
+def undecided_of(nodes: list[Node], steps: int) -> Floats:
+    """The part of all asperities of which nothing tells at a step whether they are in contact: [step]."""
+    found = np.zeros(steps)
+    for share, _, _, heights, held, _ in nodes:
+        for ends in (held.begin, held.end):
+            np.add.at(found, held.step, share * heights.undecided(ends))
+    return found
+
+
 def dissipated_of(nodes: list[Node], steps: int) -> Floats:
     """The energy [J] that an asperity has lost in jumps up to each step."""
     spent = np.zeros(steps)
