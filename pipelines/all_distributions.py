@@ -18,8 +18,8 @@ import roughmdr as rm
 from roughmdr.arguments import Floats
 from roughmdr.ensemble.families import known_families
 
-SLOW = ("gausshyper", "levy_stable", "studentized_range")
-"""Families one quantile of which takes scipy longer than a scene may."""
+SLOW = ("gausshyper", "levy_stable", "rel_breitwigner", "studentized_range")
+"""Families the quantiles of which take scipy longer than a scene may."""
 _COUNT, _MODULUS, _RADIUS, _STD = 1000, 4e6, 5e-5, 1e-6
 _SCALE = {"heights": 2e-6, "radii": 5e-5}  # [m]
 _OWN = (0.03, 30.0)  # own parameters, where a family takes them

@@ -18,7 +18,8 @@ from roughmdr.arguments import Floats
 _END = 37.0  # normal score beyond which no double holds the probability
 _END_NUMERICAL = 8.0  # where scipy finds the inverse by numbers: from 1 - p, which has no digits beyond
 _HALVINGS, _AGREE = 40, 1e-14  # of a panel; of the mean
-_MOST_PANELS = 1_000  # that are halved at once: more of them part by the noise of inverses that are found by numbers
+_MOST_PANELS = 1_000  # that are halved at once: more of them part by roundings
+_MOST_NUMERICAL = 100  # where inverses are found by numbers, slowly and with noise
 _END_OF_SCORES = 8.5  # of two quantities that go together
 _FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
@@ -31,11 +32,15 @@ def quantiles(frozen: Any, scores: Floats) -> Floats:
     return np.asarray(np.where(scores < 0.0, lower, upper))
 
 
+def _is_numerical(frozen: Any) -> bool:
+    """Whether scipy finds an inverse of a distribution by numbers."""
+    return type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
+
+
 def _end(frozen: Any) -> float:
     """The normal score as far as which the inverses of a distribution lead where they should."""
-    numerical = type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
     end, before = 4.0, -math.inf
-    for score in np.arange(4.5, (_END_NUMERICAL if numerical else _END) + 0.5, 0.5).tolist():
+    for score in np.arange(4.5, (_END_NUMERICAL if _is_numerical(frozen) else _END) + 0.5, 0.5).tolist():
         try:
             low, high = quantiles(frozen, np.array([-score, score]))
             share, beyond = float(ndtr(-score)), float(frozen.sf(high))
@@ -80,7 +85,7 @@ def _mean(frozen: Any, begin: float, quantity: Callable[[Floats], Floats]) -> Me
         value, doubt = value + float(halves[:, right].sum()), doubt + float(apart[right].sum())
         low, middle, high = low[~right], middle[~right], high[~right]
         rough = halves[:, ~right].ravel()
-        if low.size > _MOST_PANELS:
+        if low.size > (_MOST_NUMERICAL if _is_numerical(frozen) else _MOST_PANELS):
             return Mean(value + float(rough.sum()), doubt + float(apart[~right].sum()) + last)
         if low.size == 0:
             break
