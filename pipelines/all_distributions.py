@@ -127,7 +127,7 @@ def draw(generator: np.random.Generator, of: str, family: str) -> Scene | None:
             scene = Scene(of, family, own, loc, [])
             try:
                 quantiles = scene.frozen.ppf(np.append(generator.uniform(0.01, 0.999, 2), [0.5]))
-            except ArithmeticError:  # of Boost, for some parameters
+            except (ArithmeticError, RuntimeError):  # of Boost and of scipy, for some parameters
                 continue
         if not np.isfinite(quantiles).all():
             continue
