@@ -119,13 +119,13 @@ def draw(generator: np.random.Generator, of: str, family: str) -> Scene | None:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             distribution = getattr(scipy.stats, family)
-            if not distribution._argcheck(*own.values()) or not np.isfinite(distribution.mean(**own)):
-                continue
-            if of == "radii" and not distribution.ppf(1e-16, **own) >= 0.0:
-                continue
-            loc = float(generator.choice([0.0, 0.0, 1e-5, 1e-3])) if of == "heights" else 0.0
-            scene = Scene(of, family, own, loc, [])
             try:
+                if not distribution._argcheck(*own.values()) or not np.isfinite(distribution.mean(**own)):
+                    continue
+                if of == "radii" and not distribution.ppf(1e-16, **own) >= 0.0:
+                    continue
+                loc = float(generator.choice([0.0, 0.0, 1e-5, 1e-3])) if of == "heights" else 0.0
+                scene = Scene(of, family, own, loc, [])
                 quantiles = scene.frozen.ppf(np.append(generator.uniform(0.01, 0.999, 2), [0.5]))
             except (ArithmeticError, RuntimeError):  # of Boost and of scipy, for some parameters
                 continue
