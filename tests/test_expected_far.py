@@ -177,6 +177,15 @@ def test_heights_that_go_with_an_extreme_radius_may_all_be_one(
     assert float(law.numerical_error) < 1e-7
 
 
+def test_heights_that_are_all_one_are_all_counted() -> None:
+    """Next to a pole so steep that no node of a rule stands where all heights do."""
+    h, k = 11.246767058155399, 21.12384885324702
+    law = expected({"distribution": "kappa4", "h": h, "k": k, "loc": 0.0, "scale": 2 * UM}, [0.0, -UM])
+    force = 1000.0 * 4.0 / 3.0 * 4e6 * math.sqrt(5e-5) * (2 * UM / k + np.array([0.0, UM])) ** 1.5
+    np.testing.assert_allclose(law.force, force, rtol=1e-9)
+    np.testing.assert_allclose(law.contact_count, 1000.0, rtol=1e-12)
+
+
 @pytest.mark.parametrize("cut", [{"max": "2 um"}, {"max": "4 um"}, {"min": "-2 um"}, {"min": 0.0}])
 def test_heights_that_are_cut_and_go_with_the_radius(cut: dict[str, object]) -> None:
     """Of draws as many as tell 1 % the mean is no other."""

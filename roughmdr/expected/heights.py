@@ -63,14 +63,15 @@ class HeightTable(NamedTuple):
         loose, unknown = np.zeros_like(parts), np.zeros_like(parts)
         if heights.fractions is not None:
             counted = _counted(*heights.fractions(np.append(table.low, table.high[-1])))
-            vague = ~(slack * width <= _TOLERANCE)
-            scaled = vague & (slack * width < _NOISY * parts) & (np.abs(counted - parts) < _NOISY * parts)
+            apart = np.abs(counted - parts)
+            vague = ~(slack * width <= _TOLERANCE) | (apart > _NOISY)  # no node may stand where all heights do
+            scaled = vague & (slack * width < _NOISY * parts) & (apart < _NOISY * parts)
             even = vague & ~scaled
             coefficients[scaled] *= (counted[scaled] / parts[scaled])[:, None, None]
             coefficients[even] = 0.0
             coefficients[even, 0, 0] = (counted / width)[even]
             loose[even], loose[scaled] = counted[even], np.minimum(counted, slack * width)[scaled]
-            unknown[~vague] = np.abs(counted - parts)[~vague]
+            unknown[~vague] = apart[~vague]
             parts = np.where(vague, counted, parts)
             slack = np.where(vague, 0.0, slack)
             missing = abs(1.0 - float(parts.sum())) - float(unknown.sum())
