@@ -97,7 +97,7 @@ def writing(rows: int) -> tuple[float, float]:
     shard: Shard = table_of(["0" * 32], variables, [(0, 2 * row, tally, Row(1.0)) for row in range(rows)], steps)
     times = []
     with tempfile.TemporaryDirectory() as folder, locked_parts(Path(folder) / "result.nc") as parts:
-        parts.begin("", "")
+        parts.begin("", "", "")
         for _ in range(_REPEATS):
             started = time.perf_counter()
             parts.put(shard)

@@ -46,9 +46,16 @@ RUNS = 96
 CURVES, STATISTICS = slow_scene(RUNS), slow_scene(RUNS, output={"keep": "statistics"})
 
 
-def interrupted(table: dict[str, Any], out: Path, after: int, monkeypatch: pytest.MonkeyPatch, chunk: int = 2) -> None:
+def interrupted(
+    table: dict[str, Any],
+    out: Path,
+    after: int,
+    monkeypatch: pytest.MonkeyPatch,
+    chunk: int = 2,
+    resume: bool = True,
+) -> None:
     """A batch in this process, of tasks of so many runs, ended by Ctrl-C when some of them are done."""
-    left, compute = iter(range(after)), tasks.compute
+    left, compute, there = iter(range(after)), tasks.compute, out.exists()
 
     def until(task: tasks.Task) -> Shard:
         if next(left, None) is None:
@@ -58,8 +65,8 @@ def interrupted(table: dict[str, Any], out: Path, after: int, monkeypatch: pytes
     with monkeypatch.context() as patched:
         patched.setattr(local, "compute", until)
         with pytest.raises(KeyboardInterrupt):
-            execute(make_plan(read(table), chunk), out, workers=1)
-    assert not out.exists()
+            execute(make_plan(read(table), chunk), out, workers=1, resume=resume)
+    assert out.exists() == there
     assert parts_of(destination(out)).is_dir()
 
 

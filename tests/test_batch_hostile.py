@@ -180,7 +180,10 @@ def test_a_pipe_for_a_manifest_is_refused(tmp_path: Path) -> None:
         rm.run(few(), tmp_path / "out.nc")
 
 
-@pytest.mark.parametrize("line", ["[" * 100_000, json.dumps({"scene": "= no TOML", "versions": "1"}), "5", "{}"])
+FIRST = {"scene": "= no TOML", "versions": "1", "replaces": ""}
+
+
+@pytest.mark.parametrize("line", ["[" * 100_000, json.dumps(FIRST), "5", "{}"])
 def test_odd_lines_of_a_manifest(line: str, tmp_path: Path) -> None:
     parts_of(tmp_path / "out.nc").mkdir()
     (parts_of(tmp_path / "out.nc") / "manifest.jsonl").write_text(line + "\n")

@@ -27,19 +27,50 @@ def few(**changes: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
+@pytest.mark.parametrize("other", [{"seed": 2}, {"batch": {"realizations": 9}}, {"output": {"variables": ["energy"]}}])
 def test_an_interrupted_fresh_run_goes_on_beside_the_result_that_it_replaces(
-    keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    keep: str, other: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its parts are kept beside a result of another scene, which --fresh was given to replace."""
-    out, other = tmp_path / "out.nc", tmp_path / "other.nc"
-    rm.run(few(seed=1), other)
-    table = few(seed=2, output={"keep": keep})
-    interrupted(table, out, 2, monkeypatch)
-    other.rename(out)
+    """Of another scene, or of more of it: --fresh was given to replace it."""
+    out = tmp_path / "out.nc"
+    rm.run(few(**other), out)
+    table = few(output={"keep": keep, "variables": ["force", "contact_area"]})
+    interrupted(table, out, 2, monkeypatch, resume=False)
     done = execute(make_plan(read(table), 2), out).to_xarray()
     whole = rm.run(table)
     xr.testing.assert_identical(done.drop_vars("run_time").drop_attrs(), whole.drop_vars("run_time").drop_attrs())
     assert not destination(out).with_name("out.nc.parts").exists()
+
+
+@pytest.mark.parametrize("later", ["another scene goes on", "another result is there"])
+def test_an_interrupted_fresh_run_replaces_nothing_else(
+    later: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, table = tmp_path / "out.nc", few(seed=2)
+    rm.run(few(seed=1), out)
+    interrupted(table, out, 2, monkeypatch, resume=False)
+    if later == "another scene goes on":
+        table = few(seed=2, batch={"realizations": 4})
+    else:
+        rm.run(few(seed=1, batch={"realizations": 9}), out)
+    content = out.read_bytes()
+    with pytest.raises(rm.StoreError, match="holds results of another scene"):
+        rm.run(table, out)
+    assert out.read_bytes() == content
+
+
+def test_kept_runs_of_other_cells_excuse_no_loss(tmp_path: Path) -> None:
+    """They were kept when a run was refused, since its result would have held less than the one that is there."""
+    out = tmp_path / "out.nc"
+    rm.run(few(sweep={"adhesion.work": [0.01]}, batch={"realizations": 30}), out)
+    content = out.read_bytes()
+    accuracy = {"relative": 0.5, "method": "sampled"}
+    for works, says in (([0.01, 0.03], "realisations of a cell"), ([0.03], "holds results of another scene")):
+        table = few(sweep={"adhesion.work": works}, batch={"realizations": 1}, accuracy=accuracy)
+        with pytest.raises(rm.RoughmdrError, match=says):
+            execute(make_plan(read(table), 1), out)
+        assert out.read_bytes() == content
+        assert destination(out).with_name("out.nc.parts").exists()
 
 
 @pytest.mark.parametrize("linked", [False, True])

@@ -68,7 +68,8 @@ def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Pla
         if "realization" in old.sizes:
             shard = _shard_of(old)
             held.add(lambda: shard)
-    elif old is not None:
+    elif old is not None:  # kept runs that would take its place are no excuse
+        matches = False
         there += _what_changed(old.attrs["scene"], old.attrs.get("versions", "other versions"), plan)
     if there and not matches:
         unique = list(dict.fromkeys(there))
@@ -98,13 +99,12 @@ def check_no_less(target: Path, old: Labelled, new: Labelled, keys: Sequence[set
     """StoreError where a result has fewer realisations of a cell than the one at ``target`` whose place it would take.
 
     With [accuracy] that is known only when it is there, and so it is of runs that failed; ``keys`` as in is_finished.
-    Cells of another scene do not count: runs of this one were kept beside them since --fresh was given.
     """
     cell_of = {key: number for number, may in enumerate(keys) for key in may}
     counts = _counts(new)
     found = [max(counts.get(key, 0) for key in may) for may in keys]
     for key, count in _counts(old).items():
-        if key in cell_of and count > found[cell_of[key]]:
+        if count > found[cell_of[key]]:
             raise StoreError(
                 f"{target}: holds {count} realisations of a cell, of which there would be {found[cell_of[key]]}: "
                 f"{_WAYS_OUT}"

@@ -4,14 +4,15 @@ import os
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from roughmdr.batch.identity import versions
 from roughmdr.batch.parts import Parts, locked_parts, parts_of
 from roughmdr.batch.shard import FAILED, Shard
-from roughmdr.errors import StoreError
+from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.labelled import Labelled
+from roughmdr.netcdf import load_text
 from roughmdr.store import write
 
 _LONGEST = 255  # bytes of a file's name
@@ -24,15 +25,17 @@ class Keeper:
     def __init__(self, target: Path, stack: ExitStack) -> None:
         self.target, self._stack = target, stack
         self.parts: Parts | None = None
-        self._cleared = False
+        self._cleared, self._replaces = False, ""
         self._writer: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
         if len(os.fsencode(parts_of(target).name)) <= _LONGEST:
             self.parts = stack.enter_context(locked_parts(target))
 
     def clear(self) -> None:
-        """Take away what an earlier run kept."""
+        """Take away what an earlier run kept; the result that is there now, if one is, may be replaced."""
         self._cleared = True
+        with suppress(RoughmdrError):  # whatever else is there is replaced now or never
+            self._replaces = load_text(self.target, "checksum")
         if self.parts is not None:
             self.parts.remove()
 
@@ -41,8 +44,12 @@ class Keeper:
         if self._writer is None:
             if self.parts is None:
                 raise StoreError(f"{self.target}: the name is too long for a folder of parts; give a shorter one")
-            self.parts.begin(scene, versions())
+            self.parts.begin(scene, versions(), self._replaces)
             self._writer = self._stack.enter_context(ThreadPoolExecutor(1, "roughmdr-writer"))
+
+    def may_replace(self, old: Labelled, scene: str) -> bool:
+        """Whether a batch of this scene, which goes on, was told to replace a result."""
+        return self.parts is not None and self.parts.scene == scene and self.parts.replaces == old.attrs["checksum"]
 
     def put(self, shard: Shard) -> None:
         """Keep a shard, if shards are kept, without the runs of it that failed; StoreError where that cannot be."""

@@ -50,6 +50,8 @@ class Parts:
         self.scene = ""
         """In TOML; of the batch that began the folder."""
         self.versions = ""
+        self.replaces = ""
+        """The checksum of the result that this batch was told to replace; empty for none."""
         self._lines = self._read()
         self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
 
@@ -58,11 +60,11 @@ class Parts:
         """Whether no shard is kept."""
         return self._next == 1
 
-    def begin(self, scene: str, versions: str) -> None:
+    def begin(self, scene: str, versions: str, replaces: str) -> None:
         """Say what the folder is for, if it is a new one."""
         if not self.scene:
-            self.scene, self.versions = scene, versions
-            self._append({"scene": scene, "versions": versions})
+            self.scene, self.versions, self.replaces = scene, versions, replaces
+            self._append({"scene": scene, "versions": versions, "replaces": replaces})
 
     def held(self) -> Iterator[Callable[[], Shard | None]]:
         """What reads each of the shards; it gives None for one that is not whole."""
@@ -110,7 +112,7 @@ class Parts:
             for path in self.folder.iterdir():
                 if _OWN.fullmatch(path.name):
                     shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-        self.scene, self._lines, self._next = "", [], 1
+        self.scene, self.replaces, self._lines, self._next = "", "", [], 1
 
     def _read(self) -> list[dict[str, Any]]:
         """The lines of the manifest that speak of shards; one that was not finished is cut off."""
@@ -125,8 +127,8 @@ class Parts:
         for text in whole.splitlines():
             with suppress(ValueError, RecursionError):
                 match json.loads(text):
-                    case {"scene": str(scene), "versions": str(versions)}:
-                        self.scene, self.versions = scene, versions
+                    case {"scene": str(scene), "versions": str(versions), "replaces": str(replaces)}:
+                        self.scene, self.versions, self.replaces = scene, versions, replaces
                     case {"file": str(file), "sha256": str()} as line if _SHARD_NAME.fullmatch(file):
                         lines.append(line)
         return lines

@@ -98,6 +98,8 @@ def execute(
                 if keeper.parts is not None and keeper.parts.scene in ("", old.attrs["scene"]):
                     keeper.parts.remove()  # the run that wrote the result was killed before it could
                 return old
+            if old is not None and keeper.may_replace(old, plan.scene.toml):
+                old = None
             use_again(target, old, keeper.parts, plan, held)
         _check_memory(plan, rounds)
         try:
