@@ -16,14 +16,18 @@ from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
-from roughmdr.expected.panels import Curves, halve_panels
+from roughmdr.expected.panels import AGREE, Curves, halve_panels
 from roughmdr.expected.parted import Parted
 
 FIRST_ORDER = 8
 _ORDERS = (12, 18, 27, 40, 60, 90, 135)
 _MOST_NODES = 6_000
 _AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
-_ROUGH = 1e-6  # of the largest: where orders part by more, one parameter is integrated over panels
+DOUBTFUL = 1e-3
+"""Of the largest force: an error that users are warned of."""
+_ROUGH = 1e-6  # of the largest: an error for which one parameter is integrated over panels
+_KINKED = 1e-7  # of the greatest values: panels agree so far where kinks make more too dear
+_BY_CHANCE = 10.0  # times what panels part by, where kinks between their nodes may be seen by none
 _SLOW = 0.3  # a higher order that leaves so much of the difference does not help
 _SLOWEST = 0.9  # as if each difference were at most so much of the one before
 _POWERS = (0.5, 1.0)  # of a parameter that forces go with
@@ -60,17 +64,23 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
         found = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
         return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
 
+    def off(rule: Rule) -> float:
+        return sum(_off(parameter, rule) for parameter in asked.source.drawn_parameters)
+
     if not asked.source.one_parameter:
         product = _smooth(asked, curves)
-        own = sum(_off(parameter, product.rule) for parameter in asked.source.drawn_parameters)
+        own = off(product.rule)
         others = max(product.doubt_of_others, own if len(rows) > 1 or dissipating else 0.0)
         return product._replace(doubt=max(product.doubt, own), doubt_of_others=others)
+    # A contact that lets go makes a kink in what goes with the parameter, each step another one.
+    rough, agree, chance = (DOUBTFUL, _KINKED, _BY_CHANCE) if asked.hysteretic else (_ROUGH, AGREE, 1.0)
     smooth: Converged | None = None
     with suppress(RoughmdrError):  # of parameters that next to no asperity has
         smooth = _smooth(asked, curves)
-    if smooth is not None and max(smooth.doubt, smooth.doubt_of_others) <= _ROUGH:
+    if smooth is not None and max(smooth.doubt, smooth.doubt_of_others, off(smooth.rule)) <= rough:
         return smooth
-    rule, nodes, doubts = halve_panels(partial(set_up, asked), curves)
+    rule, nodes, doubts = halve_panels(partial(set_up, asked), curves, agree)
+    doubts *= chance
     if smooth is not None and max(smooth.doubt, smooth.doubt_of_others) <= doubts.max():
         return smooth
     return Converged(rule, nodes, float(doubts[0]), float(doubts[1:].max(initial=0.0)))
@@ -106,7 +116,7 @@ def _smooth(asked: Asked, curves: Curves) -> Converged:
 def _off(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
     """How far a rule over the scores of a parameter is off, relative, in the means of powers that forces go with.
 
-    Products of rules over several parameters may agree with each other and all be off where one parameter has a pole.
+    Rules may agree with each other and all be off where a parameter has a pole.
     """
     fine = Rule.between(_PANELS, _PANEL_ORDER)
     values, exact = parameter(rule.scores), parameter(fine.scores)

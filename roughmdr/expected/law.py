@@ -18,11 +18,11 @@ from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
-from roughmdr.expected.converge import FIRST_ORDER, converge
+from roughmdr.expected.converge import DOUBTFUL, FIRST_ORDER, converge
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.expected.parted import Parted
 
-_DOUBTFUL, _WORTHLESS = 1e-3, 0.1  # of the largest force: an error that is warned of, and one that is refused
+_WORTHLESS = 0.1  # of the largest force: an error that is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
 _HEAVY = 0.05  # index of a tail: of lighter ones all is borne by their lowest heights
 
@@ -99,12 +99,12 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
             f"variable only to {error_of_others:.1g} of its own, as where it has no mean, or where the flat ends next "
             "to a pole of the density of heights: ask for the force alone, or for estimator 'stratified' or 'sampled'"
         )
-    if error > _DOUBTFUL:
+    if error > DOUBTFUL:
         return (
             f"an expected law that is right only to {error:.1g} of its largest force, other variables perhaps to less: "
             "estimator 'stratified' or 'sampled' has no such limit",
         )
-    if error_of_others > _DOUBTFUL:
+    if error_of_others > DOUBTFUL:
         return (
             f"an expected law whose force is right to {error:.1g} of its largest, but other variables only to "
             f"{error_of_others:.1g} of theirs: estimator 'stratified' or 'sampled' has no such limit",

@@ -21,7 +21,8 @@ _ENDS = (3.0, 4.5, 6.0, 8.5, 12.0, 17.0, 24.0, 37.0)
 _USUAL_END = 8.5  # nearer ones only where no contact is representable there
 _ORDER = 10
 _MOST_NODES = 2_000
-_AGREE = 1e-12  # of the greatest values: panels that part by less are right
+AGREE = 1e-12
+"""Of the greatest values: panels that part by less are right."""
 _NEGLIGIBLE = 1e-13  # of the greatest values: what is left out may bear that
 
 Curves = Callable[[list[Node]], Floats]
@@ -45,8 +46,11 @@ class _Panel(NamedTuple):
     sums: Floats
 
 
-def halve_panels(set_up: SetUp, curves: Curves) -> Halved:
-    """The rule on panels from the scores where parameters are left out; RoughmdrError where not even the bulk is."""
+def halve_panels(set_up: SetUp, curves: Curves, agree: float) -> Halved:
+    """The rule on panels from the scores where parameters are left out; RoughmdrError where not even the bulk is.
+
+    Panels are halved until they part by less than ``agree``, relative to the greatest values.
+    """
     lower, upper = (_end(side, set_up, curves) for side in (-1.0, 1.0))
     edges = sorted({0.0, *(-end for end in _ENDS if end <= lower.score), *(end for end in _ENDS if end <= upper.score)})
     doubtful = _panels(list(pairwise(edges)), set_up, curves)
@@ -63,7 +67,7 @@ def halve_panels(set_up: SetUp, curves: Curves) -> Halved:
         for number, panel in enumerate(doubtful):
             pair = halves[2 * number : 2 * number + 2]
             apart = np.abs(pair[0].sums + pair[1].sums - panel.sums)
-            if (apart <= _AGREE * greatest).all() or made >= _MOST_NODES:
+            if (apart <= agree * greatest).all() or made >= _MOST_NODES:
                 accepted += pair
                 off = off + apart
             else:
