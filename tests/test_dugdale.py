@@ -233,14 +233,14 @@ def test_the_bound_on_the_error_holds(name: str) -> None:
         rows.sort(key=lambda row: -mp.mpf(row["indentation"]))
         law = {key: case[key] for key in ("modulus", "work", "strength")}
         for height in (0.0, 3e-7, -7e-5):
-            data = ensemble(np.full(300, height), shape=name, **case["parameters"])
+            data = ensemble(np.full(40, height), shape=name, **case["parameters"])
             path = [height - float(row["indentation"]) for row in rows]
             got = rm.load_separation(data, separation=path, adhesion="dugdale", **law)
             largest = float(np.abs(got.force).max())
             for i, row in enumerate(rows):
                 # The force at the separation as it was rounded; the slope of the branch is right for so small a way.
                 moved = mp.mpf(height) - mp.mpf(path[i]) - mp.mpf(row["indentation"])
-                exact = 300 * (mp.mpf(row["force"]) + mp.mpf(row["stiffness"]) * moved)
+                exact = 40 * (mp.mpf(row["force"]) + mp.mpf(row["stiffness"]) * moved)
                 assert abs(mp.mpf(float(got.force[i])) - exact) <= float(got.numerical_error) * largest, (name, row)
             assert float(got.numerical_error) < 1e-6
 

@@ -14,6 +14,7 @@ import roughmdr as rm
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route
 from roughmdr.contact import Contact
+from roughmdr.expected import converge, panels
 from roughmdr.expected.memory import remember
 from roughmdr.expected.table import Table
 
@@ -129,6 +130,29 @@ def test_the_mean_of_draws_is_the_expected_law(
         if scale > 0.0:
             assert float(np.abs(even[name].mean("realization") - law).max()) < 0.03 * scale, name
     assert float(expected.numerical_error) < 1e-3
+
+
+KINKED: list[dict[str, object]] = [
+    {"distribution": "gamma", "a": 2.0, "loc": 0.0, "scale": "30 um"},
+    {"distribution": "invgamma", "a": 4.0, "loc": 0.0, "scale": "100 um"},
+]
+
+
+@pytest.mark.parametrize("radius", KINKED)
+def test_the_error_is_honest_where_contacts_let_go(radius: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each step makes a kink over the radius: against many more nodes, which stand elsewhere."""
+    asked = scene({"radius": radius, "shape": "paraboloid"}, {"model": "jkr", "work": 3e-3})
+    asked["path"] = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 60}, "unload": True}
+    asked["batch"] = {"estimator": "expected"}
+    law = rm.run(asked)
+    monkeypatch.setattr(converge, "DOUBTFUL", 0.0)
+    monkeypatch.setattr(converge, "_KINKED", 1e-9)
+    monkeypatch.setattr(panels, "_ORDER", 14)
+    fine = rm.run(asked)
+    largest = float(np.abs(fine.force).max())
+    stated, left = float(law.numerical_error[0]), float(fine.numerical_error[0])
+    assert left < 0.01 * stated < 1e-5
+    assert float(np.abs(law.force - fine.force).max()) <= (stated + left) * largest
 
 
 @pytest.mark.parametrize("m4", [7.5e8, 1e9, 5e9, 4e12])

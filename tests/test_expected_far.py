@@ -145,16 +145,16 @@ def test_a_count_next_to_a_pole_is_right_or_refused(h: float) -> None:
 
 
 BOUNDED = [
-    ("uniform", {}),
-    ("beta", {"a": 2.0, "b": 2.0}),
-    ("beta", {"a": 0.3, "b": 0.5}),
-    ("expon", {}),
-    ("weibull_max", {"c": 2.0}),
+    ("uniform", {}, -0.9),
+    ("uniform", {}, 0.99),
+    ("beta", {"a": 2.0, "b": 2.0}, 0.99),
+    ("beta", {"a": 0.3, "b": 0.5}, -0.9),
+    ("expon", {}, 0.99),
+    ("weibull_max", {"c": 2.0}, -0.9),
 ]
 
 
-@pytest.mark.parametrize(("family", "own"), BOUNDED)
-@pytest.mark.parametrize("spearman", [-0.9, 0.99])
+@pytest.mark.parametrize(("family", "own", "spearman"), BOUNDED)
 def test_heights_that_go_with_an_extreme_radius_may_all_be_one(
     family: str, own: dict[str, float], spearman: float
 ) -> None:
