@@ -26,17 +26,35 @@ def few(**changes: Any) -> dict[str, Any]:
     return scene(**{"asperities": asperities, "path": PATH, "batch": {"realizations": 6}, **changes})
 
 
+FORCE_AND_AREA = {"variables": ["force", "contact_area"]}
+OTHERS: dict[str, dict[str, Any] | None] = {
+    "another scene": {"seed": 2},
+    "more realisations": {"batch": {"realizations": 9}},
+    "another variable": {"output": {"variables": ["energy"]}},
+    "itself": {"output": FORCE_AND_AREA},
+    "no result": None,
+}
+
+
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
-@pytest.mark.parametrize("other", [{"seed": 2}, {"batch": {"realizations": 9}}, {"output": {"variables": ["energy"]}}])
-def test_an_interrupted_fresh_run_goes_on_beside_the_result_that_it_replaces(
-    keep: str, other: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("other", OTHERS)
+def test_an_interrupted_fresh_run_goes_on_beside_the_file_that_it_replaces(
+    keep: str, other: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of another scene, or of more of it: --fresh was given to replace it."""
+    """Whatever file it is: --fresh was given to replace it."""
     out = tmp_path / "out.nc"
-    rm.run(few(**other), out)
-    table = few(output={"keep": keep, "variables": ["force", "contact_area"]})
+    changes = OTHERS[other]
+    if changes is None:
+        out.write_text("no result")
+    else:
+        rm.run(few(**changes), out)
+    before = out.read_bytes()
+    table = few(output={"keep": keep, **FORCE_AND_AREA})
     interrupted(table, out, 2, monkeypatch, resume=False)
+    interrupted(table, out, 0, monkeypatch)
+    assert out.read_bytes() == before
     done = execute(make_plan(read(table), 2), out).to_xarray()
+    assert out.read_bytes() != before
     whole = rm.run(table)
     xr.testing.assert_identical(done.drop_vars("run_time").drop_attrs(), whole.drop_vars("run_time").drop_attrs())
     assert not destination(out).with_name("out.nc.parts").exists()

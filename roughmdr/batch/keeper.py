@@ -4,15 +4,14 @@ import os
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from roughmdr.batch.identity import versions
 from roughmdr.batch.parts import Parts, locked_parts, parts_of
 from roughmdr.batch.shard import FAILED, Shard
-from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
-from roughmdr.netcdf import load_text
 from roughmdr.store import write
 
 _LONGEST = 255  # bytes of a file's name
@@ -32,10 +31,8 @@ class Keeper:
             self.parts = stack.enter_context(locked_parts(target))
 
     def clear(self) -> None:
-        """Take away what an earlier run kept; the result that is there now, if one is, may be replaced."""
-        self._cleared = True
-        with suppress(RoughmdrError):  # whatever else is there is replaced now or never
-            self._replaces = load_text(self.target, "checksum")
+        """Take away what an earlier run kept; the file that is at the output now, if one is, may be replaced."""
+        self._cleared, self._replaces = True, _mark(self.target)
         if self.parts is not None:
             self.parts.remove()
 
@@ -47,9 +44,11 @@ class Keeper:
             self.parts.begin(scene, versions(), self._replaces)
             self._writer = self._stack.enter_context(ThreadPoolExecutor(1, "roughmdr-writer"))
 
-    def may_replace(self, old: Labelled, scene: str) -> bool:
-        """Whether a batch of this scene, which goes on, was told to replace a result."""
-        return self.parts is not None and self.parts.scene == scene and self.parts.replaces == old.attrs["checksum"]
+    def may_replace(self, scene: str) -> bool:
+        """Whether a batch of this scene goes on that was told to replace the file at the output."""
+        if self.parts is None or not self.parts.replaces:
+            return False
+        return self.parts.scene == scene and self.parts.replaces == _mark(self.target)
 
     def put(self, shard: Shard) -> None:
         """Keep a shard, if shards are kept, without the runs of it that failed; StoreError where that cannot be."""
@@ -94,6 +93,14 @@ class Keeper:
             return ""
         again = "the same command without --fresh" if self._cleared else "the same command"
         return f"what is finished is kept in {self.parts.folder}; {again} goes on from there"
+
+
+def _mark(path: Path) -> str:
+    """What tells a file from any that takes its place: its length [byte] and its time [ns]; empty where none is."""
+    if not path.exists():
+        return ""
+    found = path.stat()
+    return f"{found.st_size} {found.st_mtime_ns}"
 
 
 @contextmanager

@@ -51,7 +51,7 @@ class Parts:
         """In TOML; of the batch that began the folder."""
         self.versions = ""
         self.replaces = ""
-        """The checksum of the result that this batch was told to replace; empty for none."""
+        """Marks the file that this batch was told to replace (see ``Keeper``); empty for none."""
         self._lines = self._read()
         self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
 

@@ -93,13 +93,11 @@ def execute(
         held = Held(rounds.keys, computed(plan), tallied=plan.scene.output.keep == "statistics")
         old: Labelled | None = None
         if target is not None and keeper is not None and resume:
-            old = earlier(target)
+            old = None if keeper.may_replace(plan.scene.toml) else earlier(target)
             if old is not None and is_finished(old, plan, rounds.keys):
                 if keeper.parts is not None and keeper.parts.scene in ("", old.attrs["scene"]):
                     keeper.parts.remove()  # the run that wrote the result was killed before it could
                 return old
-            if old is not None and keeper.may_replace(old, plan.scene.toml):
-                old = None
             use_again(target, old, keeper.parts, plan, held)
         _check_memory(plan, rounds)
         try:
