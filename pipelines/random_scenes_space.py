@@ -61,7 +61,7 @@ def shape_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
         return _plain_parameters(draw, frame, shape)
     exponent, width, rise = number(draw, -0.28, 1.0), number(draw, 0, 3, frame.size), number(draw, -1, 2, frame.size)
     power = math.log10(rise) - exponent * math.log10(width)
-    coefficient = 10.0 ** min(max(power, -300.0), 300.0)
+    coefficient = _of_power(power)
     if shape == "power_law":
         if not frame.drawn_parameters:
             return {"exponent": exponent, "coefficient": coefficient}
@@ -69,12 +69,17 @@ def shape_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
             return {"exponent": entry(draw, exponent, "1"), "width": width, "rise": rise}
         return {"exponent": exponent, "coefficient": entry(draw, coefficient, "1")}
     if shape == "power_series":
-        terms = {str(exponent + k): coefficient * frame.size**-k for k in range(draw(st.integers(1, 3)))}
-        return {"terms": terms}
+        beside = math.log10(frame.size)
+        return {"terms": {str(exponent + k): _of_power(power - k * beside) for k in range(draw(st.integers(1, 3)))}}
     places = np.linspace(0.0, 1.0, draw(st.integers(3, 9)))
     tip = 0.2 * draw(st.booleans())
     profile = np.maximum(places - tip, 0.0) ** 10.0 ** draw(st.floats(0.0, 0.7))
     return {"r": (width * places).tolist(), "f": (rise * profile).tolist()}
+
+
+def _of_power(power: float) -> float:
+    """Ten to a power, as far as floats reach."""
+    return float(10.0 ** min(max(power, -300.0), 300.0))
 
 
 def _plain_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
