@@ -132,7 +132,7 @@ def nayak_asperities(draw: Draw, frame: Frame) -> Table:
     """source = "nayak", some tens of summits."""
     across = 10.0 ** draw(st.floats(0.3, 1.0))
     if draw(st.booleans()):
-        m0, m2 = number(draw, -1, 1, frame.size**2), number(draw, -4, 0)
+        m0, m2 = number(draw, -1, 1, frame.size * frame.size), number(draw, -4, 0)
         m4 = (1.5 + number(draw, -2, 3)) * m2 * m2 / m0 if m0 > 0.0 and m2 < 1e100 else 1.0
         side = across * 5.7 * math.sqrt(m2 / m4) if m4 > 0.0 else 1.0
         return {"source": "nayak", "m0": m0, "m2": m2, "m4": m4, "patch": side}
@@ -172,7 +172,7 @@ def adhesion(draw: Draw, frame: Frame, model: str) -> Table:
     section: Table = {"model": model, "work": quantity(draw, work, "J/m^2")}
     reach = number(draw, -4.0, 1.0, frame.size)
     if model != "jkr" or seldom(draw, 6):
-        if draw(st.booleans()) and work > 0.0 and 0.0 < work / reach < math.inf:
+        if draw(st.booleans()) and work > 0.0 and reach > 0.0 and 0.0 < work / reach < math.inf:
             section["strength"] = quantity(draw, work / reach, "Pa")
         else:
             section["range"] = quantity(draw, reach, "m")
