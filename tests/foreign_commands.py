@@ -90,7 +90,8 @@ def checked(command: str) -> Result:
 
 def put(content: Content, *, believed: bool) -> bool:
     """Put it at ``changed.nc``, with a checksum of its own where it is to be ``believed``; whether that can be."""
-    Path("again.nc").unlink(missing_ok=True)
+    for left in ("again.nc", "changed.nc"):  # the library may still hold open what it could not write
+        Path(left).unlink(missing_ok=True)
     shutil.rmtree("changed.nc.parts", ignore_errors=True)
     try:
         write(content, Path("changed.nc"))
