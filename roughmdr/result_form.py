@@ -119,8 +119,9 @@ def _numbers(data: Labelled) -> Iterator[str]:
         yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
     if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
         yield f"branch must be {' or '.join(_BRANCHES)}"
-    if not np.isfinite(data.coordinates["separation"].values).all():
-        yield "separation is not finite"
+    for name, array in data.coordinates.items():
+        if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
+            yield f"{name} is not finite"
     done = status == DONE
     for name in ("run_time", "numerical_error", *LAW, *(f"{name}_mean" for name in LAW)):
         if name in data.variables and not np.isfinite(data.variables[name].values[done]).all():

@@ -89,6 +89,7 @@ KNOWN: list[tuple[str, list[Callable[[Content], None]], str, str]] = [
     ("curves", [attribute("seed", "one")], OF_RESULT[0], "seed is no whole number"),
     ("curves", [attribute("accuracy", 1.0)], OF_RESULT[0], "the attribute accuracy is no text"),
     ("curves", [values("branch", "sideways")], OF_RESULT[2], "branch must be loading or unloading"),
+    ("sweep", [values("asperities_radius", np.inf)], OF_RESULT[0], "asperities_radius is not finite"),
     ("curves", [values("force", np.nan)], OF_RESULT[0], "force is not finite, and status says that it was computed"),
     ("curves", [values("status", 7)], OF_RESULT[0], "status must be 0, 1 or 2"),
     ("curves", [only("force", "contact_area", "contact_count", "stiffness")], OF_RESULT[2], "it holds none of force"),
