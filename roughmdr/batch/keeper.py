@@ -96,7 +96,7 @@ class Keeper:
 
 
 def _mark(path: Path) -> str:
-    """What tells a file from any that takes its place: its length [byte] and its time [ns]; empty where none is."""
+    """Tell a file from any that takes its place, by its length [byte] and its time [ns]; empty where none is."""
     if not path.exists():
         return ""
     found = path.stat()
