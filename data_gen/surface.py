@@ -13,9 +13,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 from roughmdr.store import provenance, write
 from roughmdr.units import DIMENSIONLESS, quantity

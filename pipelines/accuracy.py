@@ -20,10 +20,10 @@ import xarray as xr
 from accuracy_picture import draw
 
 import roughmdr as rm
-from roughmdr.arguments import Floats
 from roughmdr.batch.enough import FIRST, next_count, relative_error
 from roughmdr.batch.tally import Tallies
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 from roughmdr.store import provenance, replacing, write
 

@@ -15,8 +15,8 @@ from scipy.stats import rv_continuous
 from scipy.stats._distn_infrastructure import rv_generic
 
 import roughmdr as rm
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.families import known_families
+from roughmdr.numerics.arguments import Floats
 
 SLOW = ("gausshyper", "levy_stable", "rel_breitwigner", "studentized_range")
 """Families the quantiles of which take scipy longer than a scene may."""

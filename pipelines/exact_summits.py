@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.summit_law import Summits
+from roughmdr.numerics.arguments import Floats
 
 DERIVATIVES = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 """Orders along x and y of what tells a summit."""

@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import NamedTuple
 from zlib import crc32
 
-from roughmdr._jit import njit
-from roughmdr._rebuilt import rebuilt
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route, compute
-from roughmdr.arguments import Floats
 from roughmdr.kernels import elastic, jkr_paraboloid
 from roughmdr.kernels.laws import Law, choose
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
+from roughmdr.numerics.rebind import rebuilt
 from roughmdr.plan import make_plan
 from roughmdr.scene import Scene, read
 from roughmdr.variables import DEFAULT, LAW

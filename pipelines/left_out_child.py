@@ -23,9 +23,9 @@ import numpy as np
 from left_out_cases import BATCH, SIZES, Size, Way, forced, scene_of
 from peak import peak
 
-from roughmdr.arguments import Floats
 from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.rounds import Rounds
+from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.variables import DEFAULT

@@ -11,8 +11,8 @@ import xarray as xr
 import roughmdr as rm
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route, compute
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
 
 MODULUS, WORK, TABOR = 4.1e6, 0.047, 1.3  # of a soft rubber [Pa], [J/m^2], and where neither DMT nor JKR is right

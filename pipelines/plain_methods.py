@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import roughmdr as rm
-from roughmdr._jit import compiled
-from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import SHAPES, Curved, PowerLaw, Shape
 from roughmdr.shapes.kappa import kappa
 

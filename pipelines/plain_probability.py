@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import rv_continuous
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 _END = 37.0  # normal score beyond which no double holds the probability
 _END_NUMERICAL = 8.0  # where scipy finds the inverse by numbers: from 1 - p, which has no digits beyond

@@ -13,9 +13,9 @@ import roughmdr as rm
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import staircase
-from roughmdr.arguments import Floats
 from roughmdr.kernels.laws import Law, choose
 from roughmdr.kernels.row import COUNT, FOOT, TOP
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
 
 NEAREST = 1e-12

@@ -20,7 +20,7 @@ from stated_error_scenes import ESTIMATORS, Drawn, scene
 from study import Study, named, table
 
 import roughmdr as rm
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
 
 SCENES, QUICK = 200, 60

@@ -9,8 +9,8 @@ from stated_error_cohesion import Cohesive, CohesivePunch
 from stated_error_contacts import DIGITS, Follower, Punch, Touching
 from stated_error_expected import ORDERS, Expected
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, FlatPunch, Shape
 

@@ -19,12 +19,12 @@ import numpy as np
 import xarray as xr
 from exact_summits import Series
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import independent
 from roughmdr.ensemble.maps import HeightMap
 from roughmdr.ensemble.summit_law import SummitLaw, Summits, product_density
 from roughmdr.ensemble.summits import find_summits
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
 from roughmdr.store import provenance, replacing, write
 

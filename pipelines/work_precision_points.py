@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 _LONG = 0.5  # [s]
 QUANTITIES = ("force", "contact area", "pull-off force")

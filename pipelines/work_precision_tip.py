@@ -11,7 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 from work_precision_points import Curve, Method, Point, Reference, timed
 
 import roughmdr as rm
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
 

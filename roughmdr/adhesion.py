@@ -3,8 +3,8 @@
 import math
 from typing import Literal, NamedTuple, get_args
 
-from roughmdr.arguments import check_number
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import check_number
 
 Model = Literal["jkr", "dugdale"]
 

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
-from roughmdr.batch.shard import DONE
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.statistics import mean_and_error
+from roughmdr.variables import DONE
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from roughmdr import limits
 from roughmdr.adhesion import Adhesion, Model, tabor_number
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, ShapeError
+from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from roughmdr.batch.shard import DONE, FAILED
 from roughmdr.labelled import Labelled
+from roughmdr.variables import DONE, FAILED
 from roughmdr.views import cell_label, cells_of, method_of
 from roughmdr.wording import printable, seconds_in_words
 

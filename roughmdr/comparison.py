@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.curves import EXPECTED, Line, separations
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.named import LAWS, NamedLaw
+from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
 from roughmdr.theory.summits import Variable

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.statistics import mean_and_error
 from roughmdr.views import done_of, swept_sizes
 

@@ -8,13 +8,13 @@ from numpy.typing import ArrayLike
 
 from roughmdr import limits
 from roughmdr.adhesion import Adhesion, stretch_at
-from roughmdr.arguments import Floats, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels import fields
 from roughmdr.kernels.elementwise import apply
 from roughmdr.kernels.field_quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.kernels.profiles import profile_of
+from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Curved, FlatPunch, Shape
 
 _ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding

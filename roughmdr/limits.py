@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 STEEP = 0.3
 """The slope at the edge of a contact from which on there is a warning.

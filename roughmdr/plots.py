@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.curves import EXPECTED, Curve, Line, curves
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
+from roughmdr.numerics.arguments import Floats
 from roughmdr.store import replacing
 from roughmdr.variables import LAW
 from roughmdr.views import cell_label, cells_of, done_of, realizations_in_words

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from roughmdr.batch.gathered import Found
 from roughmdr.batch.identity import versions
 from roughmdr.batch.rounds import Choice
-from roughmdr.batch.shard import DONE, FAILED, LAWS
 from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
 from roughmdr.statistics import summarise
 from roughmdr.store import provenance
-from roughmdr.variables import LAW, RUN
+from roughmdr.variables import ADHESION_CODES, DONE, FAILED, LAW, RUN, STATUSES
 
 _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
@@ -54,11 +53,11 @@ def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Seq
     beside = found.beside | {name: np.where(done, values, np.nan) for name, values in extremes.items()}
     for name in _ALWAYS:
         data[name] = Array(dims, beside[name].reshape(shape), RUN[name].attrs)
-    data["status"] = _flags("status", dims, beside["status"].reshape(shape), ("done", "failed", "not_run"))
+    data["status"] = _flags("status", dims, beside["status"].reshape(shape), STATUSES)
     if any(cell.scene.law.known for cell in plan.cells):
         tabor = np.where(np.isfinite(beside["tabor"]), beside["tabor"], np.nan)
         data["tabor_number"] = Array(dims, tabor.reshape(shape), RUN["tabor_number"].attrs)
-        data["adhesion_law"] = _flags("adhesion_law", dims, beside["law"].reshape(shape), LAWS)
+        data["adhesion_law"] = _flags("adhesion_law", dims, beside["law"].reshape(shape), ADHESION_CODES)
     # Texts are coordinates, so that one can reckon with the rest.
     keys = np.array([choice.key for choice in choices], dtype=object).reshape(cells)
     coordinates = {**plan.coordinates(), "cell_key": Array(swept, keys, {"long_name": RUN["cell_key"].long_name})}
@@ -96,7 +95,7 @@ def _warnings(plan: Plan, found: Found) -> list[str]:
     said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]
     if not done.any():
         return said
-    jkr = done & (beside["law"] == LAWS.index("jkr"))
+    jkr = done & (beside["law"] == ADHESION_CODES.index("jkr"))
     tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
     return [*said, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
 

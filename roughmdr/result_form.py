@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.shard import DONE, FAILED, NOT_RUN
 from roughmdr.labelled import Array, Labelled
 from roughmdr.tables import table_of
-from roughmdr.variables import BESIDE, LAW
+from roughmdr.variables import BESIDE, DONE, FAILED, LAW, NOT_RUN
 
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _MORE_TEXTS = ("accuracy", "warnings", "versions", "checksum")

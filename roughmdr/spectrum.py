@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.numerics.arguments import Floats, check_number
 
 RING = 1.5
 """Nayak's parameter alpha of waves of one length, all directions: there is none below."""

@@ -82,5 +82,12 @@ RUN = _table(
 )
 """Variables that stand in every result."""
 
+DONE, FAILED, NOT_RUN = range(3)
+"""Codes of ``status``."""
+STATUSES = ("done", "failed", "not_run")
+"""Meanings of the codes of ``status``."""
+ADHESION_CODES = ("none", "jkr", "dugdale")
+"""Adhesion models, each at its code in ``adhesion_law``."""
+
 BESIDE = ("separation", "branch", "cell_key", "remark")
 """Those of them that are coordinates of a result, beside its swept keys."""

@@ -5,11 +5,10 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.shard import DONE
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.tables import table_of
-from roughmdr.variables import BESIDE, LAW
+from roughmdr.variables import BESIDE, DONE, LAW
 
 
 def held_variables(result: Labelled) -> list[str]:

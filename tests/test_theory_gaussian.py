@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.special import erfcx
 
 import roughmdr as rm
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.quadrature import panels
 from roughmdr.theory.ellipse import Ellipses
-from roughmdr.theory.quadrature import panels
 
 LAWS = {"elliptic": rm.theory.bush_gibson_thomas, "circular": rm.theory.greenwood_elliptic}
 SURFACE = {"modulus": 2e9, "m0": 1e-14, "m2": 1e-3, "m4": 2.5e8}

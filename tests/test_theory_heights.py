@@ -8,7 +8,7 @@ import pytest
 import scipy.stats as st
 
 import roughmdr as rm
-from roughmdr.theory.quadrature import integrate
+from roughmdr.numerics.quadrature import integrate
 
 ONE = {"modulus": 0.75, "radius": 1.0, "density": 1.0}
 """With these the pressure is the integral F_3/2."""

@@ -20,11 +20,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr._extended import ROUNDING
-from roughmdr.aggregate.block import least
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
 from roughmdr.aggregate.settle import FORCE, RADIUS, STATE, STIFFNESS
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import ROUNDING
+from roughmdr.numerics.summation import least
 
 _NEXT_TO_A_FOLD = 3.0  # m
 

@@ -13,12 +13,12 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.route import Route
 from roughmdr.aggregate.staircase import no_memory
 from roughmdr.aggregate.tabor import range_of
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.laws import choose
 from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
+from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import SHAPES
 from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 

@@ -14,9 +14,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr._jit import njit, specialise
 from roughmdr.adhesion import Adhesion
-from roughmdr.aggregate.block import BLOCK, accumulate, run_on
 from roughmdr.aggregate.bound import bound, bound_found, worst
 from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.settle import (
@@ -35,9 +33,11 @@ from roughmdr.aggregate.settle import (
 )
 from roughmdr.aggregate.staircase import Staircase
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.laws import Law
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit, specialise
+from roughmdr.numerics.summation import BLOCK, accumulate, run_on
 
 _NOT_REPRESENTABLE = -1
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate.block import least
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.summation import least
 
 # Rows of a block's natural scales.
 DEPTH, PER_DEPTH, SIZE, LOAD, RIGIDITY, WORTH = range(6)

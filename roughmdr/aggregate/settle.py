@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from roughmdr.aggregate.scales import DEPTH, PER_DEPTH
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 STATE, RADIUS, FORCE, STIFFNESS = range(4)
 FOUND = 4

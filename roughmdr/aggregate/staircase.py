@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 
 class Staircase(NamedTuple):

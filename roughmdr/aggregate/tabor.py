@@ -6,11 +6,11 @@ from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple, cast
 
-from roughmdr._jit import specialise
 from roughmdr.adhesion import Adhesion, tabor_number
-from roughmdr.aggregate.block import BLOCK
-from roughmdr.arguments import Floats
 from roughmdr.kernels.laws import Law, choose
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.summation import BLOCK
 from roughmdr.shapes import SHAPES, Curved
 
 # Names that ``specialise`` fills with the kernels of a law.

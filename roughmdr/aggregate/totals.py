@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.block import accumulate, add_up
 from roughmdr.aggregate.scales import LOAD, RIGIDITY, SIZE, WORTH
 from roughmdr.aggregate.settle import STATE
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.summation import accumulate, add_up
 
 # Rows of the totals.
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR = range(8)

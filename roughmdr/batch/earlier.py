@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from roughmdr.batch.held import Held
 from roughmdr.batch.identity import changes, versions
 from roughmdr.batch.parts import Parts
-from roughmdr.batch.shard import DONE, FAILED, Shard
+from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan
 from roughmdr.store import read
 from roughmdr.tables import table_of
-from roughmdr.variables import LAW
+from roughmdr.variables import DONE, FAILED, LAW
 
 _MOST_CHANGES = 5
 _SHAPING = ("title", "output", "batch", "accuracy", "sweep")

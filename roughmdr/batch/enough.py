@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.batch.tally import Tally
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 
 FIRST = 16

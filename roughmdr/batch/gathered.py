@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
-from roughmdr.batch.shard import FAILED, NOT_RUN, Row, Shard
+from roughmdr.batch.shard import Row, Shard
 from roughmdr.batch.tally import Tallies, Tally
+from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import FAILED, NOT_RUN
 
 
 class Found(NamedTuple):

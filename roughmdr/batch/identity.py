@@ -6,9 +6,9 @@ from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
 
-from roughmdr._sources import fingerprint
 from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.fingerprint import fingerprint
 from roughmdr.plan import Cell, Plan
 from roughmdr.tables import table_of
 from roughmdr.wording import shown

@@ -9,10 +9,11 @@ from pathlib import Path
 
 from roughmdr.batch.identity import versions
 from roughmdr.batch.parts import Parts, locked_parts, parts_of
-from roughmdr.batch.shard import FAILED, Shard
+from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.store import write
+from roughmdr.variables import FAILED
 
 _LONGEST = 255  # bytes of a file's name
 _WAITING = 16  # shards that may wait to be written before the batch does

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from roughmdr.aggregate import compute
-from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell
 
 _SCORES = np.arange(-8.0, 9.0)  # draws reach 8.2

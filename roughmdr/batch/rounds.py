@@ -8,10 +8,10 @@ from roughmdr.batch.enough import FIRST, enough, next_count, relative_error, sti
 from roughmdr.batch.gathered import Gathered
 from roughmdr.batch.identity import keys_of
 from roughmdr.batch.rare import Rare
-from roughmdr.batch.shard import DONE
 from roughmdr.batch.tasks import Stretch
 from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
+from roughmdr.variables import DONE
 
 
 class Choice(NamedTuple):

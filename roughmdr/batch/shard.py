@@ -7,14 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
 from roughmdr.batch.tally import Tally
+from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import DONE
 
 Integers = NDArray[np.int64]
-DONE, FAILED, NOT_RUN = 0, 1, 2
-"""What became of a realisation."""
-LAWS = ("none", "jkr", "dugdale")
-"""The laws of adhesion, by their numbers."""
 
 
 class Shard(NamedTuple):
@@ -41,7 +38,7 @@ class Shard(NamedTuple):
     tabor: Floats
     """The least Tabor number; inf where the strength of the attraction is not known."""
     law: Integers
-    """The law of adhesion that was taken, as in ``LAWS``."""
+    """The law of adhesion that was taken, as in ``ADHESION_CODES``."""
     slope: Floats
     """As in ``limits.Extremes``."""
     extent: Floats

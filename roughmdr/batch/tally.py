@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 
 class Tally(NamedTuple):

@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.identity import check_versions
-from roughmdr.batch.shard import FAILED, LAWS, Row, Shard, table_of
+from roughmdr.batch.shard import Row, Shard, table_of
 from roughmdr.batch.tally import Tallies, Tally
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell, Plan, law_of
+from roughmdr.variables import ADHESION_CODES, FAILED
 
 _AT_ONCE = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
 _LEAST, _USUAL, _MOST = 0.05, 0.1, 3.0  # what a task takes [s]
@@ -129,7 +130,7 @@ def _run(part: Part, realization: int, names: Sequence[str]) -> tuple[Floats, Ro
         what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         values = np.full((len(names), route.separation.size), math.nan)
         return values, Row(time.perf_counter() - started, status=FAILED, remark=what)
-    law = LAWS.index(found.model if scene.work > 0.0 else "none")
+    law = ADHESION_CODES.index(found.model if scene.work > 0.0 else "none")
     values = np.array([found.variables[name] for name in names])
     slope, extent, _ = found.extremes
     row = Row(0.0, found.numerical_error, found.tabor, law, slope, extent, remark="\n".join(found.doubts))

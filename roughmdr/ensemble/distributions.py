@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import SMALLEST_UNIFORM
 from roughmdr.ensemble.families import Family, find_family
+from roughmdr.numerics.arguments import Floats
 
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 HEIGHT, POSITION, PARAMETER = 0, 1, 2
 """Streams of the heights, the positions, and the first of the shape parameters; more of them follow."""

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
+from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import SHAPES, Common, Shape
 from roughmdr.units import unit_factor
 from roughmdr.variables import COORDINATES

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")

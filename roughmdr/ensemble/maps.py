@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.content import Content, blocks, check_points
 from roughmdr.ensemble.instrument_maps import read_instrument
 from roughmdr.ensemble.netcdf_maps import read_netcdf
 from roughmdr.ensemble.plain_maps import read_npy, read_npz, read_text
 from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.quantities import Quantity
 from roughmdr.units import unit_factor
 

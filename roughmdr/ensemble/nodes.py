@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.population import AsperityLaw, Population
+from roughmdr.numerics.arguments import Floats
 
 END = 10.0
 """The normal score beyond which heights are left out where tails are light: their share is 1e-23."""

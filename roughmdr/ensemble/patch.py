@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import Draws
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.quantities import Length, Quantity
 
 

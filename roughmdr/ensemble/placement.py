@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr._jit import njit
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.draws import POSITION, Draws
 from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _JAMMED = 0.547
 """The part of the plane that discs cover when at random no place is found for one more (J. Feder, J. Theor. Biol. 87

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.draws import HEIGHT, POPULATION, SMALLEST_UNIFORM, Draws
+from roughmdr.numerics.arguments import Floats
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, model_validator
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.count import poisson
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
@@ -17,6 +16,7 @@ from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
 from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.quantities import EntryError, Quantity, Section, WholeNumber
 from roughmdr.shapes import SHAPES
 from roughmdr.units import DIMENSIONLESS

@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.content import blocks
 from roughmdr.ensemble.maps import HeightMap
 from roughmdr.errors import SceneError
+from roughmdr.numerics.arguments import Floats
 
 Trend = Literal["none", "mean", "plane", "quadratic"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "plane": 1, "quadratic": 2}

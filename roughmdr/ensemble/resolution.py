@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.content import blocks
 from roughmdr.ensemble.maps import HeightMap
+from roughmdr.numerics.arguments import Floats
 
 FEW = 40.0
 """Points a summit below which there is a warning.

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ClassVar
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.numerics.arguments import Floats
 from roughmdr.quantities import Section
 from roughmdr.shapes import Common
 

@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.summit_quantiles import mean_curvature, product_of_curvatures
+from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import RING, Moments
 
 _WIDE = 12.0  # in sqrt(v): above it by so much lies next to nothing

@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 _LEVEL = math.sqrt(6.0 / math.pi)
 _SMALL = 0.5  # of v and below it, v - 1 + exp(-v) is summed as a series, since the difference cancels

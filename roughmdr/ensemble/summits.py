@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.content import blocks
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps import HeightMap
 from roughmdr.errors import SceneError
+from roughmdr.numerics.arguments import Floats
 
 _AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 

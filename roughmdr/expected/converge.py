@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.totals import STIFFNESS
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.panels import AGREE, Curves, halve_panels
 from roughmdr.expected.parted import Parted
+from roughmdr.numerics.arguments import Floats
 
 FIRST_ORDER = 8
 _ORDERS = (12, 18, 27, 40, 60, 90, 135)

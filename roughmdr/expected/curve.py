@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate.totals import AREA, COUNT, ENERGY, FORCE, RADIUS, STIFFNESS
-from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Heights
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import Table
 from roughmdr.kernels import row as places
 from roughmdr.kernels.elementwise import apply, apply_all
+from roughmdr.numerics.arguments import Floats
 
 _TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10
 """Of the greatest value on a piece: about what the kernels themselves are right to away from a fold."""

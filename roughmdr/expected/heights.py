@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Heights, UpperTail
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.integral import mass
 from roughmdr.expected.table import ORDER, Table
+from roughmdr.numerics.arguments import Floats
 
 _TOLERANCE, _RATIO = 1e-13, 1e3  # how right it is on each piece, of all heights, and how much it may vary there
 _MISSING = 1e-12  # of all heights: less is roundings, which must not count as the highest of a heavy tail

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr._jit import njit
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 # The last two coefficients of Legendre's polynomials in a product, which tell how far its integral may be off.

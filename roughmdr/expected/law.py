@@ -14,13 +14,13 @@ from roughmdr.aggregate import LoadSeparation, Route
 from roughmdr.aggregate.law import ROW
 from roughmdr.aggregate.tabor import range_of
 from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE
-from roughmdr.arguments import Floats
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import DOUBTFUL, FIRST_ORDER, converge
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.expected.parted import Parted
+from roughmdr.numerics.arguments import Floats
 
 _WORTHLESS = 0.1  # of the largest force: an error that is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import Route
-from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.row import ONSET
+from roughmdr.numerics.arguments import Floats
 
 
 class Intervals(NamedTuple):

@@ -7,7 +7,6 @@ import numpy as np
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route
 from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
-from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Nodes, Rule
@@ -16,6 +15,7 @@ from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.memory import Intervals, lost, remember
 from roughmdr.kernels.laws import Law
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 
 

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.ensemble.nodes import Rule, mean_over_edge, share_above
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Node
+from roughmdr.numerics.arguments import Floats
 
 # Normal scores at which panels end, and beyond which parameters may be left out.
 _ENDS = (3.0, 4.5, 6.0, 8.5, 12.0, 17.0, 24.0, 37.0)

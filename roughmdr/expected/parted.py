@@ -10,11 +10,11 @@ import numpy as np
 
 from roughmdr.aggregate import Route
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
-from roughmdr.arguments import Floats
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import LAST, Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Asked, contacts_of, dissipated_of, set_up, totals_of
+from roughmdr.numerics.arguments import Floats
 
 _MOST = 32  # steps; where more would be parted it takes longer than it is worth
 _FAR = 100.0  # times the median: beyond the last score stands 1e-17 of all, and nothing grows faster than its square

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 ORDER = 16
 """Coefficients of each polynomial."""

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr._extended import ROUNDING
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import ROUNDING
 
 # Names that ``specialise`` fills with the functions of a profile.
 _curve: Callable[..., tuple[float, float, float, float]]

@@ -8,10 +8,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from roughmdr._extended import Pair
-from roughmdr._jit import compiled, specialise
-from roughmdr.arguments import Floats
-from roughmdr.elementary import atan, octave
 from roughmdr.kernels import (
     balance,
     branches,
@@ -26,6 +22,10 @@ from roughmdr.kernels import (
 )
 from roughmdr.kernels.profiles import profile_of
 from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import compiled, specialise
+from roughmdr.numerics.vector_math import atan, octave
 from roughmdr.shapes import Paraboloid, Shape
 from roughmdr.shapes.base import Curved
 from roughmdr.shapes.special import less_atan

@@ -20,9 +20,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr._extended import ROUNDING
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import ROUNDING
 
 # Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``margins``.
 _push: Callable[..., float]

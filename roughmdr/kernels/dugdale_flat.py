@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from roughmdr._jit import compiled, njit
-from roughmdr.arguments import Floats
 from roughmdr.kernels import curved
 from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled, njit
 
 natural, natural_force = compiled(curved.natural), compiled(curved.natural_force)
 own = njit(curved.own, inline=True)

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
+from roughmdr.numerics.arguments import Floats
 
 # Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``margins`` and ``folds``.
 _curve: Callable[..., tuple[float, float, float, float]]

@@ -11,8 +11,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import COUNT, RANGE, STRENGTH
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.special import less_atan
 
 # The name that ``specialise`` fills with the function of ``margins``.

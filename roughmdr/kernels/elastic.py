@@ -5,8 +5,8 @@ Reduced: x = delta/depth with depth = kappa rise, and the state t = a/width, so 
 
 import math
 
-from roughmdr._extended import ROUNDING, Pair, two_product
-from roughmdr._jit import njit
+from roughmdr.numerics.double_double import ROUNDING, Pair, two_product
+from roughmdr.numerics.jit import njit
 from roughmdr.shapes.kappa import kappa
 
 _KERNEL_ERROR = 1e-13  # of the force, as it is tested

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from roughmdr._jit import specialise
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import specialise
 
 _kernel: Callable[..., Any]  # the name that ``specialise`` fills
 

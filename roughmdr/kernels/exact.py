@@ -3,9 +3,9 @@
 Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt(X) in what is found there.
 """
 
-from roughmdr._extended import Pair
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import CONTROL, FOLD
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import Pair
 from roughmdr.shapes import Curved
 
 

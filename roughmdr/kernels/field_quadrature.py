@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 # Names that ``specialise`` fills with the functions of a profile.
 _curve: Callable[..., tuple[float, float, float, float]]

@@ -11,11 +11,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from roughmdr._jit import compiled, specialise
-from roughmdr.arguments import Floats
 from roughmdr.kernels import field_quadrature
 from roughmdr.kernels.field_quadrature import COSH, DISPLACEMENT, EXP, PRESSURE, SIN, SINH
 from roughmdr.kernels.profiles import profile_of
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.shapes import Shape
 
 # Names that ``specialise`` fills.

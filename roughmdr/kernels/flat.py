@@ -6,9 +6,9 @@ is the indentation over it, and so without adhesion, where the depth is b.
 
 import math
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import njit
+from roughmdr.numerics import double_double as extended
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import njit
 
 _KERNEL_ERROR = 1e-14
 

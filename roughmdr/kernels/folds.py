@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.arguments import Floats
 from roughmdr.kernels.row import (
     CONTROL,
     COUNT,
@@ -25,6 +24,7 @@ from roughmdr.kernels.row import (
     TOP,
     TOP_X,
 )
+from roughmdr.numerics.arguments import Floats
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.
 _curve: Callable[..., tuple[float, float, float, float]]

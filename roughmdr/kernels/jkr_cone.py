@@ -2,11 +2,11 @@
 
 import math
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import njit
 from roughmdr.kernels.jkr_paraboloid import errors, radius, state_of_radius
 from roughmdr.kernels.jkr_power import branch
+from roughmdr.numerics import double_double as extended
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import njit
 
 __all__ = [
     "distance",

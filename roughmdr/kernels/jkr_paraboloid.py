@@ -9,9 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import njit
+from roughmdr.numerics import double_double as extended
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import njit
 
 # v = s r with s = sqrt(X/2); r = y (C0 + C1 y + ... + C5 y^5), y = 1/sqrt(1 + B s), within 2.3e-6 for all s >= 0.
 # Least-maximum fit to the root itself over 0 < y <= 1.

@@ -14,10 +14,10 @@ holds with u = (tau/tau_P)^3, tau_P^e = 3, in place of tau, e/3 in place of e, a
 import math
 from functools import partial
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import compiled, njit
-from roughmdr.elementary import expm1, log, log1p
+from roughmdr.numerics import double_double as extended
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import compiled, njit
+from roughmdr.numerics.vector_math import expm1, log, log1p
 from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float

@@ -5,9 +5,9 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from roughmdr.adhesion import Adhesion
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels import curved, dugdale_flat, elastic, flat, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Curved, FlatPunch, Shape
 
 Kernel = Callable[..., float]

@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.arguments import Floats
-from roughmdr.elementary import atan
 from roughmdr.kernels.row import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.vector_math import atan
 
 # Names that ``specialise`` fills with the functions of a profile and of ``zone``.
 _curve: Callable[..., tuple[float, float, float, float]]

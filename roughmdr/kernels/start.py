@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.arguments import Floats
-from roughmdr.elementary import octave
 from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.vector_math import octave
 
 # Names that ``specialise`` fills with the functions of ``balance`` and ``root``, and with how fine the nodes are.
 SPLIT: int

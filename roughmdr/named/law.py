@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple, get_args
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell
 from roughmdr.scene import Scene
 from roughmdr.theory.summits import Variable

@@ -16,7 +16,7 @@ from roughmdr.batch.held import Held
 from roughmdr.batch.identity import versions
 from roughmdr.batch.keeper import Keeper, keeping
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.shard import FAILED, Shard
+from roughmdr.batch.shard import Shard
 from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
@@ -30,6 +30,7 @@ from roughmdr.runner.local import Here, Pool, Processes, Threads
 from roughmdr.runner.stopping import Interrupted, stoppable
 from roughmdr.scene import Scene, read
 from roughmdr.store import check_writable, destination
+from roughmdr.variables import FAILED
 
 if TYPE_CHECKING:
     import xarray as xr

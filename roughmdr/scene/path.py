@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.quantities import Section, WholeNumber
 from roughmdr.units import DIMENSIONLESS, quantity
 

@@ -16,9 +16,9 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from roughmdr.adhesion import Adhesion
-from roughmdr.arguments import check_number
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.numerics.arguments import check_number
 from roughmdr.quantities import Quantity, Section, WholeNumber
 from roughmdr.scene.path import Path
 from roughmdr.scene.sweep import Sweep

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from roughmdr._jit import njit
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 
 def _gauss(count: int) -> tuple[Floats, Floats]:

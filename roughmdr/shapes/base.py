@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr import elementary
-from roughmdr._rebuilt import rebuilt
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.numerics import vector_math
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.rebind import rebuilt
 from roughmdr.shapes.profile import Profile, no_dips
 
 
@@ -145,7 +145,7 @@ class Curved(Shape):
         from mpmath import mp
 
         def remake(function: Callable[..., Any]) -> Callable[..., Any]:
-            if function.__module__ == elementary.__name__:
+            if function.__module__ == vector_math.__name__:
                 return getattr(mp, function.__name__, function)
             return rebuilt(function, {"math": mp, "NEAR": -1.0}, remake)
 
@@ -165,7 +165,7 @@ class Curved(Shape):
 
     def _along(self, radius: Floats, value: Callable[..., float]) -> Floats:
         """The rise times ``value`` at each contact radius; 0 on the flat."""
-        from roughmdr._jit import compiled  # it alone needs the compiler
+        from roughmdr.numerics.jit import compiled  # it alone needs the compiler
 
         width, rise, form = self.stretched()
         curve, swept, place = (compiled(part) for part in (self.profile.curve, self.profile.swept, self.profile.place))

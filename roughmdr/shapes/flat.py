@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.base import Shape, radii
 
 

@@ -2,9 +2,9 @@
 
 import math
 
-from roughmdr import _extended as extended
-from roughmdr._extended import Pair
-from roughmdr._jit import njit
+from roughmdr.numerics import double_double as extended
+from roughmdr.numerics.double_double import Pair
+from roughmdr.numerics.jit import njit
 
 _LEAST, _LARGEST = 1e-18, 1e18  # beyond them the limits are right to the last digit
 _EULER = (-1.0, 5.0, -61.0, 1385.0, -50521.0, 2702765.0, -199360981.0)  # E_2, E_4, ... E_14

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.table import DEGREE, HEAD, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
@@ -75,7 +75,7 @@ def _heights(knots: Floats, coefficients: Floats) -> Floats:
 
 def _add_strains(form: Floats) -> None:
     """Fill in the strain at the begin of each piece and of the far field."""
-    from roughmdr._jit import compiled
+    from roughmdr.numerics.jit import compiled
 
     panel = compiled(strain_between)
     first = 2 + 2 * int(form[0])

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.base import Common, check_one, check_positive, radii
 from roughmdr.shapes.profile import Form, Profile
 
@@ -142,7 +142,7 @@ class PowerSeries(Common):
 
     def stretched(self) -> tuple[float, float, Any]:
         """The width where the first and the last term are equal, their rise there, and the reduced terms."""
-        from roughmdr import _extended as extended  # these alone need the compiler
+        from roughmdr.numerics import double_double as extended  # these alone need the compiler
         from roughmdr.shapes.kappa import precise_kappa
 
         (n, c), (n_last, c_last) = next(iter(self.terms.items())), list(self.terms.items())[-1]

@@ -1,6 +1,6 @@
 """Differences of elementary functions that cancel, written so that they do not."""
 
-from roughmdr.elementary import atan, fifth_series, third_series
+from roughmdr.numerics.vector_math import atan, fifth_series, third_series
 
 NEAR = 0.4142  # up to here the series; the difference itself loses a digit and a half there, with many digits nothing
 

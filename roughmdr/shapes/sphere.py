@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
-from roughmdr.elementary import expm1, tanh
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.vector_math import expm1, tanh
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile
 from roughmdr.shapes.special import beyond_tanh

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from roughmdr.elementary import sqrt
+from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.profile import Form, Profile
 
 DEGREE = 13

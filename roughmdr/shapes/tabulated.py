@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import table
 from roughmdr.shapes.base import Common, radii
 from roughmdr.shapes.profile import Profile

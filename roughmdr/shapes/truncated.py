@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
-from roughmdr.elementary import atan, sqrt
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.vector_math import atan, sqrt
 from roughmdr.shapes.base import Curved, radii
 from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 from roughmdr.shapes.special import less_atan

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
+from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Shape
 from roughmdr.springs.profile import OfFunction, OfShape
 from roughmdr.springs.row import Ints, Row, Rows

@@ -7,8 +7,8 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Curved, FlatPunch, Shape, Sphere
 from roughmdr.springs.reduced import reduced
 

@@ -14,7 +14,7 @@ those of Chebyshev's points, and blocks are the larger the further away they lie
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 Ints = NDArray[np.int64]
 

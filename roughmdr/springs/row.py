@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats
 from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats
 from roughmdr.springs.profile import MdrProfile
 
 Ints = NDArray[np.int64]

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.spectrum import Moments
 from roughmdr.theory.gaussian import mean_over_summits
 from roughmdr.theory.summits import Variable, representable

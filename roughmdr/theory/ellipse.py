@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 
 
 class Ellipses(NamedTuple):

@@ -13,11 +13,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.quadrature import Rows, Table, panels
 from roughmdr.spectrum import RING, Moments
 from roughmdr.theory.ellipse import Ellipses
 from roughmdr.theory.heights import NORMAL_EDGES, Heights
-from roughmdr.theory.quadrature import Rows, Table, panels
 from roughmdr.theory.summits import Variable, check_variable, representable
 
 Contacts = Literal["elliptic", "circular"]

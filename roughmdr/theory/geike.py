@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.quadrature import gauss
 from roughmdr.spectrum import Spectrum, levels, wave_numbers
-from roughmdr.theory.quadrature import gauss
 from roughmdr.theory.summits import representable
 
 

@@ -3,8 +3,8 @@
 from numpy.typing import ArrayLike
 
 from roughmdr.adhesion import Adhesion
-from roughmdr.arguments import Floats
 from roughmdr.contact import Contact
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights
 from roughmdr.theory.summits import Summits, Variable

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.arguments import Floats, check_number
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.theory.quadrature import Rows, integrate
+from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.quadrature import Rows, integrate
 
 # Where a normal density is cut: below, by what is nothing beside the rest; above, where it is no longer a float.
 NORMAL_EDGES = np.array([-9.0, -5.0, -2.0, 0.0, 2.0, 5.0, 9.0, 16.0, 39.0])

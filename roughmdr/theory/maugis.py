@@ -5,8 +5,8 @@ import math
 from numpy.typing import ArrayLike
 
 from roughmdr.adhesion import Adhesion
-from roughmdr.arguments import Floats, check_number
 from roughmdr.contact import Contact
+from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights
 from roughmdr.theory.summits import Summits, Variable

@@ -2,7 +2,7 @@
 
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments
 from roughmdr.theory.gaussian import mean_over_summits
 from roughmdr.theory.summits import Variable

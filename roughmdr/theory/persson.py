@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats
+from roughmdr.numerics.arguments import Floats
 from roughmdr.theory.bush import check_load
 
 

@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.quadrature import Table, panels, refined, running
 from roughmdr.spectrum import Spectrum, levels, wave_numbers
-from roughmdr.theory.quadrature import Table, panels, refined, running
 from roughmdr.theory.summits import representable
 
 # Fourfold shorter intervals of log(q/q0) down to q0, where few waves are in play and the load flattens them all.

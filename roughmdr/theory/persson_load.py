@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.spectrum import SelfAffine
 from roughmdr.theory.persson_gap import persson_separation
 

@@ -7,12 +7,12 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.arguments import Floats, check_number, check_values
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels.elementwise import apply
+from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.quadrature import Rows
 from roughmdr.theory.heights import Heights
-from roughmdr.theory.quadrature import Rows
 
 Variable = Literal["pressure", "contact_fraction", "contact_density"]
 """Force over nominal area [Pa], real over nominal area of contact [1], contacts per nominal area [1/m2]."""

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from twins import Real, mp
 
-from roughmdr import elementary
-from roughmdr._jit import compiled
+from roughmdr.numerics import vector_math
+from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import special
 
 UNIT = 2.0**-53
@@ -20,13 +20,13 @@ def decades(lowest: float, highest: float) -> st.SearchStrategy[float]:
 
 
 FUNCTIONS: dict[str, tuple[Callable[[float], float], Callable[[Real], Real], st.SearchStrategy[float], float]] = {
-    "atan": (elementary.atan, mp.atan, decades(-300.0, 300.0), 4.0),  # 2.1
-    "expm1": (elementary.expm1, mp.expm1, st.floats(-50.0, 709.0), 4.0),  # 1.5
-    "expm1 near 0": (elementary.expm1, mp.expm1, decades(-300.0, 0.0), 4.0),  # 1.5
-    "tanh": (elementary.tanh, mp.tanh, decades(-300.0, 300.0), 5.0),  # 2.7
-    "log": (elementary.log, mp.log, decades(-307.0, 307.0), 4.0),  # 1.6
-    "log near 1": (elementary.log, mp.log, decades(-15.0, -0.4).map(lambda d: 1.0 + d), 5.0),  # 2.6
-    "log1p": (elementary.log1p, mp.log1p, decades(-300.0, 300.0), 5.0),  # 2.8
+    "atan": (vector_math.atan, mp.atan, decades(-300.0, 300.0), 4.0),  # 2.1
+    "expm1": (vector_math.expm1, mp.expm1, st.floats(-50.0, 709.0), 4.0),  # 1.5
+    "expm1 near 0": (vector_math.expm1, mp.expm1, decades(-300.0, 0.0), 4.0),  # 1.5
+    "tanh": (vector_math.tanh, mp.tanh, decades(-300.0, 300.0), 5.0),  # 2.7
+    "log": (vector_math.log, mp.log, decades(-307.0, 307.0), 4.0),  # 1.6
+    "log near 1": (vector_math.log, mp.log, decades(-15.0, -0.4).map(lambda d: 1.0 + d), 5.0),  # 2.6
+    "log1p": (vector_math.log1p, mp.log1p, decades(-300.0, 300.0), 5.0),  # 2.8
     "less atan": (special.less_atan, lambda q: q - mp.atan(q), decades(-50.0, 100.0), 60.0),  # 39 at 0.42
     "less atan and cube": (
         special.less_atan_and_cube,
@@ -66,20 +66,20 @@ def test_beyond_tanh(t: float) -> None:
 @given(decades(-300.0, 300.0))
 @settings(deadline=None, max_examples=200)
 def test_an_octave_and_the_place_in_it_are_the_number(split: int, y: float) -> None:
-    part, place = compiled(elementary.octave)(y, split)
+    part, place = compiled(vector_math.octave)(y, split)
     whole, within = part >> split, part & ((1 << split) - 1)
     assert 0.0 <= place < 1.0
     assert math.ldexp(1.0 + (within + place) * 2.0**-split, whole) == y
 
 
 def test_the_ends() -> None:
-    assert compiled(elementary.expm1)(800.0) == math.inf
-    assert compiled(elementary.expm1)(-1e300) == -1.0
-    assert compiled(elementary.expm1)(0.0) == 0.0
-    assert compiled(elementary.atan)(0.0) == 0.0
-    assert compiled(elementary.tanh)(1e300) == 1.0
-    assert compiled(elementary.log)(1.0) == 0.0
+    assert compiled(vector_math.expm1)(800.0) == math.inf
+    assert compiled(vector_math.expm1)(-1e300) == -1.0
+    assert compiled(vector_math.expm1)(0.0) == 0.0
+    assert compiled(vector_math.atan)(0.0) == 0.0
+    assert compiled(vector_math.tanh)(1e300) == 1.0
+    assert compiled(vector_math.log)(1.0) == 0.0
     for x in (math.nan, 0.0, -1.0, math.inf, 5e-324):
-        assert math.isnan(compiled(elementary.log)(x))
-    for function in (elementary.atan, elementary.expm1, elementary.tanh):
+        assert math.isnan(compiled(vector_math.log)(x))
+    for function in (vector_math.atan, vector_math.expm1, vector_math.tanh):
         assert math.isnan(compiled(function)(math.nan))

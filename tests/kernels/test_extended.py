@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from twins import Real, mp
 
-from roughmdr import _extended as extended
+from roughmdr.numerics import double_double as extended
 
 Pair = tuple[float, float]
 

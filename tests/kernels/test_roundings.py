@@ -6,7 +6,7 @@ from exact_contact import mp, profile
 from random_asperities import DRAW
 
 import roughmdr as rm
-from roughmdr._jit import compiled
+from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import SHAPES, Curved
 
 CURVED = [kind for kind, shape in SHAPES.items() if issubclass(shape, Curved)]

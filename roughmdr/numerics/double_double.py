@@ -9,7 +9,7 @@ Source: T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The Art of Comput
 import math
 from fractions import Fraction
 
-from roughmdr._jit import njit
+from roughmdr.numerics.jit import njit
 
 Pair = tuple[float, float]
 

@@ -9,6 +9,6 @@ from pathlib import Path
 def fingerprint() -> str:
     """A hash of all the sources of the package."""
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
+    for source in sorted(Path(__file__).parent.parent.rglob("*.py")):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

@@ -13,8 +13,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from roughmdr._rebuilt import rebuilt
-from roughmdr._sources import fingerprint
+from roughmdr.numerics.fingerprint import fingerprint
+from roughmdr.numerics.rebind import rebuilt
 
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
