@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from roughmdr.fields import axis_stress, pressure, surface_displacement
     from roughmdr.runner import run
     from roughmdr.scene import Scene
+    from roughmdr.schema.units import effective_modulus
     from roughmdr.shapes import (
         CappedParaboloid,
         Cone,
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
         TruncatedCone,
         TruncatedParaboloid,
     )
-    from roughmdr.units import effective_modulus
 
 _HOME = {
     "CappedParaboloid": "shapes",
@@ -53,7 +53,7 @@ _HOME = {
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
     "axis_stress": "fields",
-    "effective_modulus": "units",
+    "effective_modulus": "schema.units",
     "equilibria": "equilibria",
     "generate": "ensemble",
     "indent": "asperity",

@@ -3,9 +3,9 @@
 import numpy as np
 
 from roughmdr.labelled import Labelled
+from roughmdr.schema.wording import printable, seconds_in_words
 from roughmdr.variables import DONE, FAILED
 from roughmdr.views import cell_label, cells_of, method_of
-from roughmdr.wording import printable, seconds_in_words
 
 _HEAD = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 

@@ -13,8 +13,8 @@ from roughmdr.named import LAWS, NamedLaw
 from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
+from roughmdr.schema.wording import in_cells
 from roughmdr.theory.summits import Variable
-from roughmdr.wording import in_cells
 
 # What a law says of a variable, and whether that is of a unit of nominal area.
 _SAID_AS: dict[str, tuple[Variable, bool]] = {

@@ -8,9 +8,9 @@ import numpy as np
 
 from roughmdr.analysis import PullOff, pull_off_force
 from roughmdr.labelled import Labelled
+from roughmdr.schema.wording import bytes_in_words, printable, seconds_in_words
 from roughmdr.variables import FAILED
 from roughmdr.views import cell_label, cells_of, done_of, estimator_of, held_variables, realizations_of, swept_sizes
-from roughmdr.wording import bytes_in_words, printable, seconds_in_words
 
 if TYPE_CHECKING:
     from roughmdr.estimate import Estimate

@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from roughmdr.errors import StoreError
-from roughmdr.wording import bytes_in_words
+from roughmdr.schema.wording import bytes_in_words
 
 
 def check_room(size: float, what: str, advice: str = "") -> None:

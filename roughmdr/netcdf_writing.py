@@ -14,7 +14,7 @@ import numpy as np
 from roughmdr.labelled import Labelled
 from roughmdr.memory import check_room
 from roughmdr.netcdf import LOCK, WORKING_MEMORY, pieces
-from roughmdr.wording import bytes_in_words
+from roughmdr.schema.wording import bytes_in_words
 
 if TYPE_CHECKING:
     import netCDF4

@@ -13,8 +13,8 @@ from roughmdr.errors import SceneError
 from roughmdr.labelled import Array
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
+from roughmdr.schema.wording import in_cells
 from roughmdr.variables import COORDINATES, LAW
-from roughmdr.wording import in_cells
 
 
 class Cell(NamedTuple):

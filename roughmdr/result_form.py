@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.labelled import Array, Labelled
-from roughmdr.tables import table_of
+from roughmdr.schema.toml_text import table_of
 from roughmdr.variables import BESIDE, DONE, FAILED, LAW, NOT_RUN
 
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")

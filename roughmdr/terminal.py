@@ -14,7 +14,7 @@ from typing import Any, TextIO
 import click
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError, Unfinished
-from roughmdr.wording import harmless
+from roughmdr.schema.wording import harmless
 
 NOT_ALL = 1
 """Exit status where runs failed, or what was begun could not go on."""

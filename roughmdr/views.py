@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
-from roughmdr.tables import table_of
+from roughmdr.schema.toml_text import table_of
 from roughmdr.variables import BESIDE, DONE, LAW
 
 

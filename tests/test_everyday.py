@@ -18,9 +18,9 @@ from scenes import ASPERITIES, scene
 from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
-from roughmdr.faults import sections_of
 from roughmdr.scene.sections import Scene
-from roughmdr.units import _BASES
+from roughmdr.schema.faults import sections_of
+from roughmdr.schema.units import _BASES
 from roughmdr.variables import LAW
 
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9}

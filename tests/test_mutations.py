@@ -19,10 +19,10 @@ from scenes import ASPERITIES, SCENE
 
 from roughmdr.cli import main
 from roughmdr.errors import SceneError
-from roughmdr.faults import sections_of
 from roughmdr.scene import read
 from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
+from roughmdr.schema.faults import sections_of
 
 _DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
 _WAVES = {"shape": "paraboloid", "hurst": 0.8, "long_wave": "50 um", "short_wave": "5 um"}

@@ -4,7 +4,7 @@ import pytest
 
 import roughmdr as rm
 from roughmdr.errors import RoughmdrError
-from roughmdr.units import quantity
+from roughmdr.schema.units import quantity
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
 from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan
+from roughmdr.schema.toml_text import table_of
 from roughmdr.store import read
-from roughmdr.tables import table_of
 from roughmdr.variables import DONE, FAILED, LAW
 
 _MOST_CHANGES = 5

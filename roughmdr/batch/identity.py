@@ -10,8 +10,8 @@ from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.fingerprint import fingerprint
 from roughmdr.plan import Cell, Plan
-from roughmdr.tables import table_of
-from roughmdr.wording import shown
+from roughmdr.schema.toml_text import table_of
+from roughmdr.schema.wording import shown
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
 _LONG = 1000  # letters of a value, as of a path or a list of numbers, in a message

@@ -15,7 +15,7 @@ from roughmdr.ensemble.random_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.surface import SurfaceAsperities
 from roughmdr.errors import LimitWarning, SceneError
-from roughmdr.faults import find_faults
+from roughmdr.schema.faults import find_faults
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,9 +7,9 @@ from functools import lru_cache
 from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.families import Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, Quantity
-from roughmdr.units import DIMENSIONLESS, quantity
-from roughmdr.wording import near
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.wording import near
 
 _FRIENDLY = {
     "normal": "norm",

@@ -9,10 +9,10 @@ from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
 from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.schema.units import unit_factor
+from roughmdr.schema.wording import shown
 from roughmdr.shapes import SHAPES, Common, Shape
-from roughmdr.units import unit_factor
 from roughmdr.variables import COORDINATES
-from roughmdr.wording import shown
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,7 +8,7 @@ import numpy as np
 
 from roughmdr.ensemble.content import Content
 from roughmdr.errors import RoughmdrError
-from roughmdr.units import unit_factor
+from roughmdr.schema.units import unit_factor
 
 
 def read_instrument(path: Path, channel: str | None) -> Content:

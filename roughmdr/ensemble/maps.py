@@ -12,8 +12,8 @@ from roughmdr.ensemble.netcdf_maps import read_netcdf
 from roughmdr.ensemble.plain_maps import read_npy, read_npz, read_text
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.quantities import Quantity
-from roughmdr.units import unit_factor
+from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.units import unit_factor
 
 _BY_SUFFIX: dict[str, Callable[[Path, str | None], Content]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), read_netcdf),

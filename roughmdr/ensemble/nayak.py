@@ -13,7 +13,7 @@ from roughmdr.ensemble.nodes import Heights, Nodes, Rule, UpperTail
 from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.summit_law import SummitLaw, product_of_score
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, Length, Quantity
+from roughmdr.schema.quantities import EntryError, Length, Quantity
 from roughmdr.spectrum import Moments, SelfAffine
 
 _MOMENTS = ("m0", "m2", "m4")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from roughmdr.ensemble.content import Content, blocks, check_points
 from roughmdr.ensemble.datasets import opened
 from roughmdr.errors import RoughmdrError
-from roughmdr.units import unit_factor
+from roughmdr.schema.units import unit_factor
 
 if TYPE_CHECKING:
     import xarray as xr

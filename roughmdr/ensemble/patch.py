@@ -8,7 +8,7 @@ from roughmdr.ensemble.draws import Draws
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.quantities import Length, Quantity
+from roughmdr.schema.quantities import Length, Quantity
 
 
 class PatchSource(Source):

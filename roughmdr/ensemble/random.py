@@ -17,9 +17,9 @@ from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SHAPES
-from roughmdr.units import DIMENSIONLESS
 
 _MOST = 1_000_000_000
 _Height = Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]

@@ -9,9 +9,9 @@ from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.ensemble.random import Correlation, RandomAsperities, Second
 from roughmdr.errors import RoughmdrError
-from roughmdr.quantities import EntryError, Quantity, Section
+from roughmdr.schema.quantities import EntryError, Quantity, Section
+from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
-from roughmdr.units import DIMENSIONLESS, quantity
 
 _Section = TypeVar("_Section", bound=Section)
 

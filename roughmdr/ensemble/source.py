@@ -8,7 +8,7 @@ from typing import ClassVar
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.numerics.arguments import Floats
-from roughmdr.quantities import Section
+from roughmdr.schema.quantities import Section
 from roughmdr.shapes import Common
 
 

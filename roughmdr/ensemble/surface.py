@@ -14,8 +14,8 @@ from roughmdr.ensemble.relief import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.resolution import few_points, measures
 from roughmdr.ensemble.summits import find_summits
 from roughmdr.errors import SceneError
-from roughmdr.quantities import Length
-from roughmdr.units import unit_factor
+from roughmdr.schema.quantities import Length
+from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a trend may leave of nothing
 

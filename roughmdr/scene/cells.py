@@ -9,11 +9,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.faults import find_faults, with_likely_names
-from roughmdr.quantities import Reader
 from roughmdr.scene.keys import put, readers
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import in_words, read_sweep
+from roughmdr.schema.faults import find_faults, with_likely_names
+from roughmdr.schema.quantities import Reader
 
 _Known = dict[tuple[str, tuple[tuple[str, object], ...]], tuple[dict[str, Any], Any]]
 """Parts of a scene, as tables and read, by their names and what is swept of them."""

@@ -7,8 +7,8 @@ from pydantic import BaseModel, BeforeValidator
 
 from roughmdr.ensemble.drawn import Drawn
 from roughmdr.errors import RoughmdrError
-from roughmdr.faults import sections_of
-from roughmdr.quantities import Reader
+from roughmdr.schema.faults import sections_of
+from roughmdr.schema.quantities import Reader
 
 
 class Name(NamedTuple):

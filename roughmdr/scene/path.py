@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.quantities import Section, WholeNumber
-from roughmdr.units import DIMENSIONLESS, quantity
+from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.schema.units import DIMENSIONLESS, quantity
 
 _SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
 

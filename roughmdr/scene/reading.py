@@ -18,8 +18,8 @@ from roughmdr.scene.keys import put
 from roughmdr.scene.lines import key_lines, line_of
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
-from roughmdr.tables import table_of
-from roughmdr.wording import printable, shown
+from roughmdr.schema.toml_text import table_of
+from roughmdr.schema.wording import printable, shown
 
 _PATHS = (("asperities", "file"),)
 """Keys that name a file: in a scene relative to the scene, in --set to the current folder."""

@@ -19,10 +19,10 @@ from roughmdr.adhesion import Adhesion
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import check_number
-from roughmdr.quantities import Quantity, Section, WholeNumber
 from roughmdr.scene.path import Path
 from roughmdr.scene.sweep import Sweep
-from roughmdr.units import effective_modulus
+from roughmdr.schema.quantities import Quantity, Section, WholeNumber
+from roughmdr.schema.units import effective_modulus
 from roughmdr.variables import DEFAULT, LAW
 
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]

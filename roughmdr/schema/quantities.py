@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.units import DIMENSIONLESS, quantity
+from roughmdr.schema.units import DIMENSIONLESS, quantity
 
 
 class Section(BaseModel):

@@ -8,8 +8,8 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from roughmdr.errors import Fault
-from roughmdr.quantities import EntryError
-from roughmdr.wording import near, printable, shown, suggestion
+from roughmdr.schema.quantities import EntryError
+from roughmdr.schema.wording import near, printable, shown, suggestion
 
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:

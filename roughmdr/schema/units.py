@@ -7,7 +7,7 @@ from functools import cache
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import check_number
-from roughmdr.wording import shown
+from roughmdr.schema.wording import shown
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
 _LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
