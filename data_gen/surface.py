@@ -14,11 +14,11 @@ import click
 import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.spectrum import SelfAffine
-from roughmdr.store import provenance, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, write
 
 _EDGE = 1e-9  # waves as long as a limit of the spectrum count as within it, whatever their rounding
 

@@ -22,10 +22,10 @@ from accuracy_picture import draw
 import roughmdr as rm
 from roughmdr.batch.enough import FIRST, next_count, relative_error
 from roughmdr.batch.tally import Tallies
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 
 
 def scene_of(count: int, height: dict[str, Any], work: float = 0.0) -> dict[str, Any]:

@@ -19,8 +19,8 @@ from scipy.stats import norm
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
-from roughmdr.labelled import Labelled
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -19,9 +19,9 @@ from capacity import ASPERITIES, CELLS, WORKERS, Capacity, capacity, writing
 
 from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.rounds import Rounds
-from roughmdr.labelled import Labelled
 from roughmdr.plan import make_plan
-from roughmdr.store import write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import write
 
 PARTS = ("loading", "reading", "planning", "keys", "tasks", "file")
 _WORKERS = (1, 2)

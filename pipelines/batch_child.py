@@ -16,10 +16,10 @@ from peak import peak
 from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.identity import keys_of
 from roughmdr.batch.rounds import Rounds
-from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan, law_of, make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import Scene, read
+from roughmdr.storage.labelled import Labelled
 
 ASPERITIES = 10
 WORKS = 100

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from roughmdr.store import replacing
+from roughmdr.storage.store import replacing
 
 CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
 """[ms] a cell, [MB], times."""

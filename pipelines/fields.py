@@ -15,9 +15,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import roughmdr as rm
-from roughmdr.labelled import Labelled
 from roughmdr.shapes import Shape
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 from roughmdr.variables import FIELDS
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ import click
 import numpy as np
 import xarray as xr
 
-from roughmdr.labelled import Labelled
-from roughmdr.store import replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import replacing, write
 
 _FORESEE = """
 import sys

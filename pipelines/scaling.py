@@ -24,11 +24,11 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.staircase import no_memory, staircase
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.laws import choose
-from roughmdr.labelled import Labelled
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-from roughmdr.store import replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import replacing, write
 
 MODULUS, WORK = 4e6, 0.05
 TABOR = (0.1, 1.0, 10.0, 100.0)

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from springs_pictures import PICTURES
 
 import roughmdr as rm
-from roughmdr.labelled import Labelled
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 
 Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.store import replacing
+from roughmdr.storage.store import replacing
 
 NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes")
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 import xarray as xr
 
-from roughmdr.labelled import Labelled
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -23,10 +23,10 @@ from roughmdr.ensemble.draws import independent
 from roughmdr.ensemble.maps import HeightMap
 from roughmdr.ensemble.summit_law import SummitLaw, Summits, product_density
 from roughmdr.ensemble.summits import find_summits
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
-from roughmdr.store import provenance, replacing, write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import provenance, replacing, write
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
 from surface import gaussian_map, wave_numbers, wave_variances

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.statistics import mean_and_error
+from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE
 
 if TYPE_CHECKING:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from roughmdr.labelled import Labelled
 from roughmdr.schema.wording import printable, seconds_in_words
+from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, FAILED
 from roughmdr.views import cell_label, cells_of, method_of
 

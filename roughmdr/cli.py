@@ -18,8 +18,8 @@ from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.terminal import NOT_ALL, Group, say
 
 if TYPE_CHECKING:
-    from roughmdr.labelled import Labelled
     from roughmdr.runner import Tls
+    from roughmdr.storage.labelled import Labelled
 
 
 @contextmanager
@@ -162,9 +162,9 @@ def plot(
     result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool, fresh: bool
 ) -> None:
     """Draw the load-separation law in RESULT. A picture of the same kind is replaced."""
-    from roughmdr.kinds import check_kind
     from roughmdr.plots import format_of, plot
-    from roughmdr.store import check_writable, read
+    from roughmdr.storage.kinds import check_kind
+    from roughmdr.storage.store import check_writable, read
     from roughmdr.views import asked_variables
 
     check_writable(output, [result])
@@ -195,7 +195,7 @@ def plot(
 @click.option("--cells", is_flag=True, help="List the cells: what became of each, time, errors, remarks.")
 def info(result: Path, cells: bool) -> None:
     """Say what RESULT holds: sizes, pull-off force with its error, seed, versions, time, and the scene."""
-    from roughmdr.store import read
+    from roughmdr.storage.store import read
 
     data = read(result)
     _warn_of(result, data)
@@ -223,7 +223,7 @@ def new(scene: Path) -> None:
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.store import check_writable, replacing
+    from roughmdr.storage.store import check_writable, replacing
 
     check_writable(scene)
     if scene.exists():
@@ -245,9 +245,9 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     """Write the asperities that a run of SCENE presses on. Other asperities are replaced."""
     from roughmdr.describe import describe_ensemble
     from roughmdr.ensemble import make
-    from roughmdr.kinds import check_kind
     from roughmdr.scene import read
-    from roughmdr.store import check_writable, provenance, write
+    from roughmdr.storage.kinds import check_kind
+    from roughmdr.storage.store import check_writable, provenance, write
 
     asked = read(scene, changes)
     for axis in asked.sweep.axes:

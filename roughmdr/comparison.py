@@ -8,12 +8,12 @@ import numpy as np
 
 from roughmdr.curves import EXPECTED, Line, separations
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.labelled import Labelled
 from roughmdr.named import LAWS, NamedLaw
 from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
 from roughmdr.schema.wording import in_cells
+from roughmdr.storage.labelled import Labelled
 from roughmdr.theory.summits import Variable
 
 # What a law says of a variable, and whether that is of a unit of nominal area.

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.statistics import mean_and_error
+from roughmdr.storage.labelled import Labelled
 from roughmdr.views import done_of, swept_sizes
 
 

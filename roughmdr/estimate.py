@@ -20,9 +20,9 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
-from roughmdr.memory import room
 from roughmdr.plan import Cell, Plan, law_of
 from roughmdr.shapes import SHAPES
+from roughmdr.storage.memory import room
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
 _STEPS = 500

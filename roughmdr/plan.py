@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from roughmdr.aggregate import LoadSeparation, Route, compute
 from roughmdr.aggregate.route import branches
 from roughmdr.errors import SceneError
-from roughmdr.labelled import Array
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
 from roughmdr.schema.wording import in_cells
+from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES, LAW
 
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from roughmdr.curves import EXPECTED, Curve, Line, curves
 from roughmdr.errors import StoreError
-from roughmdr.labelled import Labelled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.wording import harmless
-from roughmdr.store import replacing
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import replacing
 from roughmdr.variables import LAW
 from roughmdr.views import cell_label, cells_of, done_of, realizations_in_words
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from roughmdr.batch.gathered import Found
 from roughmdr.batch.identity import versions
 from roughmdr.batch.rounds import Choice
-from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
 from roughmdr.statistics import summarise
-from roughmdr.store import provenance
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.store import provenance
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED, LAW, RUN, STATUSES
 
 _REFERENCES = (

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.batch.tally import Tallies, Tally
-from roughmdr.labelled import Array
 from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.labelled import Array
 from roughmdr.variables import LAW
 
 _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"

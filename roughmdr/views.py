@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.labelled import Labelled
 from roughmdr.schema.toml_text import table_of
+from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import BESIDE, DONE, LAW
 
 

@@ -24,7 +24,7 @@ from roughmdr.batch.shard import Shard
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
-from roughmdr.store import destination
+from roughmdr.storage.store import destination
 
 _CLI = "from roughmdr.cli import main; main()"
 _IN_CHUNKS = """

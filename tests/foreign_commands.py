@@ -17,7 +17,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
-from roughmdr.netcdf import load
+from roughmdr.storage.netcdf import load
 
 FEW = {**ASPERITIES, "count": 5}
 SCENE = scene(

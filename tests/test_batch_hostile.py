@@ -24,7 +24,7 @@ from roughmdr.batch.tally import Tally
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-from roughmdr.store import read as read_result
+from roughmdr.storage.store import read as read_result
 
 FEW = {**ASPERITIES, "count": 20}
 PATH = {"separation": {"start": "3 um", "stop": "0 um", "steps": 6}, "unload": True}

@@ -22,7 +22,7 @@ from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
 from roughmdr.plan import make_plan
 from roughmdr.scene import read
-from roughmdr.store import read as read_result
+from roughmdr.storage.store import read as read_result
 
 SMALL = {**ASPERITIES, "count": 20}
 

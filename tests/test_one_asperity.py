@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from scipy.special import digamma, gamma
 
 import roughmdr as rm
-from roughmdr.labelled import Labelled
-from roughmdr.store import write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import write
 
 PIPELINES = Path(__file__).parents[1] / "pipelines"
 

@@ -20,10 +20,10 @@ from test_cli import ROUGHMDR, roughmdr
 import roughmdr as rm
 from roughmdr.batch.parts import parts_of
 from roughmdr.cli import main
-from roughmdr.labelled import Array, Labelled
-from roughmdr.netcdf_writing import most_bytes, write_arrays
-from roughmdr.store import destination
-from roughmdr.store import read as read_result
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.netcdf_writing import most_bytes, write_arrays
+from roughmdr.storage.store import destination
+from roughmdr.storage.store import read as read_result
 
 FEW = {**ASPERITIES, "count": 20}
 PATH = {"separation": {"start": "3 um", "stop": "0 um", "steps": 6}, "unload": True}

@@ -11,10 +11,10 @@ import xarray as xr
 from scipy.special import gamma
 
 import roughmdr as rm
-from roughmdr.labelled import Labelled
 from roughmdr.springs import Springs, row
 from roughmdr.springs.reduced import reduced
-from roughmdr.store import write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import write
 
 _TABLE = np.linspace(0.0, 3.1e-4, 12)
 # Shape, E* [Pa], w [J/m^2], from nanometres to metres; the order of the force without adhesion.

@@ -17,7 +17,7 @@ import roughmdr as rm
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read as read_scene
-from roughmdr.store import read, replacing
+from roughmdr.storage.store import read, replacing
 
 
 @pytest.fixture

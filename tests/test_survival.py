@@ -38,7 +38,7 @@ from roughmdr.batch.parts import Parts
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
-from roughmdr.store import read as read_result
+from roughmdr.storage.store import read as read_result
 
 
 @pytest.fixture(scope="module")

@@ -16,10 +16,10 @@ from roughmdr.aggregate.tabor import range_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.laws import choose
-from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import SHAPES
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
-from roughmdr.labelled import Array
 from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES
 
 

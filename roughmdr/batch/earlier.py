@@ -11,10 +11,10 @@ from roughmdr.batch.identity import changes, versions
 from roughmdr.batch.parts import Parts
 from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
-from roughmdr.labelled import Labelled
 from roughmdr.plan import Plan
 from roughmdr.schema.toml_text import table_of
-from roughmdr.store import read
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import read
 from roughmdr.variables import DONE, FAILED, LAW
 
 _MOST_CHANGES = 5

@@ -11,8 +11,8 @@ from roughmdr.batch.identity import versions
 from roughmdr.batch.parts import Parts, locked_parts, parts_of
 from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
-from roughmdr.labelled import Labelled
-from roughmdr.store import write
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.store import write
 from roughmdr.variables import FAILED
 
 _LONGEST = 255  # bytes of a file's name

@@ -22,7 +22,7 @@ from typing import Any
 
 from roughmdr.batch.shard import Shard
 from roughmdr.errors import StoreError
-from roughmdr.store import cannot_be_written, sync_folder
+from roughmdr.storage.store import cannot_be_written, sync_folder
 
 # What disks say that know no locks, as some of those that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
-from roughmdr.labelled import Array, Labelled
 from roughmdr.limits import Extremes
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import shown
 from roughmdr.shapes import SHAPES, Common, Shape
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
 
 if TYPE_CHECKING:

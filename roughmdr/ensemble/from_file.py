@@ -12,7 +12,7 @@ from pydantic import AfterValidator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import SceneError
-from roughmdr.files import check_ordinary
+from roughmdr.storage.files import check_ordinary
 
 
 def _is_file(value: str) -> str:

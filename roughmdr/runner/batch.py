@@ -20,8 +20,6 @@ from roughmdr.batch.shard import Shard
 from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
-from roughmdr.labelled import Labelled
-from roughmdr.memory import check_room, left_in_words
 from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Progress, progress
 from roughmdr.result import assemble
@@ -29,7 +27,9 @@ from roughmdr.runner.cluster import Cluster, Tls, connected
 from roughmdr.runner.local import Here, Pool, Processes, Threads
 from roughmdr.runner.stopping import Interrupted, stoppable
 from roughmdr.scene import Scene, read
-from roughmdr.store import check_writable, destination
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.memory import check_room, left_in_words
+from roughmdr.storage.store import check_writable, destination
 from roughmdr.variables import FAILED
 
 if TYPE_CHECKING:

@@ -11,8 +11,6 @@ from typing import Any
 import numpy as np
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
-from roughmdr.files import check_ordinary, is_open_pipe
-from roughmdr.netcdf import load_text
 from roughmdr.scene.cells import validate
 from roughmdr.scene.keys import put
 from roughmdr.scene.lines import key_lines, line_of
@@ -20,6 +18,8 @@ from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import table_of
 from roughmdr.schema.wording import printable, shown
+from roughmdr.storage.files import check_ordinary, is_open_pipe
+from roughmdr.storage.netcdf import load_text
 
 _PATHS = (("asperities", "file"),)
 """Keys that name a file: in a scene relative to the scene, in --set to the current folder."""

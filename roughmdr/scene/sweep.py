@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
-from roughmdr.labelled import Array
 from roughmdr.scene.path import Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, udunits
 from roughmdr.schema.wording import printable, shown, suggestion
+from roughmdr.storage.labelled import Array
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities")
 _PATH = ("path.separation.start", "path.separation.stop")

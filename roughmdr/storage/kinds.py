@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.netcdf import load_dimensions
+from roughmdr.storage.netcdf import load_dimensions
 
 _BEGIN = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 _HEAD = 4096  # bytes, in which an SVG says that it is one

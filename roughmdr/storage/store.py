@@ -11,10 +11,10 @@ from importlib.metadata import version
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.labelled import Labelled
-from roughmdr.netcdf import load
-from roughmdr.netcdf_writing import write_arrays
-from roughmdr.result_form import fault_in
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf import load
+from roughmdr.storage.netcdf_writing import write_arrays
+from roughmdr.storage.result_form import fault_in
 
 _TEMPORARY = ".roughmdr."
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.labelled import Labelled
-from roughmdr.memory import check_room
-from roughmdr.netcdf import LOCK, WORKING_MEMORY, pieces
 from roughmdr.schema.wording import bytes_in_words
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.memory import check_room
+from roughmdr.storage.netcdf import LOCK, WORKING_MEMORY, pieces
 
 if TYPE_CHECKING:
     import netCDF4

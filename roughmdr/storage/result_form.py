@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.labelled import Array, Labelled
 from roughmdr.schema.toml_text import table_of
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import BESIDE, DONE, FAILED, LAW, NOT_RUN
 
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.files import check_ordinary
-from roughmdr.labelled import Array, Labelled
-from roughmdr.memory import check_room
+from roughmdr.storage.files import check_ordinary
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.memory import check_room
 from roughmdr.variables import BESIDE
 
 if TYPE_CHECKING:
