@@ -13,9 +13,9 @@ from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels import fields
 from roughmdr.kernels.elementwise import apply
 from roughmdr.kernels.field_quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
-from roughmdr.kernels.profiles import profile_of
 from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Curved, FlatPunch, Shape
+from roughmdr.shapes.power_profiles import profile_of
 
 _ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding
 _SHALLOW, _DEEP, _STEPS_A_DECADE = 1e-6, 10.0, 8  # where the largest shear is looked for, over a radius

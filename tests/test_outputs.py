@@ -279,7 +279,7 @@ import resource, sys
 from pathlib import Path
 from test_outputs import big
 from roughmdr.errors import RoughmdrError
-from roughmdr.store import write
+from roughmdr.storage.store import write
 write(big(2), Path("small.nc"))
 data = big(int(sys.argv[1]))
 with open("/proc/self/statm") as sizes:

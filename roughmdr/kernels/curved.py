@@ -20,7 +20,6 @@ from roughmdr.kernels import (
     start,
     zone,
 )
-from roughmdr.kernels.profiles import profile_of
 from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
@@ -28,6 +27,7 @@ from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.numerics.vector_math import atan, octave
 from roughmdr.shapes import Paraboloid, Shape
 from roughmdr.shapes.base import Curved
+from roughmdr.shapes.power_profiles import profile_of
 from roughmdr.shapes.special import less_atan
 
 # Names that ``specialise`` fills.

@@ -13,10 +13,10 @@ import numpy as np
 
 from roughmdr.kernels import field_quadrature
 from roughmdr.kernels.field_quadrature import COSH, DISPLACEMENT, EXP, PRESSURE, SIN, SINH
-from roughmdr.kernels.profiles import profile_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.shapes import Shape
+from roughmdr.shapes.power_profiles import profile_of
 
 # Names that ``specialise`` fills.
 _FLAT: bool

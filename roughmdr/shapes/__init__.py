@@ -2,12 +2,12 @@
 
 from roughmdr.shapes.base import Common, Curved, Shape
 from roughmdr.shapes.capped import CappedParaboloid
-from roughmdr.shapes.flat import FlatPunch
+from roughmdr.shapes.flat_punch import FlatPunch
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.rounded import RoundedCone, RoundedPunch
 from roughmdr.shapes.series import PowerSeries
 from roughmdr.shapes.sphere import Sphere
-from roughmdr.shapes.tabulated import Tabulated
+from roughmdr.shapes.tabulated.shape import Tabulated
 from roughmdr.shapes.truncated import TruncatedCone, TruncatedParaboloid
 
 SHAPES: dict[str, type[Shape]] = {

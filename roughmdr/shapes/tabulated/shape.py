@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import table
 from roughmdr.shapes.base import Common, radii
 from roughmdr.shapes.profile import Profile
+from roughmdr.shapes.tabulated import lookup
 
 _LEAST_POINTS = 3
 _CLOSEST = 1e-6  # of the last radius: nearer points leave no digits to the spline between them
@@ -35,7 +35,7 @@ class Tabulated(Common):
     units: ClassVar[dict[str, str]] = {"r": "m", "f": "m"}
     along: ClassVar[str] = "point"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("r", "f"),)
-    profile: ClassVar[Profile] = table.PROFILE
+    profile: ClassVar[Profile] = lookup.PROFILE
 
     def __init__(self, r: ArrayLike, f: ArrayLike) -> None:
         self.radii, self.heights = _column("r", r), _column("f", f)
@@ -103,7 +103,7 @@ class Tabulated(Common):
 
     @cached_property
     def _form(self) -> Floats:
-        from roughmdr.shapes.pieces import tabulate
+        from roughmdr.shapes.tabulated.build import tabulate
 
         return tabulate(*self._pieces)
 
@@ -113,7 +113,7 @@ class Tabulated(Common):
 
     def _check_disc(self) -> None:
         """OutOfRange where g falls: pressed without adhesion, the contact would gape inside."""
-        from roughmdr.shapes.pieces import steepness
+        from roughmdr.shapes.tabulated.build import steepness
 
         width, _ = self._units
         knots, coefficients = self._pieces

@@ -3,7 +3,7 @@
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.table import DEGREE, HEAD, PIECE, strain_between
+from roughmdr.shapes.tabulated.lookup import DEGREE, HEAD, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
 _NOISE = 1e-11  # below it, what halving does not lower is rounding
@@ -21,7 +21,7 @@ _TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_POINTS, DEGREE
 
 def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     """The form of f' = c0 + c1 s + c2 s^2 over s = r - knot (last piece: c0 alone, without end), as ``table`` says."""
-    from roughmdr.shapes.abel import integrals  # it alone needs the compiler
+    from roughmdr.shapes.tabulated.abel import integrals  # it alone needs the compiler
 
     ends = np.append(knots[1:], knots[-1] * 2.0 ** np.arange(1, _OCTAVES_BEYOND + 1))
     bases = np.append(knots[:-1], np.full(_OCTAVES_BEYOND, knots[-1]))
@@ -103,7 +103,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     """g beyond the end, slope S: a pi S/2 + sum over k of binomial(2k, k) (2a)^(-2k) ∫ (f' - S) r^(2k) dr."""
     from scipy.special import binom
 
-    from roughmdr.shapes.abel import integrals
+    from roughmdr.shapes.tabulated.abel import integrals
 
     nodes, weights = np.polynomial.legendre.leggauss(DEGREE + 3)
     h = np.diff(knots)[:, None]
@@ -121,7 +121,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
 
 def steepness(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
     """Contact radii all along the pieces, and g' there."""
-    from roughmdr.shapes.abel import integrals
+    from roughmdr.shapes.tabulated.abel import integrals
 
     x = (begins[:-1, None] + np.diff(begins)[:, None] * (np.arange(_LOOKS) + 0.5) / _LOOKS).ravel()
     return x, integrals(x, np.zeros_like(x), knots, coefficients)[:, 1]
@@ -131,7 +131,7 @@ def _dips(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[flo
     """Where sqrt(a) g'(a) falls: from where and to where."""
     from scipy.optimize import minimize_scalar
 
-    from roughmdr.shapes.abel import integrals
+    from roughmdr.shapes.tabulated.abel import integrals
 
     def steep(x: float) -> float:
         return float(np.sqrt(x) * integrals(np.array([x]), np.zeros(1), knots, coefficients)[0, 1])

@@ -1,0 +1,1 @@
+"""Measured radial profiles: a spline, its MDR profile in pieces, and their lookup."""
