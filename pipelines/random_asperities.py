@@ -12,9 +12,9 @@ from twins import Real, mp
 import roughmdr as rm
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.staircase import staircase
 from roughmdr.kernels.laws import Law, choose
 from roughmdr.kernels.row import COUNT, FOOT, TOP
+from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadSeparation, Route, compute
-from roughmdr.aggregate.route import branches
 from roughmdr.errors import SceneError
+from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
 from roughmdr.schema.wording import in_cells

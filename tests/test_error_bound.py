@@ -14,8 +14,8 @@ from twins import Twin, mp
 import roughmdr as rm
 from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.staircase import no_memory, staircase
 from roughmdr.kernels.laws import choose
+from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.shapes import SHAPES as EVERY_SHAPE
 from roughmdr.shapes.base import Shape
 

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 
 from roughmdr.adhesion import Adhesion, Model
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.route import Route
-from roughmdr.aggregate.staircase import no_memory
 from roughmdr.aggregate.tabor import range_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.laws import choose
 from roughmdr.limits import Extremes
+from roughmdr.loading.path import Route
+from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled

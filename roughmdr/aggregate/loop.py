@@ -31,10 +31,10 @@ from roughmdr.aggregate.settle import (
     stiffness_at,
     stiffness_found,
 )
-from roughmdr.aggregate.staircase import Staircase
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.laws import Law
+from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, run_on

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.staircase import Staircase, no_memory, staircase
+from roughmdr.loading.staircase import Staircase, no_memory, staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES
