@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import NamedTuple
 from zlib import crc32
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route, compute
-from roughmdr.kernels import elastic, jkr_paraboloid
-from roughmdr.kernels.laws import Law, choose
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.closed import hertz as elastic
+from roughmdr.kernels.closed import jkr_paraboloid
+from roughmdr.kernels.interface import Law, choose
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.rebind import rebuilt

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route, compute
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
 

@@ -10,10 +10,10 @@ from exact_contact import Exact, Pinned
 from twins import Real, mp
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
-from roughmdr.kernels.laws import Law, choose
-from roughmdr.kernels.row import COUNT, FOOT, TOP
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape

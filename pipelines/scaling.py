@@ -19,10 +19,10 @@ from batch import by_cell
 from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.ensemble import Ensemble
-from roughmdr.kernels.laws import choose
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.plan import make_plan
 from roughmdr.runner import execute

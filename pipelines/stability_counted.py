@@ -19,8 +19,8 @@ import numpy as np
 from stability_cases import Case, design
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
 
 TRIALS = {"jkr": "_distance", "dugdale": "along"}
 """The kernel that makes an equilibrium of a state, by law."""

@@ -13,7 +13,7 @@ from typing import Any
 from mpmath import mp
 from scipy.optimize import brentq
 
-from roughmdr.adhesion import stretch_at
+from roughmdr.kernels.adhesion import stretch_at
 from roughmdr.shapes import Cone, Paraboloid, PowerLaw, PowerSeries, Shape, Sphere, Tabulated
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from stated_error_contacts import profile, walk
 
-from roughmdr.adhesion import stretch_at
 from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.ensemble.random import RandomAsperities
 from roughmdr.expected.curve import branch_ends
+from roughmdr.kernels.adhesion import stretch_at
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr import limits
-from roughmdr.adhesion import Adhesion, Model, tabor_number
 from roughmdr.contact import Contact
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, ShapeError
+from roughmdr.kernels.adhesion import Adhesion, Model, tabor_number
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY

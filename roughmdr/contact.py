@@ -5,12 +5,12 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply, apply_all
-from roughmdr.kernels.exact import exact_depth
-from roughmdr.kernels.laws import Law, choose
-from roughmdr.kernels.row import COUNT
+from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.profile.exact_fold import exact_depth
+from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Curved, FlatPunch, Shape
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.adhesion import Adhesion, stretch_at
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels.row import COUNT, FOOT, TOP
+from roughmdr.kernels.adhesion import Adhesion, stretch_at
+from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Curved, FlatPunch, Shape
 from roughmdr.variables import ASPERITY

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr import limits
-from roughmdr.adhesion import Adhesion, stretch_at
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels import fields
+from roughmdr.kernels.adhesion import Adhesion, stretch_at
 from roughmdr.kernels.elementwise import apply
 from roughmdr.kernels.field_quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.numerics.arguments import Floats, check_values

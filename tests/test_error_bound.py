@@ -12,9 +12,9 @@ from scenes import ensemble
 from twins import Twin, mp
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
-from roughmdr.kernels.laws import choose
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.shapes import SHAPES as EVERY_SHAPE
 from roughmdr.shapes.base import Shape

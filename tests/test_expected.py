@@ -11,12 +11,12 @@ from numpy.polynomial.legendre import leggauss
 from scenes import ensemble
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route
 from roughmdr.contact import Contact
 from roughmdr.expected import converge, panels
 from roughmdr.expected.memory import remember
 from roughmdr.expected.table import Table
+from roughmdr.kernels.adhesion import Adhesion
 
 UM = 1e-6
 NORMAL = {"distribution": "normal", "std": "1 um"}

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from scenes import ensemble
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.law import Route, compute
 from roughmdr.ensemble import Ensemble
-from roughmdr.kernels.laws import choose
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import choose
 from roughmdr.variables import LAW
 
 E, W = 4e6, 0.05

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.adhesion import Adhesion, Model
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.tabor import range_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
-from roughmdr.kernels.laws import choose
+from roughmdr.kernels.adhesion import Adhesion, Model
+from roughmdr.kernels.interface import choose
 from roughmdr.limits import Extremes
 from roughmdr.loading.path import Route
 from roughmdr.loading.staircase import no_memory

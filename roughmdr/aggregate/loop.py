@@ -14,7 +14,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate.bound import bound, bound_found, worst
 from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.settle import (
@@ -33,7 +32,8 @@ from roughmdr.aggregate.settle import (
 )
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels.laws import Law
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import Law
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, specialise

@@ -6,8 +6,8 @@ from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple, cast
 
-from roughmdr.adhesion import Adhesion, tabor_number
-from roughmdr.kernels.laws import Law, choose
+from roughmdr.kernels.adhesion import Adhesion, tabor_number
+from roughmdr.kernels.interface import Law, choose
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import specialise
 from roughmdr.numerics.summation import BLOCK

@@ -16,8 +16,8 @@ from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Heights
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import Table
-from roughmdr.kernels import row as places
 from roughmdr.kernels.elementwise import apply, apply_all
+from roughmdr.kernels.profile import layout as places
 from roughmdr.numerics.arguments import Floats
 
 _TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10

@@ -9,7 +9,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import LoadSeparation, Route
 from roughmdr.aggregate.law import ROW
 from roughmdr.aggregate.tabor import range_of
@@ -20,6 +19,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import DOUBTFUL, FIRST_ORDER, converge
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.expected.parted import Parted
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
 _WORTHLESS = 0.1  # of the largest force: an error that is refused

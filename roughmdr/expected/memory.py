@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roughmdr.aggregate import Route
 from roughmdr.contact import Contact
 from roughmdr.expected.curve import branch_ends
-from roughmdr.kernels.row import ONSET
+from roughmdr.kernels.profile.layout import ONSET
 from roughmdr.numerics.arguments import Floats
 
 

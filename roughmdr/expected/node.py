@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.aggregate import Route
 from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
 from roughmdr.contact import Contact
@@ -14,7 +13,8 @@ from roughmdr.expected.curve import Curve, curves_of, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.memory import Intervals, lost, remember
-from roughmdr.kernels.laws import Law
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import Law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 

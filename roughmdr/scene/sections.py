@@ -15,9 +15,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import check_number
 from roughmdr.scene.path import Path
 from roughmdr.scene.sweep import Sweep

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
 from roughmdr.errors import OutOfRange
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights

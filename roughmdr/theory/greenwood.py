@@ -2,8 +2,8 @@
 
 from numpy.typing import ArrayLike
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights

@@ -4,8 +4,8 @@ import math
 
 from numpy.typing import ArrayLike
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights

@@ -8,8 +8,8 @@ from test_accuracy import SHAPES, draw
 from twins import Real, Twin, mp
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply
 
 E, W, R = 4e6, 0.05, 5e-5

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import roughmdr as rm
-from roughmdr.adhesion import Adhesion
 from roughmdr.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import SHAPES
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import octave
 

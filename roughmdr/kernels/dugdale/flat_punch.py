@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from roughmdr.kernels import curved
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
+from roughmdr.kernels.profile import build as curved
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled, njit
 

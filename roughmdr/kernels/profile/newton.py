@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
+from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 from roughmdr.numerics.arguments import Floats
 
 # Names that ``specialise`` fills with the functions of a profile and of ``balance``.

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import (
+from roughmdr.kernels.profile.layout import (
     CONTROL,
     COUNT,
     DEPTH,

@@ -3,7 +3,7 @@
 Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt(X) in what is found there.
 """
 
-from roughmdr.kernels.row import CONTROL, FOLD
+from roughmdr.kernels.profile.layout import CONTROL, FOLD
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.shapes import Curved

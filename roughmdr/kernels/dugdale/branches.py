@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
+from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
 # Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``margins`` and ``folds``.

@@ -4,9 +4,13 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from roughmdr.adhesion import Adhesion
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels import curved, dugdale_flat, elastic, flat, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.closed import flat_punch as flat
+from roughmdr.kernels.closed import hertz as elastic
+from roughmdr.kernels.closed import jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.kernels.dugdale import flat_punch as dugdale_flat
+from roughmdr.kernels.profile import build as curved
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Curved, FlatPunch, Shape
 

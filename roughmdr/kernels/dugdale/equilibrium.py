@@ -20,7 +20,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 

@@ -2,8 +2,8 @@
 
 import math
 
-from roughmdr.kernels.jkr_paraboloid import errors, radius, state_of_radius
-from roughmdr.kernels.jkr_power import branch
+from roughmdr.kernels.closed.jkr_paraboloid import errors, radius, state_of_radius
+from roughmdr.kernels.closed.jkr_power import branch
 from roughmdr.numerics import double_double as extended
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import njit

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.kernels.row import CONTROL, DEPTH, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, DEPTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import COUNT, RANGE, STRENGTH
+from roughmdr.kernels.profile.layout import COUNT, RANGE, STRENGTH
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.special import less_atan
 

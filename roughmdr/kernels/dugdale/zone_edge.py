@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.row import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
+from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan
 

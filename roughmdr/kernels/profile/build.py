@@ -8,19 +8,16 @@ from typing import Any, cast
 
 import numpy as np
 
-from roughmdr.kernels import (
-    balance,
-    branches,
-    dugdale,
-    dugdale_folds,
-    dugdale_paraboloid,
-    folds,
-    margins,
-    root,
-    start,
-    zone,
-)
-from roughmdr.kernels.row import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.kernels.dugdale import branches as dugdale_folds
+from roughmdr.kernels.dugdale import equilibrium as dugdale
+from roughmdr.kernels.dugdale import paraboloid as dugdale_paraboloid
+from roughmdr.kernels.dugdale import zone
+from roughmdr.kernels.dugdale import zone_edge as margins
+from roughmdr.kernels.profile import branches, folds
+from roughmdr.kernels.profile import equilibrium as balance
+from roughmdr.kernels.profile import initial_guess as start
+from roughmdr.kernels.profile import newton as root
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise

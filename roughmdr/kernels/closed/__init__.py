@@ -1,0 +1,1 @@
+"""Kernels in closed form: power laws and the flat punch, with and without adhesion."""

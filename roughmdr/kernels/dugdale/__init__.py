@@ -1,0 +1,1 @@
+"""Kernels under adhesion of finite range (Dugdale, Maugis)."""
