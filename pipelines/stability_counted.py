@@ -19,7 +19,7 @@ import numpy as np
 from stability_cases import Case, design
 
 import roughmdr as rm
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 
 TRIALS = {"jkr": "_distance", "dugdale": "along"}

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from stated_error_contacts import profile, walk
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
 from roughmdr.ensemble.population import AsperityLaw, Population
 from roughmdr.ensemble.random import RandomAsperities

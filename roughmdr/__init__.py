@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from roughmdr import spectrum, theory
     from roughmdr.aggregate import load_separation
-    from roughmdr.asperity import indent, pull_off, tabor
+    from roughmdr.asperity.equilibria import equilibria
+    from roughmdr.asperity.indent import indent, pull_off, tabor
     from roughmdr.ensemble import generate
-    from roughmdr.equilibria import equilibria
     from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
-    from roughmdr.fields import axis_stress, pressure, surface_displacement
+    from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.runner import run
     from roughmdr.scene import Scene
     from roughmdr.schema.units import effective_modulus
@@ -52,17 +52,17 @@ _HOME = {
     "StoreError": "errors",
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
-    "axis_stress": "fields",
+    "axis_stress": "fields.evaluate",
     "effective_modulus": "schema.units",
-    "equilibria": "equilibria",
+    "equilibria": "asperity.equilibria",
     "generate": "ensemble",
-    "indent": "asperity",
+    "indent": "asperity.indent",
     "load_separation": "aggregate",
-    "pressure": "fields",
-    "pull_off": "asperity",
+    "pressure": "fields.evaluate",
+    "pull_off": "asperity.indent",
     "run": "runner",
-    "surface_displacement": "fields",
-    "tabor": "asperity",
+    "surface_displacement": "fields.evaluate",
+    "tabor": "asperity.indent",
 }
 
 __all__ = [

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.asperity.validity import Extremes
 from roughmdr.batch.gathered import Found
 from roughmdr.batch.identity import versions
 from roughmdr.batch.rounds import Choice
-from roughmdr.limits import Extremes
 from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
 from roughmdr.statistics import summarise

@@ -15,13 +15,13 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.analysis import pull_off_force
+from roughmdr.asperity.contact import Contact
 from roughmdr.batch import shard, tasks
 from roughmdr.batch.compiled import prepare_all
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.enough import FIRST, bound, next_count
 from roughmdr.batch.rounds import Rounds
 from roughmdr.cli import main
-from roughmdr.contact import Contact
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
 from roughmdr.plan import make_plan

@@ -12,7 +12,7 @@ from scenes import ensemble
 
 import roughmdr as rm
 from roughmdr.aggregate import Route
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.expected import converge, panels
 from roughmdr.expected.memory import remember
 from roughmdr.expected.table import Table

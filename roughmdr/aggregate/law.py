@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.tabor import range_of
+from roughmdr.asperity.validity import Extremes
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import Adhesion, Model
 from roughmdr.kernels.interface import choose
-from roughmdr.limits import Extremes
 from roughmdr.loading.path import Route
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats, check_number, check_values

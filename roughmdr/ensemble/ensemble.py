@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from roughmdr.asperity.validity import Extremes
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
-from roughmdr.limits import Extremes
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import shown

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate.totals import AREA, COUNT, ENERGY, FORCE, RADIUS, STIFFNESS
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import Table

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import Route
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.profile.layout import ONSET
 from roughmdr.numerics.arguments import Floats

@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.aggregate import Route
 from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.expected.curve import Curve, curves_of, scales_of

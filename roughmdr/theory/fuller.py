@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, check_number, check_values

@@ -2,7 +2,7 @@
 
 from numpy.typing import ArrayLike
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Paraboloid

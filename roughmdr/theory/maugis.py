@@ -4,7 +4,7 @@ import math
 
 from numpy.typing import ArrayLike
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Paraboloid

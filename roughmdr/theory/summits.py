@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats, check_number, check_values

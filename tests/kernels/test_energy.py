@@ -8,7 +8,7 @@ from test_accuracy import SHAPES, draw
 from twins import Real, Twin, mp
 
 import roughmdr as rm
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply
 

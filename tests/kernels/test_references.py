@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import roughmdr as rm
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply
 from roughmdr.shapes import SHAPES

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import LimitWarning, OutOfRange
-from roughmdr.half_space import HalfSpace, one_number
-from roughmdr.kernels.field_quadrature import DEEP, DISPLACEMENT, PRESSURE, STEEP
+from roughmdr.fields.half_space import HalfSpace, one_number
+from roughmdr.fields.quadrature import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import radii

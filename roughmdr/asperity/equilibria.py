@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.contact import Contact
+from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, stretch_at
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP

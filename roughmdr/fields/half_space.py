@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr import limits
-from roughmdr.contact import Contact
+from roughmdr.asperity import validity
+from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.kernels import fields
+from roughmdr.fields import integrals
+from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.kernels.adhesion import Adhesion, stretch_at
 from roughmdr.kernels.elementwise import apply
-from roughmdr.kernels.field_quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Curved, FlatPunch, Shape
 from roughmdr.shapes.power_profiles import profile_of
@@ -121,7 +121,7 @@ class HalfSpace(NamedTuple):
         """The integral of a weight with d(g - delta) to the edge of the contact, its own stretch included."""
         body = np.zeros_like(at)
         if not isinstance(self.shape, FlatPunch):
-            kernel = fields.build(type(self.shape))
+            kernel = integrals.build(type(self.shape))
             body = apply(kernel, at, kind, self.radius, self.t, self.width, self.row)
             if np.isnan(body).any():
                 raise OutOfRange(
@@ -183,4 +183,4 @@ class HalfSpace(NamedTuple):
     def warnings(self) -> list[str]:
         """What is doubtful about the contact."""
         radius = np.array([self.radius])
-        return limits.Extremes.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings
+        return validity.Extremes.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr import limits
-from roughmdr.contact import Contact
+from roughmdr.asperity import validity
+from roughmdr.asperity.contact import Contact
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, ShapeError
 from roughmdr.kernels.adhesion import Adhesion, Model, tabor_number
 from roughmdr.numerics.arguments import Floats, check_number, check_values
@@ -79,10 +79,10 @@ def indent(
         if lost.any():
             worst = np.atleast_1d(values)[lost][0]
             raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
-    extremes = limits.Extremes()
+    extremes = validity.Extremes()
     if isinstance(shape, Shape):
         radius = results["contact_radius"]
-        extremes = limits.Extremes.of(radius, shape.df(radius), np.array(shape.end))
+        extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
     doubts = [*extremes.warnings, *_short_range(shape, modulus, work, adhesion, strength)]
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, doubts)
 
@@ -133,7 +133,7 @@ def pull_off(
             raise OutOfRange(
                 f"{name} at pull-off is not representable: modulus {modulus:g} Pa, work {work:g} J/m^2, {shape}"
             )
-    extremes = limits.Extremes.of(radius, shape.df(radius), np.array(shape.end))
+    extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
     doubts = [*extremes.warnings, *_short_range(shape, modulus, work, adhesion, strength)]
     return _dataset({name: results[name].reshape(()) for name in names}, None, doubts)
 
@@ -142,7 +142,7 @@ def _short_range(shape: object, modulus: float, work: float, adhesion: str, stre
     """What to say of JKR where a strength is given with it."""
     if adhesion != "jkr" or strength is None or work == 0.0 or not isinstance(shape, Shape):
         return []
-    return limits.short_range(tabor(shape, modulus=modulus, work=work, strength=strength))
+    return validity.short_range(tabor(shape, modulus=modulus, work=work, strength=strength))
 
 
 def _dataset(results: dict[str, Floats], control: str | None, doubts: list[str]) -> "xr.Dataset":

@@ -11,8 +11,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from roughmdr.kernels import field_quadrature
-from roughmdr.kernels.field_quadrature import COSH, DISPLACEMENT, EXP, PRESSURE, SIN, SINH
+from roughmdr.fields import quadrature
+from roughmdr.fields.quadrature import COSH, DISPLACEMENT, EXP, PRESSURE, SIN, SINH
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.shapes import Shape
@@ -122,7 +122,7 @@ def build(shape: type[Shape]) -> Callable[..., float]:
         "_edge_count": compiled(profile.edge_count),
         "_edge": compiled(profile.edge),
     }
-    parts: tuple[Callable[..., Any], ...] = (*field_quadrature.PARTS, leg, rate_from, span, field)
+    parts: tuple[Callable[..., Any], ...] = (*quadrature.PARTS, leg, rate_from, span, field)
     for part in parts:
         kernels[part.__name__] = specialise(cast(FunctionType, part), shape.name, kernels)
     return cast(Callable[..., float], kernels["field"])

@@ -1,0 +1,1 @@
+"""Pressure, displacement and stress of one contact."""
