@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.summit_law import Summits
+from roughmdr.ensemble.gaussian.summit_distribution import Summits
 from roughmdr.numerics.arguments import Floats
 
 DERIVATIVES = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))

@@ -19,8 +19,8 @@ from stated_error_contacts import profile, walk
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
-from roughmdr.ensemble.population import AsperityLaw, Population
-from roughmdr.ensemble.random import RandomAsperities
+from roughmdr.ensemble.random.population import AsperityLaw, Population
+from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.adhesion import stretch_at
 from roughmdr.kernels.elementwise import apply, apply_all

@@ -19,10 +19,10 @@ import numpy as np
 import xarray as xr
 from exact_summits import Series
 
-from roughmdr.ensemble.draws import independent
-from roughmdr.ensemble.maps import HeightMap
-from roughmdr.ensemble.summit_law import SummitLaw, Summits, product_density
-from roughmdr.ensemble.summits import find_summits
+from roughmdr.ensemble.gaussian.summit_distribution import SummitLaw, Summits, product_density
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.ensemble.streams import independent
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
 from roughmdr.storage.labelled import Labelled

@@ -6,8 +6,8 @@ import scipy.stats
 from scenes import ASPERITIES
 
 import roughmdr as rm
-from roughmdr.ensemble.draws import SMALLEST_UNIFORM, uniforms
-from roughmdr.ensemble.families import find_family
+from roughmdr.ensemble.random.families import find_family
+from roughmdr.ensemble.streams import SMALLEST_UNIFORM, uniforms
 
 
 def generate(seed: int = 1, realization: int = 0, **changes: object) -> object:

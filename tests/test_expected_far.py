@@ -16,8 +16,8 @@ from mpmath import mp, mpf
 from plain_probability import mean_of_correlated, mean_of_heights, mean_of_radii
 
 import roughmdr as rm
-from roughmdr.ensemble.distributions import Distribution
 from roughmdr.ensemble.nodes import Heights
+from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.expected.heights import HeightTable
 
 UM = 1e-6

@@ -13,8 +13,8 @@ from scipy.integrate import quad
 
 import roughmdr as rm
 from roughmdr.ensemble import NayakAsperities
-from roughmdr.ensemble.summit_law import SummitLaw, product_density
-from roughmdr.ensemble.summit_quantiles import mean_curvature, product_of_curvatures
+from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
+from roughmdr.ensemble.gaussian.summit_distribution import SummitLaw, product_density
 from roughmdr.spectrum import Moments, SelfAffine
 
 WAVES: dict[str, Any] = {

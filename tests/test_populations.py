@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.drawn import Drawn
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.reader import Drawn
 from roughmdr.scene import read
 
 UM = 1e-6

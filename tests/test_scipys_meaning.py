@@ -15,7 +15,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
-from roughmdr.ensemble.families import known_families
+from roughmdr.ensemble.random.families import known_families
 from roughmdr.scene import read
 
 UM = 1e-6

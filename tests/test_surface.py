@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roughmdr as rm
-from roughmdr.ensemble.maps import HeightMap, read_map
-from roughmdr.ensemble.relief import remove_trend
-from roughmdr.ensemble.summits import find_summits
+from roughmdr.ensemble.maps.detrend import remove_trend
+from roughmdr.ensemble.maps.height_map import HeightMap, read_map
+from roughmdr.ensemble.maps.summits import find_summits
 
 OPTICAL = Path(__file__).parents[2] / "shared" / "surfaces" / "optical.nc"
 

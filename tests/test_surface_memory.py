@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roughmdr as rm
-from roughmdr.ensemble import content
-from roughmdr.ensemble.maps import HeightMap
-from roughmdr.ensemble.relief import remove_short_waves, remove_trend
-from roughmdr.ensemble.resolution import measures
-from roughmdr.ensemble.summits import find_summits
+from roughmdr.ensemble.maps import raw_map
+from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.resolution import measures
+from roughmdr.ensemble.maps.summits import find_summits
 
 POINTS = 1024
 
@@ -58,7 +58,7 @@ def test_little_is_held_beside_the_map(
 ) -> None:
     section = {"source": "surface", "file": str(maps / name), **({} if ".nc" in name else {"size": "10.24 um"}), **keys}
     first = rm.generate(section, seed=0)  # and all that is imported for it
-    monkeypatch.setattr(content, "_TOGETHER", 2**14)
+    monkeypatch.setattr(raw_map, "_TOGETHER", 2**14)
     tracemalloc.start()
     try:
         again = rm.generate(section, seed=0)
@@ -72,12 +72,12 @@ def test_little_is_held_beside_the_map(
 
 @given(rows=st.integers(1, 10**5), columns=st.integers(1, 10**8), together=st.integers(1, 10**4))
 def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> None:
-    parts = list(content.blocks(rows, columns, together))
+    parts = list(raw_map.blocks(rows, columns, together))
     assert [row for part in parts for row in (part.start, part.stop)][1:-1:2] == [part.start for part in parts[1:]]
     assert (parts[0].start, parts[-1].stop) == (0, rows)
     for part in parts:
         assert part.start % together == 0
-        assert (part.stop - part.start - together) * columns < content._TOGETHER
+        assert (part.stop - part.start - together) * columns < raw_map._TOGETHER
 
 
 @settings(deadline=None, max_examples=60)
@@ -99,7 +99,7 @@ def test_where_a_block_ends_makes_no_difference(
     found = []
     for size in (2**20, together):
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(content, "_TOGETHER", size)
+            patched.setattr(raw_map, "_TOGETHER", size)
             surface = HeightMap(rough.copy(), 0.5, 0.7, periodic)
             try:
                 summits = find_summits(surface)

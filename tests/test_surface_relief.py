@@ -13,10 +13,10 @@ from scenes import scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps import HeightMap
-from roughmdr.ensemble.relief import remove_short_waves, remove_trend
-from roughmdr.ensemble.resolution import FEW, measures
-from roughmdr.ensemble.summits import find_summits
+from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.resolution import FEW, measures
+from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import LimitWarning
 
 approx = partial(pytest.approx, abs=0.0)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.file import FileAsperities
-from roughmdr.ensemble.nayak import NayakAsperities
-from roughmdr.ensemble.random import RandomAsperities
-from roughmdr.ensemble.random_shapes import AnyRandomAsperities
+from roughmdr.ensemble.gaussian.section import NayakAsperities
+from roughmdr.ensemble.maps.section import SurfaceAsperities
+from roughmdr.ensemble.random.section import RandomAsperities
+from roughmdr.ensemble.random.shapes import AnyRandomAsperities
+from roughmdr.ensemble.saved import FileAsperities
 from roughmdr.ensemble.source import Source
-from roughmdr.ensemble.surface import SurfaceAsperities
 from roughmdr.errors import LimitWarning, SceneError
 from roughmdr.schema.faults import find_faults
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.population import AsperityLaw, Population
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.population import AsperityLaw, Population
 from roughmdr.numerics.arguments import Floats
 
 END = 10.0

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
-from roughmdr.ensemble.draws import Draws
 from roughmdr.ensemble.source import Source
+from roughmdr.ensemble.streams import Draws
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Length, Quantity

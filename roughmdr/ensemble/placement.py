@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.draws import POSITION, Draws
+from roughmdr.ensemble.streams import POSITION, Draws
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.aggregate.tabor import Range, range_of
 from roughmdr.ensemble import Ensemble, RandomAsperities
-from roughmdr.ensemble.distributions import Distribution
+from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.errors import RoughmdrError
 from roughmdr.named.law import NamedLaw, check_no_adhesion
 from roughmdr.numerics.arguments import Floats

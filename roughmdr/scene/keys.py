@@ -5,7 +5,7 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator
 
-from roughmdr.ensemble.drawn import Drawn
+from roughmdr.ensemble.random.reader import Drawn
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.quantities import Reader

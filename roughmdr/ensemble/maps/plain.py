@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.content import Content
+from roughmdr.ensemble.maps.raw_map import Content
 from roughmdr.errors import RoughmdrError
 
 _DELIMITERS = (";", ",", "\t")

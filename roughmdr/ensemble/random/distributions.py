@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from roughmdr.ensemble.draws import SMALLEST_UNIFORM
-from roughmdr.ensemble.families import Family, find_family
+from roughmdr.ensemble.random.families import Family, find_family
+from roughmdr.ensemble.streams import SMALLEST_UNIFORM
 from roughmdr.numerics.arguments import Floats
 
 # Fractions below which and above which values lie, by normal scores: over these a rule of equal steps finds moments.

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator
 
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.drawn import Drawn
-from roughmdr.ensemble.random import Correlation, RandomAsperities, Second
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.reader import Drawn
+from roughmdr.ensemble.random.section import Correlation, RandomAsperities, Second
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.schema.units import DIMENSIONLESS, quantity

@@ -9,10 +9,10 @@ from pydantic import BeforeValidator, StrictBool, field_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
-from roughmdr.ensemble.maps import Sides, read_map
-from roughmdr.ensemble.relief import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.resolution import few_points, measures
-from roughmdr.ensemble.summits import find_summits
+from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
+from roughmdr.ensemble.maps.height_map import Sides, read_map
+from roughmdr.ensemble.maps.resolution import few_points, measures
+from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import SceneError
 from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor

@@ -5,8 +5,8 @@ from typing import Literal
 
 import numpy as np
 
-from roughmdr.ensemble.content import blocks
-from roughmdr.ensemble.maps import HeightMap
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.raw_map import blocks
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 

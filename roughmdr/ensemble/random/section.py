@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, model_validator
 
-from roughmdr.ensemble.count import poisson
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.drawn import Drawn
-from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
 from roughmdr.ensemble.patch import PatchSource
-from roughmdr.ensemble.population import AsperityLaw, Population
+from roughmdr.ensemble.random.count import poisson
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.population import AsperityLaw, Population
+from roughmdr.ensemble.random.reader import Drawn
+from roughmdr.ensemble.streams import HEIGHT, PARAMETER, independent, spread
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.content import Content, blocks, check_points
 from roughmdr.ensemble.datasets import opened
+from roughmdr.ensemble.maps.raw_map import Content, blocks, check_points
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import unit_factor
 

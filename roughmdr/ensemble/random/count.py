@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roughmdr.ensemble.draws import COUNT, Draws
+from roughmdr.ensemble.streams import COUNT, Draws
 
 
 def poisson(draws: Draws, mean: float) -> int:

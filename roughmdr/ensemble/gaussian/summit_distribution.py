@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.summit_quantiles import mean_curvature, product_of_curvatures
+from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
+from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import RING, Moments
 

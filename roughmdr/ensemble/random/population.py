@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.draws import HEIGHT, POPULATION, SMALLEST_UNIFORM, Draws
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Draws
 from roughmdr.numerics.arguments import Floats
 
 

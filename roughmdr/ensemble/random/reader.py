@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from roughmdr.ensemble.distributions import Distribution
-from roughmdr.ensemble.families import Family, find_family, known_families
+from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.families import Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, quantity

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.content import Content, blocks, check_points
-from roughmdr.ensemble.instrument_maps import read_instrument
-from roughmdr.ensemble.netcdf_maps import read_netcdf
-from roughmdr.ensemble.plain_maps import read_npy, read_npz, read_text
+from roughmdr.ensemble.maps.instrument import read_instrument
+from roughmdr.ensemble.maps.netcdf_map import read_netcdf
+from roughmdr.ensemble.maps.plain import read_npy, read_npz, read_text
+from roughmdr.ensemble.maps.raw_map import Content, blocks, check_points
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Quantity

@@ -6,12 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
-from roughmdr.ensemble.draws import HEIGHT, PARAMETER, independent, spread
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.gaussian.summit_distribution import SummitLaw, product_of_score
 from roughmdr.ensemble.nodes import END as HEIGHT_END
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, UpperTail
 from roughmdr.ensemble.patch import PatchSource
-from roughmdr.ensemble.summit_law import SummitLaw, product_of_score
+from roughmdr.ensemble.streams import HEIGHT, PARAMETER, independent, spread
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Length, Quantity
 from roughmdr.spectrum import Moments, SelfAffine

@@ -1,0 +1,1 @@
+"""source = "nayak": the summits of an isotropic Gaussian surface."""

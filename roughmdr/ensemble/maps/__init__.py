@@ -1,0 +1,1 @@
+"""source = "surface": the summits of a measured height map."""

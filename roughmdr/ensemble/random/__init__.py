@@ -1,0 +1,1 @@
+"""source = "random": heights and shape parameters drawn from distributions."""
