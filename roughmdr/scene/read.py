@@ -13,7 +13,7 @@ import numpy as np
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
 from roughmdr.scene.keys import put
-from roughmdr.scene.lines import key_lines, line_of
+from roughmdr.scene.line_numbers import key_lines, line_of
 from roughmdr.scene.sections import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import table_of
