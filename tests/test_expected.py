@@ -14,7 +14,7 @@ import roughmdr as rm
 from roughmdr.aggregate import Route
 from roughmdr.asperity.contact import Contact
 from roughmdr.expected import converge, panels
-from roughmdr.expected.memory import remember
+from roughmdr.expected.intervals import remember
 from roughmdr.expected.table import Table
 from roughmdr.kernels.adhesion import Adhesion
 

@@ -9,7 +9,7 @@ from scenes import ensemble
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.law import Route, compute
+from roughmdr.aggregate.load_separation import Route, compute
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import choose

@@ -14,9 +14,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.bound import bound, bound_found, worst
-from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
-from roughmdr.aggregate.settle import (
+from roughmdr.aggregate.contacts import (
     FOUND,
     conclude,
     force_at,
@@ -30,6 +28,8 @@ from roughmdr.aggregate.settle import (
     stiffness_at,
     stiffness_found,
 )
+from roughmdr.aggregate.error_bound import bound, bound_found, worst
+from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion

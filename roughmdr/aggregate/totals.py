@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.aggregate.contacts import STATE
 from roughmdr.aggregate.scales import LOAD, RIGIDITY, SIZE, WORTH
-from roughmdr.aggregate.settle import STATE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.summation import accumulate, add_up
 

@@ -1,5 +1,5 @@
 """The expected law of an ensemble: integrals over the distribution that asperities are drawn from, instead of draws."""
 
-from roughmdr.expected.law import compute, prepare
+from roughmdr.expected.compute import compute, prepare
 
 __all__ = ["compute", "prepare"]

@@ -14,9 +14,9 @@ import numpy as np
 from roughmdr.aggregate.totals import STIFFNESS
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
+from roughmdr.expected.kinks import Parted
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
 from roughmdr.expected.panels import AGREE, Curves, halve_panels
-from roughmdr.expected.parted import Parted
 from roughmdr.numerics.arguments import Floats
 
 FIRST_ORDER = 8

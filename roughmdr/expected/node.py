@@ -12,7 +12,7 @@ from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.expected.curve import Curve, curves_of, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
-from roughmdr.expected.memory import Intervals, lost, remember
+from roughmdr.expected.intervals import Intervals, lost, remember
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Law
 from roughmdr.numerics.arguments import Floats

@@ -20,8 +20,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from roughmdr.aggregate.contacts import FORCE, RADIUS, STATE, STIFFNESS
 from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
-from roughmdr.aggregate.settle import FORCE, RADIUS, STATE, STIFFNESS
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.summation import least

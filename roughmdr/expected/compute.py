@@ -10,15 +10,15 @@ from collections.abc import Iterable
 import numpy as np
 
 from roughmdr.aggregate import LoadSeparation, Route
-from roughmdr.aggregate.law import ROW
+from roughmdr.aggregate.load_separation import ROW
 from roughmdr.aggregate.tabor import range_of
 from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import DOUBTFUL, FIRST_ORDER, converge
+from roughmdr.expected.kinks import Parted
 from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
-from roughmdr.expected.parted import Parted
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
