@@ -14,7 +14,7 @@ from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
 from roughmdr.schema.wording import in_cells
 from roughmdr.storage.labelled import Labelled
-from roughmdr.theory.summits import Variable
+from roughmdr.theory.equal_summits import Variable
 
 # What a law says of a variable, and whether that is of a unit of nominal area.
 _SAID_AS: dict[str, tuple[Variable, bool]] = {

@@ -18,7 +18,7 @@ from roughmdr.theory import (
     persson_contact_fraction,
     persson_pressure,
 )
-from roughmdr.theory.summits import Variable
+from roughmdr.theory.equal_summits import Variable
 
 _DEFORMED = "its separation is the mean gap to the deformed surface, the scene's is from the undeformed mean plane"
 

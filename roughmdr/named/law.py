@@ -7,7 +7,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell
 from roughmdr.scene import Scene
-from roughmdr.theory.summits import Variable
+from roughmdr.theory.equal_summits import Variable
 
 
 class NamedLaw(NamedTuple):

@@ -14,7 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.plan import Cell
 from roughmdr.scene import Scene
 from roughmdr.theory import dmt_maugis, fuller_tabor, greenwood_williamson
-from roughmdr.theory.summits import Variable
+from roughmdr.theory.equal_summits import Variable
 
 _DMT_BELOW = 0.1
 """The Tabor number below which DMT is right: K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326.

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.spectrum import Moments
+from roughmdr.theory.equal_summits import Variable, representable
 from roughmdr.theory.gaussian import mean_over_summits
-from roughmdr.theory.summits import Variable, representable
 
 
 def bush_gibson_thomas(

@@ -17,8 +17,8 @@ from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.numerics.quadrature import Rows, Table, panels
 from roughmdr.spectrum import RING, Moments
 from roughmdr.theory.ellipse import Ellipses
+from roughmdr.theory.equal_summits import Variable, check_variable, representable
 from roughmdr.theory.heights import NORMAL_EDGES, Heights
-from roughmdr.theory.summits import Variable, check_variable, representable
 
 Contacts = Literal["elliptic", "circular"]
 

@@ -11,7 +11,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.numerics.quadrature import gauss
 from roughmdr.spectrum import Spectrum, levels, wave_numbers
-from roughmdr.theory.summits import representable
+from roughmdr.theory.equal_summits import representable
 
 
 class RoughLine(NamedTuple):

@@ -8,8 +8,8 @@ from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.shapes import Paraboloid
+from roughmdr.theory.equal_summits import Summits, Variable
 from roughmdr.theory.heights import Distribution, Heights
-from roughmdr.theory.summits import Summits, Variable
 
 
 def dmt_maugis(

@@ -4,8 +4,8 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments
+from roughmdr.theory.equal_summits import Variable
 from roughmdr.theory.gaussian import mean_over_summits
-from roughmdr.theory.summits import Variable
 
 
 def greenwood_elliptic(

@@ -10,7 +10,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.numerics.quadrature import Table, panels, refined, running
 from roughmdr.spectrum import Spectrum, levels, wave_numbers
-from roughmdr.theory.summits import representable
+from roughmdr.theory.equal_summits import representable
 
 # Fourfold shorter intervals of log(q/q0) down to q0, where few waves are in play and the load flattens them all.
 _TOWARDS_LONGEST = 45
