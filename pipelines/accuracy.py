@@ -20,8 +20,8 @@ import xarray as xr
 from accuracy_picture import draw
 
 import roughmdr as rm
-from roughmdr.batch.enough import FIRST, next_count, relative_error
-from roughmdr.batch.tally import Tallies
+from roughmdr.batch.moments import Tallies
+from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Labelled

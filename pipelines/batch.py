@@ -17,9 +17,9 @@ from batch_measured import SCHEDULERS, child, medians, overheads, speed_ups
 from batch_pictures import CELL_GOAL, MEMORY_GOAL, SPEED_GOAL, draw
 from capacity import ASPERITIES, CELLS, WORKERS, Capacity, capacity, writing
 
-from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
-from roughmdr.plan import make_plan
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import write
 

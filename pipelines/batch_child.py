@@ -13,10 +13,10 @@ from typing import Any
 
 from peak import peak
 
-from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.identity import keys_of
+from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.plan import Plan, law_of, make_plan
+from roughmdr.batch.resume.keys import keys_of
 from roughmdr.batch.rounds import Rounds
-from roughmdr.plan import Plan, law_of, make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import Scene, read
 from roughmdr.storage.labelled import Labelled

@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from batch_child import tiny
 
-from roughmdr.batch.identity import versions
+from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.task_result import Shard
 from roughmdr.batch.tasks import Part, Stretch, Task, cut
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Plan, make_plan
 from roughmdr.runner.cluster import connected
 from roughmdr.runner.local import Pool, Processes, Threads
 

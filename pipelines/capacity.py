@@ -14,12 +14,12 @@ from statistics import median
 import numpy as np
 from batch_child import tiny
 
-from roughmdr.batch.parts import locked_parts
+from roughmdr.batch.moments import Tallies, Tally
+from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.batch.resume.store import locked_parts
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.shard import Row, Shard, table_of
-from roughmdr.batch.tally import Tallies, Tally
+from roughmdr.batch.task_result import Row, Shard, table_of
 from roughmdr.batch.tasks import cut
-from roughmdr.plan import Plan, make_plan
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; threads of a cluster."""

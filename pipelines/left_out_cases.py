@@ -6,6 +6,7 @@ from typing import NamedTuple
 from zlib import crc32
 
 from roughmdr.aggregate import LoadSeparation, Route, compute
+from roughmdr.batch.plan import make_plan
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.closed import hertz as elastic
 from roughmdr.kernels.closed import jkr_paraboloid
@@ -13,7 +14,6 @@ from roughmdr.kernels.interface import Law, choose
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.rebind import rebuilt
-from roughmdr.plan import make_plan
 from roughmdr.scene import Scene, read
 from roughmdr.variables import DEFAULT, LAW
 

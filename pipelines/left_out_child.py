@@ -23,10 +23,10 @@ import numpy as np
 from left_out_cases import BATCH, SIZES, Size, Way, forced, scene_of
 from peak import peak
 
-from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.variables import DEFAULT
 

@@ -20,11 +20,11 @@ from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
+from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import choose
 from roughmdr.loading.staircase import no_memory, staircase
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 from roughmdr.storage.labelled import Labelled

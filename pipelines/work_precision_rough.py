@@ -15,10 +15,10 @@ from work_precision_points import Curve, Method, Point, Reference, root_mean_squ
 from roughmdr.aggregate import LoadSeparation
 from roughmdr.aggregate.totals import AREA, FORCE
 from roughmdr.batch import tasks
+from roughmdr.batch.plan import Cell, law_of, make_plan
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Asked, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Cell, law_of, make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 

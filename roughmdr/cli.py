@@ -100,7 +100,7 @@ def run(
         from roughmdr.scene import read
 
         asked = read(scene, changes)  # before anything heavy is loaded
-        from roughmdr.plan import make_plan
+        from roughmdr.batch.plan import make_plan
         from roughmdr.runner import execute
 
         planned = make_plan(asked)
@@ -144,8 +144,8 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
     from roughmdr.scene import read
 
     asked = read(scene, changes)
-    from roughmdr.estimate import estimate
-    from roughmdr.plan import make_plan
+    from roughmdr.batch.estimate import estimate
+    from roughmdr.batch.plan import make_plan
 
     planned = make_plan(asked)
     say(describe_plan(planned, estimate(planned, workers), workers))

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.plan import Cell, Plan, law_of, make_plan
 from roughmdr.curves import EXPECTED, Line, separations
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.named import LAWS, NamedLaw
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Cell, Plan, law_of, make_plan
 from roughmdr.scene import read
 from roughmdr.schema.wording import in_cells
 from roughmdr.storage.labelled import Labelled

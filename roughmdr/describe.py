@@ -13,8 +13,8 @@ from roughmdr.variables import FAILED
 from roughmdr.views import cell_label, cells_of, done_of, estimator_of, held_variables, realizations_of, swept_sizes
 
 if TYPE_CHECKING:
-    from roughmdr.estimate import Estimate
-    from roughmdr.plan import Plan
+    from roughmdr.batch.estimate import Estimate
+    from roughmdr.batch.plan import Plan
 
 _MOST_CELLS = 30
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import Extremes
-from roughmdr.batch.gathered import Found
-from roughmdr.batch.identity import versions
+from roughmdr.batch.collect import Found
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import Choice
-from roughmdr.plan import Plan
 from roughmdr.scene.sections import Accuracy
 from roughmdr.statistics import summarise
 from roughmdr.storage.labelled import Array, Labelled

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.tally import Tallies, Tally
+from roughmdr.batch.moments import Tallies, Tally
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import LAW

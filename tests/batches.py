@@ -19,9 +19,9 @@ import xarray as xr
 from scenes import ASPERITIES, scene
 
 from roughmdr.batch import tasks
-from roughmdr.batch.parts import parts_of
-from roughmdr.batch.shard import Shard
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.store import parts_of
+from roughmdr.batch.task_result import Shard
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
 from roughmdr.storage.store import destination
@@ -29,7 +29,7 @@ from roughmdr.storage.store import destination
 _CLI = "from roughmdr.cli import main; main()"
 _IN_CHUNKS = """
 import sys
-import roughmdr.plan as plan
+import roughmdr.batch.plan as plan
 chunk, make_plan = int(sys.argv.pop(1)), plan.make_plan
 plan.make_plan = lambda scene: make_plan(scene, chunk)
 """

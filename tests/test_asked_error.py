@@ -16,15 +16,15 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.analysis import pull_off_force
 from roughmdr.asperity.contact import Contact
-from roughmdr.batch import shard, tasks
-from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch import task_result, tasks
+from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.enough import FIRST, bound, next_count
+from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.stopping_rule import FIRST, bound, next_count
 from roughmdr.cli import main
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute, local
 from roughmdr.scene import read
 from roughmdr.scene.sections import Accuracy
@@ -326,7 +326,7 @@ def test_the_outcome_depends_on_no_interruption(
     compute, done = tasks.compute, 0
     interrupted(table, out, after, monkeypatch, chunk=8)
 
-    def counting(task: tasks.Task) -> shard.Shard:
+    def counting(task: tasks.Task) -> task_result.Shard:
         nonlocal done
         done += sum(part.last - part.first for part in task.parts)
         return compute(task)

@@ -6,9 +6,9 @@ import xarray as xr
 from scenes import scene
 
 import roughmdr as rm
+from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import cut
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 from roughmdr.variables import LAW

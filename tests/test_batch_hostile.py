@@ -19,9 +19,9 @@ from scenes import ASPERITIES, scene
 from test_cli import roughmdr
 
 import roughmdr as rm
-from roughmdr.batch.parts import parts_of
-from roughmdr.batch.tally import Tally
-from roughmdr.plan import make_plan
+from roughmdr.batch.moments import Tally
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.store import parts_of
 from roughmdr.runner import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import read as read_result
@@ -240,7 +240,7 @@ def test_what_is_used_again_is_said(tmp_path: Path) -> None:
 
 
 def test_the_error_of_no_realisations_with_force_is_not_known() -> None:
-    from roughmdr.batch.enough import relative_error
+    from roughmdr.batch.stopping_rule import relative_error
 
     nothing = np.zeros(3)
     assert relative_error(Tally(5, nothing, nothing, nothing, nothing)) == np.inf

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 from scenes import scene
 
-from roughmdr.batch.identity import keys_of
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.keys import keys_of
 from roughmdr.scene import read
 
 SCRIPT = Path(__file__).parent.parent / "pipelines" / "batch.py"

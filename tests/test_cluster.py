@@ -30,7 +30,7 @@ from batches import (
     until,
 )
 
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 

@@ -16,8 +16,8 @@ from scenes import ensemble, scene
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
+from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
-from roughmdr.plan import make_plan
 from roughmdr.scene import read
 
 DATA = Path(__file__).parent / "data"

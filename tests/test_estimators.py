@@ -11,8 +11,8 @@ from plain_expected import Rough
 from scenes import ASPERITIES, SCENE, scene
 
 import roughmdr as rm
+from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 

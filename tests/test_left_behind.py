@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from scenes import scene
 
 import roughmdr as rm
+from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
-from roughmdr.plan import make_plan
 from roughmdr.runner.batch import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import destination

@@ -18,7 +18,7 @@ from scenes import ASPERITIES, scene
 from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
-from roughmdr.batch.parts import parts_of
+from roughmdr.batch.resume.store import parts_of
 from roughmdr.cli import main
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.netcdf_writing import most_bytes, write_arrays
@@ -364,7 +364,7 @@ def test_a_disk_that_is_full_at_the_end_keeps_what_is_finished(tmp_path: Path) -
         write_scene(folder, CURVES)
         full = """
 import os
-import roughmdr.batch.keeper as keeper
+import roughmdr.batch.resume.writer as keeper
 def write(*arguments, write=keeper.write):
     space = os.statvfs(".")
     with open("filling", "wb") as file:

@@ -16,9 +16,10 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr import result
-from roughmdr.batch import earlier, identity, keeper, tasks
-from roughmdr.batch.parts import parts_of
-from roughmdr.plan import make_plan
+from roughmdr.batch import tasks
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume import find, keys, writer
+from roughmdr.batch.resume.store import parts_of
 from roughmdr.runner import batch, execute
 from roughmdr.scene import read
 from roughmdr.variables import DEFAULT, LAW
@@ -410,7 +411,7 @@ def test_cells_that_are_the_same_are_computed_once(keep: str, calls: Calls, out:
 @pytest.fixture
 def other_versions(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     def change() -> None:
-        for module in (identity, earlier, keeper, batch, result):
+        for module in (keys, find, writer, batch, result):
             monkeypatch.setattr(module, "versions", lambda: "roughmdr 99")
 
     return change

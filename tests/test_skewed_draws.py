@@ -14,9 +14,9 @@ from scenes import ASPERITIES, scene
 from scipy.special import ndtr, ndtri
 
 import roughmdr as rm
-from roughmdr.batch.rare import Rare
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.unmet import Rare
 from roughmdr.ensemble import RandomAsperities
-from roughmdr.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 

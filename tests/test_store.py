@@ -14,7 +14,7 @@ import xarray as xr
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read as read_scene
 from roughmdr.storage.store import read, replacing

@@ -34,8 +34,8 @@ from batches import (
 )
 
 import roughmdr as rm
-from roughmdr.batch.parts import Parts
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.store import Parts
 from roughmdr.runner import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import read as read_result
@@ -260,7 +260,7 @@ def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -
 def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Path, curves: xr.Dataset) -> None:
     slowly = """
 import os, signal
-import roughmdr.batch.keeper as keeper
+import roughmdr.batch.resume.writer as keeper
 def write(*arguments, write=keeper.write):
     os.kill(os.getpid(), signal.SIGINT)
     write(*arguments)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.plan import make_plan
+from roughmdr.batch.plan import make_plan
 from roughmdr.runner import execute
 from roughmdr.scene import read
 from roughmdr.scene.keys import put

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.batch.tally import Tallies, Tally, spans, tallied
+from roughmdr.batch.moments import Tallies, Tally, spans, tallied
 from roughmdr.statistics import tally_of
 
 ORDINARY = st.floats(-1e3, 1e3, allow_subnormal=False)

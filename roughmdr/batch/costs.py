@@ -4,7 +4,7 @@ Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipeli
 three or so. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
-from roughmdr.plan import Cell
+from roughmdr.batch.plan import Cell
 
 _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run, to draw and sort an asperity
 _EVEN = 8e-4  # to begin evenly spread draws

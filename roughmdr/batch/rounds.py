@@ -3,13 +3,13 @@
 import math
 from typing import NamedTuple
 
+from roughmdr.batch.collect import Gathered
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.enough import FIRST, enough, next_count, relative_error, still_missing
-from roughmdr.batch.gathered import Gathered
-from roughmdr.batch.identity import keys_of
-from roughmdr.batch.rare import Rare
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.keys import keys_of
+from roughmdr.batch.stopping_rule import FIRST, enough, next_count, relative_error, still_missing
 from roughmdr.batch.tasks import Stretch
-from roughmdr.plan import Plan
+from roughmdr.batch.unmet import Rare
 from roughmdr.scene.sections import Accuracy
 from roughmdr.variables import DONE
 

@@ -1,6 +1,6 @@
 """The size of a result, on disk and in memory, before there is one."""
 
-from roughmdr.plan import Plan
+from roughmdr.batch.plan import Plan
 
 _NUMBER = 8  # bytes
 # A step of the path itself: the name of its branch in memory; on disk that and the separation.

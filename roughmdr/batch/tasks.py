@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.identity import check_versions
-from roughmdr.batch.shard import Row, Shard, table_of
-from roughmdr.batch.tally import Tallies, Tally
+from roughmdr.batch.moments import Tallies, Tally
+from roughmdr.batch.plan import Cell, Plan, law_of
+from roughmdr.batch.resume.keys import check_versions
+from roughmdr.batch.task_result import Row, Shard, table_of
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Cell, Plan, law_of
 from roughmdr.variables import ADHESION_CODES, FAILED
 
 _AT_ONCE = 0.1  # a batch that takes less [s] is one task: to load dask takes as long

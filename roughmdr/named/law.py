@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import NamedTuple, get_args
 
+from roughmdr.batch.plan import Cell
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Cell
 from roughmdr.scene import Scene
 from roughmdr.theory.equal_summits import Variable
 

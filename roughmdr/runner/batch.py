@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.batch.compiled import prepare_all
-from roughmdr.batch.earlier import check_no_less, earlier, is_finished, use_again
-from roughmdr.batch.gathered import Gathered
-from roughmdr.batch.held import Held
-from roughmdr.batch.identity import versions
-from roughmdr.batch.keeper import Keeper, keeping
+from roughmdr.batch.collect import Gathered
+from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.batch.resume.find import check_no_less, earlier, is_finished, use_again
+from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.reusable import Held
+from roughmdr.batch.resume.writer import Keeper, keeping
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.shard import Shard
 from roughmdr.batch.sizes import held_bytes
+from roughmdr.batch.task_result import Shard
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
-from roughmdr.plan import Plan, make_plan
 from roughmdr.progress import Progress, progress
 from roughmdr.result import assemble
 from roughmdr.runner.cluster import Cluster, Tls, connected

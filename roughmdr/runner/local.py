@@ -14,7 +14,7 @@ from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Event
 from typing import Any, Protocol
 
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.task_result import Shard
 from roughmdr.batch.tasks import Task, compute, failed
 from roughmdr.errors import RoughmdrError
 

@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from contextlib import suppress
 
 from roughmdr.aggregate import Route, prepare
+from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.tasks import Stretch
 from roughmdr.errors import RoughmdrError
-from roughmdr.plan import Cell, Plan
 
 
 def prepare_all(plan: Plan, stretches: Iterable[Stretch]) -> None:

@@ -15,12 +15,12 @@ import numpy as np
 import tomli_w
 
 from roughmdr.aggregate import Route, compute
-from roughmdr.batch.compiled import prepare_all
+from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.plan import Cell, Plan, law_of
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import TOGETHER, cut
 from roughmdr.errors import RoughmdrError
-from roughmdr.plan import Cell, Plan, law_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.memory import room
 

@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.task_result import Shard
 from roughmdr.errors import StoreError
 from roughmdr.storage.store import cannot_be_written, sync_folder
 

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.shard import Row, Shard
-from roughmdr.batch.tally import Tallies, Tally
+from roughmdr.batch.moments import Tallies, Tally
+from roughmdr.batch.task_result import Row, Shard
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import FAILED, NOT_RUN
 

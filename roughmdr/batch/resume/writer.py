@@ -7,9 +7,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from roughmdr.batch.identity import versions
-from roughmdr.batch.parts import Parts, locked_parts, parts_of
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.store import Parts, locked_parts, parts_of
+from roughmdr.batch.task_result import Shard
 from roughmdr.errors import StoreError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import write

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.tally import Tally
+from roughmdr.batch.moments import Tally
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import DONE
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.task_result import Shard
 from roughmdr.errors import StoreError
 
 

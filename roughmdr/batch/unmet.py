@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from roughmdr.aggregate import compute
+from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.plan import Cell
 
 _SCORES = np.arange(-8.0, 9.0)  # draws reach 8.2
 _FINE = np.linspace(-8.0, 8.0, 1025)

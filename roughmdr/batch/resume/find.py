@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.held import Held
-from roughmdr.batch.identity import changes, versions
-from roughmdr.batch.parts import Parts
-from roughmdr.batch.shard import Shard
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.keys import changes, versions
+from roughmdr.batch.resume.reusable import Held
+from roughmdr.batch.resume.store import Parts
+from roughmdr.batch.task_result import Shard
 from roughmdr.errors import StoreError
-from roughmdr.plan import Plan
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import read

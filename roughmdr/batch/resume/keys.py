@@ -6,10 +6,10 @@ from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
 
+from roughmdr.batch.plan import Cell, Plan
 from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.fingerprint import fingerprint
-from roughmdr.plan import Cell, Plan
 from roughmdr.schema.toml_text import table_of
 from roughmdr.schema.wording import shown
 

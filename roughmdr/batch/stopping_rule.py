@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from roughmdr.batch.tally import Tally
+from roughmdr.batch.moments import Tally
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 

@@ -1,0 +1,1 @@
+"""Checkpoints of a batch: keys of cells, the folder of shards, and their reuse."""
