@@ -17,7 +17,7 @@ from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import Plan, law_of, make_plan
 from roughmdr.batch.resume.keys import keys_of
 from roughmdr.batch.rounds import Rounds
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 from roughmdr.storage.labelled import Labelled
 

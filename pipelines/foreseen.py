@@ -20,8 +20,8 @@ from roughmdr.storage.store import replacing, write
 
 _FORESEE = """
 import sys
-from roughmdr.estimate import estimate
-from roughmdr.plan import make_plan
+from roughmdr.batch.estimate import estimate
+from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
 foreseen = estimate(make_plan(read(sys.argv[1], sys.argv[2:])), 2)
 print(foreseen.seconds, foreseen.memory)

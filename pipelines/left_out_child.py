@@ -27,7 +27,7 @@ from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.numerics.arguments import Floats
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.variables import DEFAULT
 
 CURVES = "curves of the realisations"

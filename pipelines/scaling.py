@@ -25,7 +25,7 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import choose
 from roughmdr.loading.staircase import no_memory, staircase
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import replacing, write

@@ -19,7 +19,7 @@ from roughmdr.batch.plan import Cell, law_of, make_plan
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Asked, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
 UM, MODULUS, WORK = 1e-6, 4e6, 0.05

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from roughmdr.ensemble import generate
     from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
-    from roughmdr.runner import run
+    from roughmdr.runner.run import run
     from roughmdr.scene import Scene
     from roughmdr.schema.units import effective_modulus
     from roughmdr.shapes import (
@@ -60,7 +60,7 @@ _HOME = {
     "load_separation": "aggregate",
     "pressure": "fields.evaluate",
     "pull_off": "asperity.indent",
-    "run": "runner",
+    "run": "runner.run",
     "surface_displacement": "fields.evaluate",
     "tabor": "asperity.indent",
 }

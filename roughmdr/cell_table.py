@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from roughmdr.result.layout import cell_label, cells_of, method_of
 from roughmdr.schema.wording import printable, seconds_in_words
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, FAILED
-from roughmdr.views import cell_label, cells_of, method_of
 
 _HEAD = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 

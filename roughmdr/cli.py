@@ -18,7 +18,7 @@ from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.terminal import NOT_ALL, Group, say
 
 if TYPE_CHECKING:
-    from roughmdr.runner import Tls
+    from roughmdr.runner.cluster import Tls
     from roughmdr.storage.labelled import Labelled
 
 
@@ -101,7 +101,7 @@ def run(
 
         asked = read(scene, changes)  # before anything heavy is loaded
         from roughmdr.batch.plan import make_plan
-        from roughmdr.runner import execute
+        from roughmdr.runner.run import execute
 
         planned = make_plan(asked)
     result = execute(
@@ -129,7 +129,7 @@ def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":
         return None
     if ca is None or cert is None or key is None:
         raise RoughmdrError("--tls-ca, --tls-cert and --tls-key go together")
-    from roughmdr.runner import Tls
+    from roughmdr.runner.cluster import Tls
 
     return Tls(str(ca), str(cert), str(key))
 
@@ -163,9 +163,9 @@ def plot(
 ) -> None:
     """Draw the load-separation law in RESULT. A picture of the same kind is replaced."""
     from roughmdr.plots import format_of, plot
+    from roughmdr.result.layout import asked_variables
     from roughmdr.storage.kinds import check_kind
     from roughmdr.storage.store import check_writable, read
-    from roughmdr.views import asked_variables
 
     check_writable(output, [result])
     if not fresh:

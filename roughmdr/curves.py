@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.statistics import mean_and_error
+from roughmdr.result.layout import done_of, swept_sizes
+from roughmdr.result.statistics import mean_and_error
 from roughmdr.storage.labelled import Labelled
-from roughmdr.views import done_of, swept_sizes
 
 
 class Curve(NamedTuple):

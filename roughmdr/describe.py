@@ -6,11 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.analysis import PullOff, pull_off_force
+from roughmdr.result.layout import (
+    cell_label,
+    cells_of,
+    done_of,
+    estimator_of,
+    held_variables,
+    realizations_of,
+    swept_sizes,
+)
+from roughmdr.result.pull_off import PullOff, pull_off_force
 from roughmdr.schema.wording import bytes_in_words, printable, seconds_in_words
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import FAILED
-from roughmdr.views import cell_label, cells_of, done_of, estimator_of, held_variables, realizations_of, swept_sizes
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate

@@ -9,11 +9,11 @@ import numpy as np
 from roughmdr.curves import EXPECTED, Curve, Line, curves
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words
 from roughmdr.schema.wording import harmless
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import replacing
 from roughmdr.variables import LAW
-from roughmdr.views import cell_label, cells_of, done_of, realizations_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

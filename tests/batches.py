@@ -22,7 +22,8 @@ from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import parts_of
 from roughmdr.batch.task_result import Shard
-from roughmdr.runner import execute, local
+from roughmdr.runner import local
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import destination
 

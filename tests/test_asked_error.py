@@ -14,7 +14,6 @@ from click.testing import CliRunner
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.analysis import pull_off_force
 from roughmdr.asperity.contact import Contact
 from roughmdr.batch import task_result, tasks
 from roughmdr.batch.compile import prepare_all
@@ -25,7 +24,9 @@ from roughmdr.batch.stopping_rule import FIRST, bound, next_count
 from roughmdr.cli import main
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
-from roughmdr.runner import execute, local
+from roughmdr.result.pull_off import pull_off_force
+from roughmdr.runner import local
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.scene.sections import Accuracy
 

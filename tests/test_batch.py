@@ -9,7 +9,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import cut
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.variables import LAW
 

@@ -22,7 +22,7 @@ import roughmdr as rm
 from roughmdr.batch.moments import Tally
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import parts_of
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import read as read_result
 
@@ -215,7 +215,7 @@ def test_a_result_in_the_classic_format_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_failed_cell_has_no_pull_off_force() -> None:
-    from roughmdr.analysis import pull_off_force
+    from roughmdr.result.pull_off import pull_off_force
 
     with pytest.warns(UserWarning, match="1 of 2 failed"):
         found = rm.run(few(3, output={"keep": "statistics"}, sweep={"asperities.radius": ["50 um", "1e300 m"]}))

@@ -31,7 +31,7 @@ from batches import (
 )
 
 from roughmdr.batch.plan import make_plan
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
 

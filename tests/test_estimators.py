@@ -13,7 +13,7 @@ from scenes import ASPERITIES, SCENE, scene
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
 UM, MODULUS = 1e-6, 4e6

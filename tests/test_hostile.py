@@ -15,12 +15,12 @@ from scenes import ASPERITIES, ensemble, scene
 from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
-from roughmdr.analysis import pull_off_force
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import cut
 from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
+from roughmdr.result.pull_off import pull_off_force
 from roughmdr.scene import read
 from roughmdr.storage.store import read as read_result
 

@@ -82,6 +82,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
                 "ensemble/",
                 "aggregate/",
                 "runner/",
+                "result/",
                 "report/",
             ],
         ),

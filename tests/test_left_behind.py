@@ -13,7 +13,7 @@ from scenes import scene
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
-from roughmdr.runner.batch import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import destination
 

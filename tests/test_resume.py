@@ -15,12 +15,13 @@ from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr import result
 from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume import find, keys, writer
 from roughmdr.batch.resume.store import parts_of
-from roughmdr.runner import batch, execute
+from roughmdr.result import assemble as result
+from roughmdr.runner import run as batch
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.variables import DEFAULT, LAW
 

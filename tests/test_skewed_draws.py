@@ -17,7 +17,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.unmet import Rare
 from roughmdr.ensemble import RandomAsperities
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
 MODULUS, DEPTH = 4e6, 1e-6

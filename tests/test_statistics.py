@@ -9,7 +9,7 @@ import xarray as xr
 from scenes import scene
 
 import roughmdr as rm
-from roughmdr.analysis import pull_off_force
+from roughmdr.result.pull_off import pull_off_force
 from roughmdr.variables import LAW
 
 EVERY = list(LAW)

@@ -15,7 +15,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read as read_scene
 from roughmdr.storage.store import read, replacing
 

@@ -36,7 +36,7 @@ from batches import (
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import Parts
-from roughmdr.runner import execute
+from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.store import read as read_result
 

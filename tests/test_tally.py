@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roughmdr.batch.moments import Tallies, Tally, spans, tallied
-from roughmdr.statistics import tally_of
+from roughmdr.result.statistics import tally_of
 
 ORDINARY = st.floats(-1e3, 1e3, allow_subnormal=False)
 EXTREME = st.one_of(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.statistics import mean_and_error
+from roughmdr.result.statistics import mean_and_error
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE
 

@@ -21,11 +21,11 @@ from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.task_result import Shard
 from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
-from roughmdr.progress import Progress, progress
-from roughmdr.result import assemble
+from roughmdr.result.assemble import assemble
 from roughmdr.runner.cluster import Cluster, Tls, connected
 from roughmdr.runner.local import Here, Pool, Processes, Threads
-from roughmdr.runner.stopping import Interrupted, stoppable
+from roughmdr.runner.progress import Progress, progress
+from roughmdr.runner.signals import Interrupted, stoppable
 from roughmdr.scene import Scene, read
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_room, left_in_words

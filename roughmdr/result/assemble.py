@@ -12,8 +12,8 @@ from roughmdr.batch.collect import Found
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import Choice
+from roughmdr.result.statistics import summarise
 from roughmdr.scene.sections import Accuracy
-from roughmdr.statistics import summarise
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.store import provenance
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED, LAW, RUN, STATUSES
