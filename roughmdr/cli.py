@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.terminal import NOT_ALL, Group, say
+from roughmdr.report.terminal import NOT_ALL, Group, say
 
 if TYPE_CHECKING:
     from roughmdr.runner.cluster import Tls
@@ -96,7 +96,7 @@ def run(
     """
     started = time.perf_counter()
     with _loading():
-        from roughmdr.describe import describe_failed, describe_result
+        from roughmdr.report.words import describe_failed, describe_result
         from roughmdr.scene import read
 
         asked = read(scene, changes)  # before anything heavy is loaded
@@ -140,7 +140,7 @@ def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":
 @_workers
 def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
     """Say what a run of SCENE will do: tasks, time, memory, and what is left out and why. Nothing is written."""
-    from roughmdr.describe import describe_plan
+    from roughmdr.report.words import describe_plan
     from roughmdr.scene import read
 
     asked = read(scene, changes)
@@ -162,7 +162,7 @@ def plot(
     result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool, fresh: bool
 ) -> None:
     """Draw the load-separation law in RESULT. A picture of the same kind is replaced."""
-    from roughmdr.plots import format_of, plot
+    from roughmdr.report.plots import format_of, plot
     from roughmdr.result.layout import asked_variables
     from roughmdr.storage.kinds import check_kind
     from roughmdr.storage.store import check_writable, read
@@ -174,7 +174,7 @@ def plot(
     _warn_of(result, data)
     names, lines = asked_variables(data, variables), []
     if with_expected or with_theory:
-        from roughmdr.comparison import expected_law, named_laws, plan_of
+        from roughmdr.report.comparison import expected_law, named_laws, plan_of
 
         planned = plan_of(result, data)
         for wanted, title, compared in (
@@ -200,11 +200,11 @@ def info(result: Path, cells: bool) -> None:
     data = read(result)
     _warn_of(result, data)
     if cells:
-        from roughmdr.cell_table import describe_cells
+        from roughmdr.report.cells import describe_cells
 
         say(describe_cells(data))
         return
-    from roughmdr.describe import describe_origin, describe_result
+    from roughmdr.report.words import describe_origin, describe_result
 
     say(describe_result(data))
     say(describe_origin(data, result.stat().st_size))
@@ -243,8 +243,8 @@ def new(scene: Path) -> None:
 @_changes
 def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: tuple[str, ...]) -> None:
     """Write the asperities that a run of SCENE presses on. Other asperities are replaced."""
-    from roughmdr.describe import describe_ensemble
     from roughmdr.ensemble import make
+    from roughmdr.report.words import describe_ensemble
     from roughmdr.scene import read
     from roughmdr.storage.kinds import check_kind
     from roughmdr.storage.store import check_writable, provenance, write

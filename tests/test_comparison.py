@@ -14,7 +14,7 @@ from scipy import stats
 import roughmdr as rm
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.cli import main
-from roughmdr.comparison import Comparison, expected_law, named_laws
+from roughmdr.report.comparison import Comparison, expected_law, named_laws
 from roughmdr.scene import read
 from roughmdr.spectrum import SelfAffine
 

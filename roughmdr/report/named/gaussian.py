@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import NayakAsperities
 from roughmdr.errors import RoughmdrError
-from roughmdr.named.law import NamedLaw, check_no_adhesion
 from roughmdr.numerics.arguments import Floats
+from roughmdr.report.named.law import NamedLaw, check_no_adhesion
 from roughmdr.theory import (
     bush_gibson_thomas,
     bush_gibson_thomas_asymptote,

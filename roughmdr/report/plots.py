@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.curves import EXPECTED, Curve, Line, curves
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.report.curves import EXPECTED, Curve, Line, curves
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words
 from roughmdr.schema.wording import harmless
 from roughmdr.storage.labelled import Labelled

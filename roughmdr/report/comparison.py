@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan, law_of, make_plan
-from roughmdr.curves import EXPECTED, Line, separations
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.named import LAWS, NamedLaw
 from roughmdr.numerics.arguments import Floats
+from roughmdr.report.curves import EXPECTED, Line, separations
+from roughmdr.report.named import LAWS, NamedLaw
 from roughmdr.scene import read
 from roughmdr.schema.wording import in_cells
 from roughmdr.storage.labelled import Labelled

@@ -1,7 +1,7 @@
 """Which of the named laws apply to a scene, and what they say along the way of its flat."""
 
-from roughmdr.named import gaussian, summits
-from roughmdr.named.law import NamedLaw
+from roughmdr.report.named import gaussian, summits
+from roughmdr.report.named.law import NamedLaw
 
 LAWS: dict[str, NamedLaw] = {**summits.LAWS, **gaussian.LAWS}
 

@@ -10,8 +10,8 @@ from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble, RandomAsperities
 from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.errors import RoughmdrError
-from roughmdr.named.law import NamedLaw, check_no_adhesion
 from roughmdr.numerics.arguments import Floats
+from roughmdr.report.named.law import NamedLaw, check_no_adhesion
 from roughmdr.scene import Scene
 from roughmdr.theory import dmt_maugis, fuller_tabor, greenwood_williamson
 from roughmdr.theory.equal_summits import Variable
