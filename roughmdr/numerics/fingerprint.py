@@ -1,14 +1,21 @@
-"""A fingerprint of the program itself: what was compiled or computed by other sources is not used again."""
+"""Hashes of the sources that decide what numba compiles, and of those that decide the numbers of a result."""
 
 import hashlib
 from functools import cache
 from pathlib import Path
 
+_PACKAGE = Path(__file__).parent.parent
+COMPILED = ("aggregate", "ensemble/placement.py", "expected", "fields", "kernels", "numerics", "shapes")
+"""All that jitted functions are made of."""
+NUMBERS = (*COMPILED, "asperity", "batch", "ensemble", "loading", "scene", "schema", "spectrum.py")
+"""All that decides the numbers of a realisation, given its scene."""
+
 
 @cache
-def fingerprint() -> str:
-    """A hash of all the sources of the package."""
+def fingerprint(parts: tuple[str, ...]) -> str:
+    """Return a hash of the sources in ``parts`` of the package, files or folders."""
+    sources = {path for part in parts for path in (_PACKAGE / part, *(_PACKAGE / part).rglob("*.py"))}
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.parent.rglob("*.py")):
-        digest.update(source.read_bytes())
+    for source in sorted(path for path in sources if path.is_file()):
+        digest.update(str(source.relative_to(_PACKAGE)).encode() + b"\0" + source.read_bytes())
     return digest.hexdigest()[:16]

@@ -4,6 +4,9 @@ Kernels are compiled with ``njit`` from here. A loop that is to be handed its ke
 """
 
 import os
+import re
+import shutil
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, partial
@@ -13,30 +16,46 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from roughmdr.numerics.fingerprint import fingerprint
+from roughmdr.numerics.fingerprint import COMPILED, fingerprint
 from roughmdr.numerics.rebind import rebuilt
 
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
+_FOLDER = re.compile(r"[0-9a-f]{16}-[0-9.]+\w*")  # the name of a cache folder
+_UNUSED = 30.0 * 86400.0
+"""Seconds after which the folder of other sources is removed."""
+
+
 @cache
 def _cache_folder() -> str | None:
-    """The folder of this version of the sources; None where no folder can be written.
+    """Return the folder for code compiled from these sources; None where no folder can be written.
 
-    numba looks only at the file of the outer function, so a kernel that was inlined from another file would live on
-    in the cache after a change. A name made from all the sources cannot be stale.
+    numba compares only the file of the outer function, so that a kernel inlined from another file would stay in the
+    cache after a change. A folder named after all the sources cannot be stale.
     """
     import platformdirs
 
     for base in (platformdirs.user_cache_dir("roughmdr"), _config.CACHE_DIR):  # the second is NUMBA_CACHE_DIR
-        folder = Path(base) / f"{fingerprint()}-{numba.__version__}"
+        folder = Path(base) / f"{fingerprint(COMPILED)}-{numba.__version__}"
         with suppress(OSError):
             if base:
-                folder.mkdir(parents=True, exist_ok=True)
+                if not folder.exists():
+                    folder.mkdir(parents=True, exist_ok=True)
+                    _remove_unused(folder.parent)
                 if os.access(folder, os.W_OK):
+                    os.utime(folder)
                     return str(folder)
     return None
+
+
+def _remove_unused(base: Path) -> None:
+    """Remove the folders of sources that no program has used for a month."""
+    for folder in base.iterdir():
+        with suppress(OSError):
+            if _FOLDER.fullmatch(folder.name) and folder.stat().st_mtime < time.time() - _UNUSED:
+                shutil.rmtree(folder)
 
 
 def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _Function:

@@ -9,7 +9,7 @@ from typing import Any
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
-from roughmdr.numerics.fingerprint import fingerprint
+from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
 from roughmdr.schema.toml_text import table_of
 from roughmdr.schema.wording import shown
 
@@ -24,7 +24,7 @@ _MATTER = ("batch.estimator", "accuracy.method")
 def versions() -> str:
     """The versions of all that numbers come from."""
     packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
-    return f"roughmdr {version('roughmdr')} ({fingerprint()}), {packages}"
+    return f"roughmdr {version('roughmdr')} ({fingerprint(NUMBERS)}), {packages}"
 
 
 def check_versions(asked: str) -> None:

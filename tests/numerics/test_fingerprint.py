@@ -1,0 +1,82 @@
+"""Sources that decide compiled code and numbers, by copies of the package that differ in one line."""
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import tomli_w
+from scenes import scene
+
+from roughmdr.numerics.fingerprint import COMPILED, NUMBERS, fingerprint
+
+PACKAGE = Path(__file__).parent.parent.parent / "roughmdr"
+_RUN = """
+import sys
+
+from roughmdr.batch.resume.reusable import Held
+from roughmdr.cli import main
+used = []
+whole = Held.shards
+Held.shards = lambda self, picks: [used.append(int(shard.size.sum())) or shard for shard in whole(self, picks)]
+try:
+    main({arguments!r})
+except SystemExit as end:
+    assert not end.code, end.code
+print("used again:", sum(used))
+"""
+
+
+def run(package: Path, folder: Path, realizations: int) -> tuple[int, int]:
+    """A run by a copy of the package: how many runs it used again, and how many compiled files it added."""
+    before = set(folder.rglob("*.nbc"))
+    arguments = ["run", "small.toml", "-o", "out.nc", "--set", f"batch.realizations={realizations}", "--quiet"]
+    environment = {**os.environ, "PYTHONPATH": str(package.parent), "XDG_CACHE_HOME": str(folder / "cache")}
+    code = f"import sys; sys.path.insert(0, {str(package.parent)!r})" + _RUN.format(arguments=arguments)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return int(done.stdout.rpartition("used again: ")[2]), len(set(folder.rglob("*.nbc")) - before)
+
+
+def replace(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+
+
+def test_only_what_decides_numbers_costs_what_was_compiled_and_computed(tmp_path: Path) -> None:
+    package = tmp_path / "copy" / "roughmdr"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "small.toml").write_text(tomli_w.dumps(scene(batch=None)))
+    used, compiled = run(package, tmp_path, 2)
+    assert used == 0
+    assert compiled > 0
+    replace(package / "report" / "plots.py", '"""', '"""Draw what follows. ')
+    assert run(package, tmp_path, 4) == (2, 0)
+    replace(package / "kernels" / "closed" / "jkr_paraboloid.py", "_SMALLEST = 1e-270", "_SMALLEST = 1e-271")
+    (tmp_path / "out.nc").unlink()
+    used, compiled = run(package, tmp_path, 4)
+    assert used == 0
+    assert compiled > 0
+
+
+def imports(path: Path) -> set[str]:
+    tree = ast.parse(path.read_text())
+    return {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module}
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_what_is_compiled_is_among_the_sources_that_decide_it(path: Path) -> None:
+    if "roughmdr.numerics.jit" in imports(path):
+        assert str(path.relative_to(PACKAGE)).startswith(COMPILED)
+
+
+def test_each_part_is_there() -> None:
+    assert all((PACKAGE / part).exists() for part in NUMBERS)
+    assert set(COMPILED) < set(NUMBERS)
+    assert fingerprint(COMPILED) != fingerprint(NUMBERS)
