@@ -31,7 +31,7 @@ class Case:
 
     shape: str
     parameters: Parameters
-    modulus: float
+    effective_modulus: float
     work: float
     tabors: tuple[float, ...]
     most: float = 20.0
@@ -54,12 +54,12 @@ class Case:
         profile = self.profile
         least = max(float(profile.flat), 1e-12)
         a = np.geomspace(least, 1e-1 if profile.end is None else 0.5 * float(profile.end), 4000)
-        g = Cohesion(profile, self.modulus, self.work, 1.0, 0).integrals(a, a, 1.5 * a).g
-        return float(a[np.argmin(g - np.sqrt(2.0 * np.pi * a * self.work / self.modulus))])
+        g = Cohesion(profile, self.effective_modulus, self.work, 1.0, 0).integrals(a, a, 1.5 * a).g
+        return float(a[np.argmin(g - np.sqrt(2.0 * np.pi * a * self.work / self.effective_modulus))])
 
     def strengths(self) -> list[float]:
         """The strengths [Pa] of the Tabor numbers."""
-        stretch = float(np.sqrt(2.0 * np.pi * self.size() * self.work / self.modulus))
+        stretch = float(np.sqrt(2.0 * np.pi * self.size() * self.work / self.effective_modulus))
         return [few(tabor * float(mp.pi) ** (2 / 3) * self.work / stretch) for tabor in self.tabors]
 
 

@@ -108,12 +108,12 @@ def table(case: Case, strength: float) -> dict[str, Any]:
         entry: dict[str, Any] = {"parameters": case.parameters}
         if case.slopes is not None:
             entry["slopes"] = case.slopes
-        entry |= {"modulus": case.modulus, "work": case.work, "strength": strength}
+        entry |= {"modulus": case.effective_modulus, "work": case.work, "strength": strength}
         if case.shape == "flat_punch":
-            punch = Punch(case.parameters["radius"], case.modulus, case.work, strength)
+            punch = Punch(case.parameters["radius"], case.effective_modulus, case.work, strength)
             return entry | {"pull_off": ends(punch, WRITTEN), "rows": punch_rows(punch)}
         size = case.size()
-        curve = Curve(case.profile, case.modulus, case.work, strength, size, size * case.reach)
+        curve = Curve(case.profile, case.effective_modulus, case.work, strength, size, size * case.reach)
         rows, stated = [], 0
         for a in radii(case, size):
             state = curve.state(Place(a, False))

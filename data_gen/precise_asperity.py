@@ -52,27 +52,27 @@ class Branch:
 
 
 class Asperity:
-    """One asperity on a half-space of ``modulus`` [Pa], with ``work`` of adhesion [J/m2] or 0."""
+    """One asperity on a half-space of ``effective_modulus`` [Pa], with ``work`` of adhesion [J/m2] or 0."""
 
-    def __init__(self, profile: Profile, modulus: float, work: float, width: float) -> None:
+    def __init__(self, profile: Profile, effective_modulus: float, work: float, width: float) -> None:
         self.profile = profile
-        self.modulus = mp.mpf(modulus)
+        self.effective_modulus = mp.mpf(effective_modulus)
         self.work = mp.mpf(work)
         self.width = mp.mpf(width)
         """A length [m] to begin the searches from."""
 
     def dl(self, a: Number) -> Number:
         """The stretch [m] at which a spring at ``a`` lets go (H 44)."""
-        return mp.sqrt(2 * mp.pi * a * self.work / self.modulus)
+        return mp.sqrt(2 * mp.pi * a * self.work / self.effective_modulus)
 
     def state(self, a: Number) -> dict[str, Number]:
         """Indentation [m], force [N] and stiffness [N/m] at contact radius ``a`` [m] (H 32, 33, 40, 41)."""
         g, slope, G = self.profile.mdr(a)
         dl = self.dl(a)
-        k = 2 * self.modulus * a
+        k = 2 * self.effective_modulus * a
         if self.work > 0 and slope != dl / (2 * a):
-            k = 2 * self.modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
-        force = 2 * self.modulus * (a * g - G - a * dl)
+            k = 2 * self.effective_modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
+        force = 2 * self.effective_modulus * (a * g - G - a * dl)
         return {"contact_radius": a, "indentation": g - dl, "force": force, "stiffness": k}
 
     def growth(self, a: Number) -> Number:
@@ -89,7 +89,7 @@ class Asperity:
                 continue
             for x, weight in tanh_sinh(ENERGY_WRITTEN + 10, 28):
                 total += (hi - lo) * weight * (indentation - self.profile.mdr(lo + (hi - lo) * x)[0]) ** 2
-        return self.modulus * total - mp.pi * self.work * a**2
+        return self.effective_modulus * total - mp.pi * self.work * a**2
 
     def branches(self, control: str) -> list[Branch]:
         """The branches that are stable under ``control``, from the innermost to the outermost."""
@@ -110,7 +110,7 @@ class Asperity:
         if not kinks:  # convex and without kinks: sqrt(a) g' grows for ever, so there is one
             yield True, self._single_turn(level)
             return
-        stretch = math.sqrt(2.0 * math.pi * float(self.work / self.modulus))
+        stretch = math.sqrt(2.0 * math.pi * float(self.work / self.effective_modulus))
         corners = [b for b, _ in self.profile.corners]
         last, last_radius = -1.0, mp.mpf(0)
         for base, end in zip([mp.mpf(0), *kinks], [*kinks, None], strict=True):

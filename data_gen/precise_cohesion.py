@@ -76,15 +76,17 @@ class State(NamedTuple):
 
 
 class Cohesion:
-    """One asperity of ``profile`` on a half-space of ``modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
+    """One asperity of ``profile`` on a half-space of ``effective_modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
 
-    def __init__(self, profile: Profile, modulus: Number, work: Number, strength: Number, digits: int) -> None:
+    def __init__(
+        self, profile: Profile, effective_modulus: Number, work: Number, strength: Number, digits: int
+    ) -> None:
         self.profile, self.digits = profile, digits
         self.math = arithmetic(digits)
         number = self.math.number
         self.pi = number(mp.pi)
-        self.modulus, self.work, self.strength = number(modulus), number(work), number(strength)
-        self.beta = 2 * self.strength / self.modulus
+        self.effective_modulus, self.work, self.strength = number(effective_modulus), number(work), number(strength)
+        self.beta = 2 * self.strength / self.effective_modulus
         self.range = self.work / self.strength
         """The gap [m] at which cohesion ends."""
         self.end = None if profile.end is None else number(profile.end)
@@ -180,8 +182,8 @@ class Cohesion:
         found = self.integrals(a, m, c, inside)
         growth = found.J - self.beta * m * m / (c * (c + a))
         pull = self.beta * c * theta**2
-        force = 2 * self.modulus * found.push - 2 * self.strength * (a * m + c * c * theta)
-        stiffness = 2 * self.modulus * (a - _over(pull, growth))
+        force = 2 * self.effective_modulus * found.push - 2 * self.strength * (a * m + c * c * theta)
+        stiffness = 2 * self.effective_modulus * (a - _over(pull, growth))
         return State(a, c, found.g - self.beta * m, force, stiffness, growth, a * growth - pull)
 
     def lifted(self, c: Array, inside: bool = False) -> State:
@@ -190,7 +192,7 @@ class Cohesion:
         delta = self.f(c) - 2 * self.beta * c / self.pi - self.range
         pull = self.beta * c * self.pi**2 / 4
         force = -self.pi * self.strength * c * c
-        return State(0 * c, c, delta, force, -2 * self.modulus * _over(pull, growth), growth, -pull)
+        return State(0 * c, c, delta, force, -2 * self.effective_modulus * _over(pull, growth), growth, -pull)
 
 
 def _over(pull: Array, growth: Array) -> Array:

@@ -47,11 +47,11 @@ class Curve:
     """
 
     def __init__(
-        self, profile: Profile, modulus: Number, work: Number, strength: Number, size: float, reach: float
+        self, profile: Profile, effective_modulus: Number, work: Number, strength: Number, size: float, reach: float
     ) -> None:
         self.reach = reach
-        self.exact = Cohesion(profile, modulus, work, strength, DIGITS)
-        self.rough = Cohesion(profile, modulus, work, strength, 0)
+        self.exact = Cohesion(profile, effective_modulus, work, strength, DIGITS)
+        self.rough = Cohesion(profile, effective_modulus, work, strength, 0)
         self.size = mp.mpf(size)
         self.corners = [b for b, _ in profile.corners]
 

@@ -7,21 +7,25 @@ from precise_profiles import Number
 
 
 class Punch:
-    """Radius b [m] on a half-space of ``modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
+    """Radius b [m] on a half-space of ``effective_modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
 
-    def __init__(self, radius: Number, modulus: Number, work: Number, strength: Number) -> None:
-        self.b, self.modulus, self.work, self.strength = (mp.mpf(x) for x in (radius, modulus, work, strength))
-        self.beta = 2 * self.strength / self.modulus
+    def __init__(self, radius: Number, effective_modulus: Number, work: Number, strength: Number) -> None:
+        self.b, self.effective_modulus, self.work, self.strength = (
+            mp.mpf(x) for x in (radius, effective_modulus, work, strength)
+        )
+        self.beta = 2 * self.strength / self.effective_modulus
 
     def state(self, delta: Number) -> State:
         """The state at an indentation [m], stable while it holds."""
         b, always = self.b, mp.mpf(1)
         if delta >= 0:
-            return State(b, b, delta, 2 * self.modulus * b * delta, 2 * self.modulus * b, always, always)
+            return State(
+                b, b, delta, 2 * self.effective_modulus * b * delta, 2 * self.effective_modulus * b, always, always
+            )
         m = min(b, -delta / self.beta)
         a = mp.sqrt((b - m) * (b + m))
         force = -2 * self.strength * (a * m + b * b * mp.acos(a / b))
-        return State(a, b, delta, force, 2 * self.modulus * a, always, mp.sign(a))
+        return State(a, b, delta, force, 2 * self.effective_modulus * a, always, mp.sign(a))
 
     def pull_off(self, control: str) -> State:
         """Where gap(b) is all that the work allows. Under dead load a lifted punch is lost where it lifts: farther out
@@ -44,4 +48,7 @@ class Punch:
         a, b, beta = state.a, self.b, self.beta
         around = beta**2 * (2 * b**3 - 3 * b * b * a + a**3) / 3  # ∫ u1^2 from a to b
         area = (b * b * mp.acos(a / b) - a * mp.sqrt((b - a) * (b + a))) / 2  # ∫ sqrt(b^2 - x^2) from a to b
-        return self.modulus * (a * state.delta**2 - around - 2 * beta * state.delta * area) - mp.pi * self.work * b * b
+        return (
+            self.effective_modulus * (a * state.delta**2 - around - 2 * beta * state.delta * area)
+            - mp.pi * self.work * b * b
+        )

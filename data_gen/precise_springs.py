@@ -40,8 +40,8 @@ def sums(cohesion: Cohesion, state: State) -> Sums:
         weighted -= dx * beta
         squared += dx * u * u
         pull += dx * (cohesion.profile.mdr(x)[0] - delta + u) * height
-    energy = cohesion.modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
-    return Sums(2 * cohesion.modulus * straight, cohesion.height(c) - delta + 2 / mp.pi * weighted, energy)
+    energy = cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
+    return Sums(2 * cohesion.effective_modulus * straight, cohesion.height(c) - delta + 2 / mp.pi * weighted, energy)
 
 
 def _nodes(cohesion: Cohesion, lo: Number, hi: Number) -> Iterator[tuple[Number, Number]]:

@@ -19,7 +19,7 @@ class Case:
 
     shape: str
     parameters: Parameters
-    modulus: float
+    effective_modulus: float
     work: float
     width: float
     rise: float
@@ -47,8 +47,8 @@ class Draw:
         least, most = max(MODULUS[0], WORK[0] / ratio), min(MODULUS[1], WORK[1] / ratio)
         if least >= most:
             return None
-        modulus = self.among(least, most)
-        return modulus, float(f"{modulus * ratio:.12g}")
+        effective_modulus = self.among(least, most)
+        return effective_modulus, float(f"{effective_modulus * ratio:.12g}")
 
 
 def few(number: float) -> float:

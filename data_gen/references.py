@@ -44,7 +44,7 @@ def values(case: Case, control: str, pull_off: Number) -> list[tuple[float, bool
         distances = DISTANCES[control]
         exact = [(float(pull_off * (1 - mp.mpf(X))), X in ENERGY_DISTANCES) for X in distances]
         return [(value, energy and control == "indentation") for value, energy in exact]
-    unit = case.rise if control == "indentation" else case.modulus * case.width * case.rise
+    unit = case.rise if control == "indentation" else case.effective_modulus * case.width * case.rise
     return [(few(unit * 10.0**u), u in ENERGY_DECADES and control == "indentation") for u in DECADES[control]]
 
 
@@ -54,16 +54,16 @@ def table(case: Case) -> dict[str, Any]:
         entry: dict[str, Any] = {"parameters": case.parameters}
         if case.slopes is not None:
             entry["slopes"] = case.slopes
-        entry |= {"modulus": case.modulus, "work": case.work}
+        entry |= {"modulus": case.effective_modulus, "work": case.work}
         rows = punch_rows(case, entry) if case.shape == "flat_punch" else asperity_rows(case, entry)
         return {**entry, "rows": rows}
 
 
 def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     """A flat punch has no slope to integrate: a = b, and Kendall's pull-off at delta = -dl(b)."""
-    b, modulus, work = mp.mpf(case.parameters["radius"]), mp.mpf(case.modulus), mp.mpf(case.work)
-    k = 2 * modulus * b
-    lost = -mp.sqrt(2 * mp.pi * b * work / modulus)
+    b, effective_modulus, work = mp.mpf(case.parameters["radius"]), mp.mpf(case.effective_modulus), mp.mpf(case.work)
+    k = 2 * effective_modulus * b
+    lost = -mp.sqrt(2 * mp.pi * b * work / effective_modulus)
     end = {"contact_radius": b, "indentation": lost, "force": k * lost}
     if work > 0:
         written = {name: digits(number) for name, number in end.items()}
@@ -74,13 +74,17 @@ def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
             delta = mp.mpf(value) if control == "indentation" else mp.mpf(value) / k
             force = mp.mpf(value) if control == "force" else k * delta
             state = {"contact_radius": b, "indentation": delta, "force": force, "stiffness": k}
-            rows.append(row(control, value, state, modulus * b * delta**2 - mp.pi * work * b**2 if energy else None))
+            rows.append(
+                row(control, value, state, effective_modulus * b * delta**2 - mp.pi * work * b**2 if energy else None)
+            )
     return rows
 
 
 def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     """The rows of every other shape; fills in the pull-off of ``entry``."""
-    asperity = Asperity(profile_of(case.shape, case.parameters, case.slopes), case.modulus, case.work, case.width)
+    asperity = Asperity(
+        profile_of(case.shape, case.parameters, case.slopes), case.effective_modulus, case.work, case.width
+    )
     rows = []
     for control in DISTANCES:
         branches = asperity.branches(control)

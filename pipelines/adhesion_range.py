@@ -38,7 +38,7 @@ TINY = 1e-300  # no force at all
 
 def strength(tabor: float) -> float:
     """sigma0 [Pa] of a Tabor number."""
-    return tabor / rm.tabor(TIP, modulus=MODULUS, work=WORK, strength=1.0)
+    return tabor / rm.tabor(TIP, effective_modulus=MODULUS, work=WORK, strength=1.0)
 
 
 def pull_off(points: int) -> xr.Dataset:
@@ -48,7 +48,12 @@ def pull_off(points: int) -> xr.Dataset:
         [
             float(
                 rm.pull_off(
-                    TIP, modulus=MODULUS, work=WORK, adhesion="dugdale", strength=strength(mu), control=control
+                    TIP,
+                    effective_modulus=MODULUS,
+                    work=WORK,
+                    adhesion="dugdale",
+                    strength=strength(mu),
+                    control=control,
                 ).force
             )
             for control in ("force", "displacement")
@@ -63,7 +68,7 @@ def pull_off(points: int) -> xr.Dataset:
 
 def rough(count: int) -> xr.Dataset:
     """How far JKR is from Dugdale, over the largest force, and seconds an asperity and step in contact of each law."""
-    depth = -float(rm.pull_off(TIP, modulus=MODULUS, work=WORK).indentation)
+    depth = -float(rm.pull_off(TIP, effective_modulus=MODULUS, work=WORK).indentation)
     quantiles = norm.ppf((np.arange(count) + 0.5) / count)
     error = np.empty((len(RATIOS), len(STOPS), ROUGH_NUMBERS.size))
     cost = np.empty((2, *error.shape))
@@ -83,7 +88,7 @@ def rough(count: int) -> xr.Dataset:
                     curve = rm.load_separation(
                         ensemble,
                         separation=path,
-                        modulus=MODULUS,
+                        effective_modulus=MODULUS,
                         work=WORK,
                         adhesion=asked,  # type: ignore[arg-type]
                         strength=sigma0,
@@ -119,13 +124,13 @@ def draw(result: xr.Dataset) -> "Figure":
     figure = Figure(figsize=(15, 4.6), layout="constrained")
     curves, off, error = figure.subplots(1, 3)
     scale = math.pi * WORK * RADIUS
-    jkr = rm.pull_off(TIP, modulus=MODULUS, work=WORK)
+    jkr = rm.pull_off(TIP, effective_modulus=MODULUS, work=WORK)
     depth = -float(jkr.indentation)
     for i, mu in enumerate((*SHOWN, math.inf)):
         law = {} if math.isinf(mu) else {"adhesion": "dugdale", "strength": strength(mu)}
-        lowest = float(rm.pull_off(TIP, modulus=MODULUS, work=WORK, **law).indentation)  # type: ignore[arg-type]
+        lowest = float(rm.pull_off(TIP, effective_modulus=MODULUS, work=WORK, **law).indentation)  # type: ignore[arg-type]
         delta = np.concatenate([lowest + (2.0 * depth - lowest) * np.linspace(0.0, 1.0, 400) ** 2])
-        curve = rm.indent(TIP, modulus=MODULUS, work=WORK, indentation=delta, **law)  # type: ignore[arg-type]
+        curve = rm.indent(TIP, effective_modulus=MODULUS, work=WORK, indentation=delta, **law)  # type: ignore[arg-type]
         label = "JKR" if math.isinf(mu) else f"Tabor number {mu:g}"
         curves.plot(delta / depth, curve.force / scale, color=f"C{i}" if law else "k", label=label)
         curves.plot(delta[0] / depth, curve.force[0] / scale, "o", color=f"C{i}" if law else "k", ms=4)

@@ -54,10 +54,10 @@ class State(NamedTuple):
 class CohesiveTwin:
     """f = c r^n pressed into a half-space; ``strength`` is sigma0 [Pa]."""
 
-    def __init__(self, shape: PowerShape, modulus: float, work: float, strength: float) -> None:
-        self.plain = Twin(shape, modulus, work)
+    def __init__(self, shape: PowerShape, effective_modulus: float, work: float, strength: float) -> None:
+        self.plain = Twin(shape, effective_modulus, work)
         self.strength = mp.mpf(strength)
-        self.beta = 2 * self.strength / self.plain.modulus
+        self.beta = 2 * self.strength / self.plain.effective_modulus
         self.range = self.plain.work / self.strength
 
     def at(self, spread: Real) -> State:
@@ -82,8 +82,8 @@ class CohesiveTwin:
         growth = n * plain.g(c) / c * swept - self.beta * short
         pull = self.beta * c * theta**2
         push = n / (n + 1) * a * plain.g(a)
-        force = 2 * plain.modulus * push - 2 * self.strength * (a * m + c * c * theta)
-        stiffness = 2 * plain.modulus * (a - pull / growth) if growth else mp.inf
+        force = 2 * plain.effective_modulus * push - 2 * self.strength * (a * m + c * c * theta)
+        stiffness = 2 * plain.effective_modulus * (a - pull / growth) if growth else mp.inf
         fall = theta * sine * (n * plain.g(a) * spread + self.beta * a) * cosine / (n * first + second)
         return State(spread, a, c, plain.g(a) - self.beta * m, force, stiffness, growth, a * growth - pull, fall)
 
@@ -94,7 +94,7 @@ class CohesiveTwin:
         growth = half * plain.n * f / c - self.beta
         pull = self.beta * c * half**2
         indentation = f - 2 * self.beta * c / mp.pi - self.range
-        stiffness = -2 * plain.modulus * pull / growth if growth else mp.inf
+        stiffness = -2 * plain.effective_modulus * pull / growth if growth else mp.inf
         return State(
             mp.inf, mp.mpf(0), c, indentation, -mp.pi * self.strength * c * c, stiffness, growth, -pull, mp.inf
         )
@@ -146,7 +146,11 @@ class CohesiveTwin:
     def compression(self, control: str, state: State) -> Real:
         """The part of the control without the cohesive stress: g(a), or 2 E* [a g(a) - G(a)]."""
         plain, a = self.plain, state.contact_radius
-        return plain.g(a) if control == "indentation" else 2 * plain.modulus * plain.n / (plain.n + 1) * a * plain.g(a)
+        return (
+            plain.g(a)
+            if control == "indentation"
+            else 2 * plain.effective_modulus * plain.n / (plain.n + 1) * a * plain.g(a)
+        )
 
     def answer(self, control: str, value: Real) -> State:
         """The state of a slow retraction: on the outermost branch that reaches down to ``value``."""

@@ -143,14 +143,14 @@ def _rounded_punch(R: Real, b: Real) -> Profile:
 
 
 class Exact:
-    """One asperity on a half-space of ``modulus`` [Pa], with JKR's ``work`` of adhesion [J/m2] or none (0)."""
+    """One asperity, half-space of ``effective_modulus`` [Pa], with JKR's ``work`` of adhesion [J/m2] or none (0)."""
 
-    def __init__(self, shape: Shape, modulus: float, work: float) -> None:
+    def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
         self.profile = profile(shape)
-        self.power = Twin(shape, modulus, work) if isinstance(shape, PowerShape) else None
+        self.power = Twin(shape, effective_modulus, work) if isinstance(shape, PowerShape) else None
         """Its folds have a closed form."""
-        self.modulus = mp.mpf(modulus)
-        self.per_root = mp.sqrt(2 * mp.pi * mp.mpf(work) / self.modulus)
+        self.effective_modulus = mp.mpf(effective_modulus)
+        self.per_root = mp.sqrt(2 * mp.pi * mp.mpf(work) / self.effective_modulus)
 
     def indentation(self, t: Real) -> Real:
         """delta [m]."""
@@ -160,7 +160,7 @@ class Exact:
     def force(self, t: Real) -> Real:
         """P [N]."""
         a, _, push = self.profile(mp.mpf(t))
-        return 2 * self.modulus * (push - self.per_root * a * mp.sqrt(a))
+        return 2 * self.effective_modulus * (push - self.per_root * a * mp.sqrt(a))
 
     def fold(self) -> Real:
         """The a [m] where a power law lets go."""
@@ -196,10 +196,10 @@ class Exact:
 class Pinned(Exact):
     """A flat punch, whose state is its indentation [m] itself."""
 
-    def __init__(self, shape: rm.FlatPunch, modulus: float, work: float) -> None:
+    def __init__(self, shape: rm.FlatPunch, effective_modulus: float, work: float) -> None:
         self.radius = mp.mpf(shape.radius)
-        self.modulus = mp.mpf(modulus)
-        self.stretch = mp.sqrt(2 * mp.pi * self.radius * mp.mpf(work) / self.modulus)
+        self.effective_modulus = mp.mpf(effective_modulus)
+        self.stretch = mp.sqrt(2 * mp.pi * self.radius * mp.mpf(work) / self.effective_modulus)
 
     def indentation(self, t: Real) -> Real:
         """delta [m]."""
@@ -207,7 +207,7 @@ class Pinned(Exact):
 
     def force(self, t: Real) -> Real:
         """P [N]."""
-        return 2 * self.modulus * self.radius * t
+        return 2 * self.effective_modulus * self.radius * t
 
     def fold(self) -> Real:
         """Where it lets go."""

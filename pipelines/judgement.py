@@ -40,9 +40,9 @@ def natural_scales(twin: Twin) -> list[Real]:
         held,
         twin.indentation(held),
         twin.force(held),
-        2 * twin.modulus * held,
+        2 * twin.effective_modulus * held,
         twin.force(dead),
-        2 * twin.modulus * held * twin.stretch(held),
+        2 * twin.effective_modulus * held * twin.stretch(held),
     ]
 
 
@@ -57,7 +57,10 @@ def judge(twin: Twin, control: str, got: Answers) -> dict[str, Judged]:
     own = "force" if control == "force" else "indentation"
     a, value, fold = mp.mpf(got["contact_radius"]), mp.mpf(got[control]), twin.fold(own)
     exact = value if control == "contact_radius" else twin.radius(control, value)
-    pressed = {"indentation": twin.g(exact), "force": 2 * twin.modulus * (exact * twin.g(exact) - twin.G(exact))}
+    pressed = {
+        "indentation": twin.g(exact),
+        "force": 2 * twin.effective_modulus * (exact * twin.g(exact) - twin.G(exact)),
+    }
     scale = {name: max(abs(formula(exact)), abs(formula(fold))) for name, formula in law.items()}
     bound = {"indentation": mp.mpf("1e-13"), "force": mp.mpf("1e-13")}
     bound["indentation" if control == "contact_radius" else control] = mp.mpf("1e-14")
@@ -68,7 +71,7 @@ def judge(twin: Twin, control: str, got: Answers) -> dict[str, Judged]:
         found[f"backward {name}"] = abs(formula(a) - got[name]) / scale[name], bound[name] * steep
     X = 1 - law[own](exact) / law[own](fold) if twin.work else mp.mpf(1)
     forward = mp.mpf("1e-12") + mp.mpf("3e-16") / mp.sqrt(X)
-    k, plain = twin.stiffness(exact), 2 * twin.modulus * exact
+    k, plain = twin.stiffness(exact), 2 * twin.effective_modulus * exact
     found["contact_radius"] = abs(a - exact) / exact, forward
     found["contact_area"] = abs(got["contact_area"] / (mp.pi * exact**2) - 1), 2 * forward
     for name, formula in law.items():
@@ -90,7 +93,7 @@ def judge_cohesive(twin: CohesiveTwin, control: str, got: Answers) -> dict[str, 
         slack = _ROUNDINGS * (abs(value) + 2 * twin.compression(own, exact))
         moved.append(twin.answer(control, value + slack))
     forward = mp.mpf("1e-12") + (mp.mpf("1e-15") / mp.sqrt(X) if sought else 0)
-    rigid = 2 * twin.plain.modulus
+    rigid = 2 * twin.plain.effective_modulus
     size = {
         "contact_radius": exact.cohesive_radius,
         "cohesive_radius": exact.cohesive_radius,

@@ -90,7 +90,7 @@ class Way(NamedTuple):
 
     def laws(self) -> Iterator[LoadSeparation]:
         """Of each realisation."""
-        asked = {"modulus": self.scene.modulus, "adhesion": self.adhesion, "variables": self.variables}
+        asked = {"modulus": self.scene.effective_modulus, "adhesion": self.adhesion, "variables": self.variables}
         for realization in range(self.scene.batch.realizations):
             ensemble = self.scene.asperities.ensemble(self.scene.seed, realization, placed=self.placed)
             yield self.compute(ensemble, self.route, **asked)

@@ -60,7 +60,7 @@ def law_of(law: str, kind: str) -> dict[str, Any]:
     """The material."""
     asked: dict[str, Any] = {"modulus": MODULUS, "work": 0.0 if law == "elastic" else WORK}
     if law == "dugdale":
-        strength = TABOR / rm.tabor(SHAPES[kind](**KINDS[kind]), modulus=MODULUS, work=WORK, strength=1.0)
+        strength = TABOR / rm.tabor(SHAPES[kind](**KINDS[kind]), effective_modulus=MODULUS, work=WORK, strength=1.0)
         asked |= {"adhesion": "dugdale", "strength": strength}
     return asked
 
@@ -111,12 +111,12 @@ def visits(data: xr.Dataset, asked: dict[str, Any]) -> int:
     adhesion = Adhesion.checked(asked.get("adhesion", "jkr"), asked["work"], asked.get("strength"))
     route = Route.along(path(asked), unload=True, adhesive=adhesion.work > 0.0)
     own = Ensemble.from_dataset(data)
-    return compute(own, route, modulus=asked["modulus"], adhesion=adhesion, variables=["force"]).visits
+    return compute(own, route, effective_modulus=asked["modulus"], adhesion=adhesion, variables=["force"]).visits
 
 
 def without_adhesion(shape: Shape, asked: dict[str, Any]) -> tuple[float, float]:
     """How far the powers of w that radius and force come to Hertz with are from 1/2 and 1, and what is left at last."""
-    hertz = rm.indent(shape, modulus=MODULUS, indentation=HEIGHT)
+    hertz = rm.indent(shape, effective_modulus=MODULUS, indentation=HEIGHT)
     found = [rm.indent(shape, **{**asked, "work": WORK * part}, indentation=HEIGHT) for part in _WORKS]
     wrong, left = 0.0, 0.0
     for name, power in (("contact_radius", 0.5), ("force", 1.0)):

@@ -55,12 +55,12 @@ def stretch(radius: Floats | float) -> Floats:
 def two_steps() -> xr.Dataset:
     """The spring row below a cone: pressed without adhesion, lifted at fixed contact radius, and at its pull-off."""
     cone = SHAPES["cone"]
-    touch = rm.indent(cone, modulus=MODULUS, work=WORK, indentation=0.0)
+    touch = rm.indent(cone, effective_modulus=MODULUS, work=WORK, indentation=0.0)
     radius = PRESSED * float(touch.contact_radius)
     states = {
-        "pressed": rm.indent(cone, modulus=MODULUS, contact_radius=radius),
-        "lifted": rm.indent(cone, modulus=MODULUS, work=WORK, contact_radius=radius),
-        "pull-off": rm.pull_off(cone, modulus=MODULUS, work=WORK),
+        "pressed": rm.indent(cone, effective_modulus=MODULUS, contact_radius=radius),
+        "lifted": rm.indent(cone, effective_modulus=MODULUS, work=WORK, contact_radius=radius),
+        "pull-off": rm.pull_off(cone, effective_modulus=MODULUS, work=WORK),
     }
     radii = np.array([float(state.contact_radius) for state in states.values()])
     depths = np.array([float(state.indentation) for state in states.values()])
@@ -102,18 +102,22 @@ def pull_off_curves() -> xr.Dataset:
     folds = np.empty((3, len(SHAPES), len(CONTROLS)))
     for i, shape in enumerate(SHAPES.values()):
         for j, control in enumerate(CONTROLS):
-            fold = rm.pull_off(shape, modulus=MODULUS, work=WORK, control=control)
+            fold = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control=control)
             folds[:, i, j] = fold.force, fold.indentation, fold.contact_radius
         lowest = float(folds[1, i, 0])
         # As far in as pushes back with what it holds.
-        highest = float(rm.indent(shape, modulus=MODULUS, work=WORK, force=-folds[0, i, 1]).indentation)
+        highest = float(rm.indent(shape, effective_modulus=MODULUS, work=WORK, force=-folds[0, i, 1]).indentation)
         depth[i, 0] = highest * points
         depth[i, 1] = lowest + (highest - lowest) * (1.0 - points) ** 2  # closer together near the fold
         depth[i, 1, -1] = lowest
         for course in (0, 1):
-            force[i, course] = rm.indent(shape, modulus=MODULUS, work=WORK, indentation=depth[i, course]).force
+            force[i, course] = rm.indent(
+                shape, effective_modulus=MODULUS, work=WORK, indentation=depth[i, course]
+            ).force
         if not isinstance(shape, rm.FlatPunch):  # its contact has one radius, and is stable until it is none
-            back = rm.indent(shape, modulus=MODULUS, work=WORK, contact_radius=folds[2, i, 0] * (1.0 - points))
+            back = rm.indent(
+                shape, effective_modulus=MODULUS, work=WORK, contact_radius=folds[2, i, 0] * (1.0 - points)
+            )
             depth[i, 2], force[i, 2] = back.indentation, back.force
     over, at = ("shape", "course", "point"), ("shape", "control")
     return xr.Dataset(
@@ -140,9 +144,9 @@ def holds(exponent: float, rise: float, control: Literal["displacement", "force"
     energy release rate there is the work of adhesion: the equilibrium whose radius is the width.
     """
     shape = rm.PowerLaw(exponent=exponent, width=WIDTH, rise=rise)
-    state = rm.pull_off(shape, modulus=MODULUS, work=WORK, control=control)
+    state = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control=control)
     if float(state.contact_radius) > WIDTH:
-        state = rm.indent(shape, modulus=MODULUS, work=WORK, contact_radius=WIDTH)
+        state = rm.indent(shape, effective_modulus=MODULUS, work=WORK, contact_radius=WIDTH)
     return float(state.force), float(state.contact_radius)
 
 
@@ -161,7 +165,7 @@ def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
     for i, rise in enumerate(rises):
         for j, control in enumerate(CONTROLS):
             worst[i, j] = _worst(exponents, force[i, j], rise, control)
-    flat = rm.pull_off(rm.FlatPunch(radius=WIDTH), modulus=MODULUS, work=WORK)
+    flat = rm.pull_off(rm.FlatPunch(radius=WIDTH), effective_modulus=MODULUS, work=WORK)
     over = ("relative_stretch", "control", "exponent")
     return xr.Dataset(
         {

@@ -25,7 +25,7 @@ class Rough(NamedTuple):
     """Mean radius of the tips [m]."""
     radius_std: float
     """Of the lognormal law of the radius [m]; 0 for equal tips."""
-    modulus: float
+    effective_modulus: float
     work: float = 0.0
 
     def force(self, separation: float, closest: float | None = None, digits: int = 25) -> float:
@@ -40,7 +40,7 @@ class Rough(NamedTuple):
         return self._mean(lambda a, R: mp.pi * a * a, separation, closest, digits)
 
     def _force(self, a: mpf, R: mpf) -> mpf:
-        E, w = mpf(self.modulus), mpf(self.work)
+        E, w = mpf(self.effective_modulus), mpf(self.work)
         return 4 * E * a**3 / (3 * R) - 2 * E * a * mp.sqrt(2 * mp.pi * a * w / E)
 
     def _mean(self, quantity: Quantity, separation: float, closest: float | None, digits: int) -> float:
@@ -58,7 +58,7 @@ class Rough(NamedTuple):
 
             step, end = _trapezoid(digits)
             if self.work and h > nearest:  # tips of this radius are about to let go of their lowest summits
-                last = (4 * (h - nearest) / 3) ** 3 * (self.modulus / (mp.pi * self.work)) ** 2
+                last = (4 * (h - nearest) / 3) ** 3 * (self.effective_modulus / (mp.pi * self.work)) ** 2
                 kink = mp.log(last / median) / spread
                 if abs(kink) < step * end:
                     return float(mp.quad(share, [-step * end, kink, step * end]))
@@ -66,7 +66,7 @@ class Rough(NamedTuple):
 
     def _tip(self, quantity: Quantity, R: mpf, h: mpf, nearest: mpf, digits: int) -> mpf:
         """Of tips of radius R."""
-        E, w = mpf(self.modulus), mpf(self.work)
+        E, w = mpf(self.effective_modulus), mpf(self.work)
         floor = nearest if self.heights == "normal" else max(nearest, 0)
         fold = mp.cbrt(mp.pi * w * R * R / (8 * E))
         begin, end = (_contact_radius(z - h, R, mp.sqrt(2 * mp.pi * w / E), fold) for z in (floor, self._top(digits)))

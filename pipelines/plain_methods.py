@@ -54,9 +54,9 @@ def held(height: Floats, fold: Floats, h: float, closest: float) -> NDArray[np.b
     return (height > closest) & (height - h > (-fold if h > closest else 0.0))
 
 
-def with_numpy(height: Floats, radius: Floats, path: Floats, modulus: float, work: float) -> Sums:
+def with_numpy(height: Floats, radius: Floats, path: Floats, effective_modulus: float, work: float) -> Sums:
     """Paraboloids with vectors, as most would write it: JKR by six Newton steps on t^4 - t = delta/d0."""
-    a0 = np.cbrt(2.0 * np.pi * work * radius * radius / modulus)
+    a0 = np.cbrt(2.0 * np.pi * work * radius * radius / effective_modulus)
     force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
     for step, h in enumerate(path):
         closest = min(closest, h)
@@ -69,22 +69,22 @@ def with_numpy(height: Floats, radius: Floats, path: Floats, modulus: float, wor
             t = 1.0 + np.sqrt(np.sqrt(np.maximum(delta / d0, 0.0)))
             for _ in range(6):
                 t -= (t**4 - t - delta / d0) / (4.0 * t**3 - 1.0)
-            a, force[step] = own * t * t, np.sum(2.0 * modulus * own * d0 * (2.0 / 3.0 * t**6 - t**3))
+            a, force[step] = own * t * t, np.sum(2.0 * effective_modulus * own * d0 * (2.0 / 3.0 * t**6 - t**3))
         else:
             a = np.sqrt(R * delta)
-            force[step] = np.sum(4.0 / 3.0 * modulus * a * delta)
+            force[step] = np.sum(4.0 / 3.0 * effective_modulus * a * delta)
         area[step] = np.pi * np.sum(a * a)
     return Sums(force, area, visits)
 
 
-def with_brentq(height: Floats, radius: Floats, path: Floats, modulus: float, work: float) -> Sums:
+def with_brentq(height: Floats, radius: Floats, path: Floats, effective_modulus: float, work: float) -> Sums:
     """The same with a root finder for each contact."""
-    folds = np.cbrt(np.pi * work * radius * radius / (8.0 * modulus))
-    depths = np.sqrt(2.0 * np.pi * folds * work / modulus) - folds * folds / radius
+    folds = np.cbrt(np.pi * work * radius * radius / (8.0 * effective_modulus))
+    depths = np.sqrt(2.0 * np.pi * folds * work / effective_modulus) - folds * folds / radius
     force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
 
     def indentation(a: float, R: float, delta: float) -> float:
-        return float(a * a / R - np.sqrt(2.0 * np.pi * a * work / modulus) - delta)
+        return float(a * a / R - np.sqrt(2.0 * np.pi * a * work / effective_modulus) - delta)
 
     for step, h in enumerate(path.tolist()):
         closest = min(closest, h)
@@ -92,22 +92,24 @@ def with_brentq(height: Floats, radius: Floats, path: Floats, modulus: float, wo
         for z, R, fold in zip(height[touching], radius[touching], folds[touching], strict=True):
             top = fold + 2.0 * np.sqrt(R * max(z - h, 0.0)) + 8.0 * fold
             a = brentq(indentation, fold, top, args=(R, z - h), xtol=1e-12 * top)
-            force[step] += 4.0 * modulus * a**3 / (3.0 * R) - np.sqrt(8.0 * np.pi * work * modulus * a**3)
+            force[step] += 4.0 * effective_modulus * a**3 / (3.0 * R) - np.sqrt(
+                8.0 * np.pi * work * effective_modulus * a**3
+            )
             area[step] += np.pi * a * a
             visits += 1
     return Sums(force, area, visits)
 
 
-def by_numpy(ensemble: Ensemble, path: Floats, modulus: float, work: float) -> Cost:
+def by_numpy(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
     """What ``with_numpy`` costs."""
     columns = ensemble.height, ensemble.parameters["radius"]
-    return cost_of(lambda: with_numpy(*columns, path, modulus, work).visits, 1)
+    return cost_of(lambda: with_numpy(*columns, path, effective_modulus, work).visits, 1)
 
 
-def by_brentq(ensemble: Ensemble, path: Floats, modulus: float, work: float) -> Cost:
+def by_brentq(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
     """What ``with_brentq`` costs, by a few hundred asperities."""
     columns = ensemble.height[:300], ensemble.parameters["radius"][:300]
-    return cost_of(lambda: with_brentq(*columns, path, modulus, work).visits, 1)
+    return cost_of(lambda: with_brentq(*columns, path, effective_modulus, work).visits, 1)
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
@@ -122,16 +124,16 @@ def scalar_g(shape: Shape) -> Callable[[float], float]:
     return lambda a: rise * curve(place(a, width, numbers), numbers)[2]
 
 
-def by_brentq_on(ensemble: Ensemble, modulus: float, work: float) -> Cost:
+def by_brentq_on(ensemble: Ensemble, effective_modulus: float, work: float) -> Cost:
     """A root finder on delta = g(a) - dl(a), for a few hundred contacts of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
     shape: Shape = ensemble.fixed or SHAPES[ensemble.shape](**first)
-    fold = float(rm.pull_off(shape, modulus=modulus, work=work).contact_radius)
+    fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)
     g = scalar_g(shape)
     g(fold)  # compiled before the clock runs
 
     def indentation(a: float, delta: float) -> float:
-        return g(a) - math.sqrt(2.0 * math.pi * a * work / modulus) - delta
+        return g(a) - math.sqrt(2.0 * math.pi * a * work / effective_modulus) - delta
 
     top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
 

@@ -29,7 +29,7 @@ class Asperity(NamedTuple):
     """One asperity on a path of the flat that comes down to it."""
 
     shape: Shape
-    modulus: float
+    effective_modulus: float
     work: float
     height: float
     path: tuple[float, ...]
@@ -125,16 +125,20 @@ def found(kind: str, adhesive: bool, seed: int) -> tuple[Asperity, Found]:
 
 def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperity, Found] | None:
     shape = DRAW[kind](rng)
-    modulus, work = _power(rng, 3.0, 13.0), _power(rng, -9.0, 1.0) if adhesive else 0.0
+    effective_modulus, work = _power(rng, 3.0, 13.0), _power(rng, -9.0, 1.0) if adhesive else 0.0
     width, rise, form = shape.stretched()
     columns = (np.array([width]), np.array([rise]), np.asarray(form, dtype=np.float64)[None])
     adhesion = Adhesion(work)
     law = choose(kind, adhesion, columns[2])
-    row = law.own(law.prepare(modulus, work, math.inf, *columns, 0, 1, 0.0), 0)
+    row = law.own(law.prepare(effective_modulus, work, math.inf, *columns, 0, 1, 0.0), 0)
     if law.curved and row[COUNT] == 0.0:
         return None
-    natural = law.natural(modulus, work, width, rise, row)
-    exact = Pinned(shape, modulus, work) if isinstance(shape, rm.FlatPunch) else Exact(shape, modulus, work)
+    natural = law.natural(effective_modulus, work, width, rise, row)
+    exact = (
+        Pinned(shape, effective_modulus, work)
+        if isinstance(shape, rm.FlatPunch)
+        else Exact(shape, effective_modulus, work)
+    )
     ends = _ends(law, row, exact, natural) if adhesive else []
     indentation = _indentation(rng, law, row, exact, natural, ends)
     if not math.isfinite(indentation) or indentation == 0.0 or (indentation < 0.0 and not adhesive):
@@ -142,7 +146,7 @@ def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperit
     height = 0.0 if rng.random() < 0.5 else float(rng.normal()) * abs(indentation) * _power(rng, 0.0, 3.0)
     way = [height, height - _PRESSED * natural[0][0]] if rng.random() < 0.3 else [height]
     path = np.array([*(way if adhesive else []), height - indentation])
-    asperity = Asperity(shape, modulus, work, height, tuple(path.tolist()))
+    asperity = Asperity(shape, effective_modulus, work, height, tuple(path.tolist()))
     return _compared(asperity, law, row, columns, exact, natural, ends)
 
 
@@ -195,7 +199,7 @@ def _compared(
         law,
         np.array([z]),
         columns,
-        asperity.modulus,
+        asperity.effective_modulus,
         Adhesion(asperity.work),
         path,
         staircase(path),

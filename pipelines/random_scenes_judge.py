@@ -178,7 +178,7 @@ def _hold_without_adhesion(claims: Claims, law: Law) -> None:
             (np.diff(force, axis=1) >= least - room) & (np.diff(force, axis=1) <= most + room),
         )
     if {"contact_radius_sum", "stiffness"} <= curves.keys():
-        exact = 2.0 * law.scene.modulus * curves["contact_radius_sum"]
+        exact = 2.0 * law.scene.effective_modulus * curves["contact_radius_sum"]
         same = np.abs(curves["stiffness"] - exact) <= np.maximum(
             2.0 * ROUNDING * exact, law.expected * 2.0 * law.slack("stiffness")
         )

@@ -35,7 +35,7 @@ class Frame(NamedTuple):
 
     size: float
     """[m]"""
-    modulus: float
+    effective_modulus: float
     """[Pa]"""
     datum: float
     """Where the heights and the flat are [m]."""
@@ -167,7 +167,7 @@ def asperities(draw: Draw, frame: Frame, shape: str, source: str, inputs: Inputs
 
 def adhesion(draw: Draw, frame: Frame, model: str) -> Table:
     """[adhesion]."""
-    work = number(draw, -8.0, 0.0, frame.modulus * frame.size)
+    work = number(draw, -8.0, 0.0, frame.effective_modulus * frame.size)
     work = 0.0 if seldom(draw, 20) else work
     section: Table = {"model": model, "work": quantity(draw, work, "J/m^2")}
     reach = number(draw, -4.0, 1.0, frame.size)
@@ -184,12 +184,12 @@ def adhesion(draw: Draw, frame: Frame, model: str) -> Table:
 def material(draw: Draw, frame: Frame) -> Table:
     """[material] and [counter]."""
     if draw(st.booleans()):
-        return {"material": {"effective_modulus": quantity(draw, frame.modulus, "Pa")}}
+        return {"material": {"effective_modulus": quantity(draw, frame.effective_modulus, "Pa")}}
     ratio = st.sampled_from((0.0, 0.3, 0.49, 0.5, -0.9))
-    bodies = {"material": {"modulus": quantity(draw, frame.modulus, "Pa"), "poisson": draw(ratio)}}
+    bodies = {"material": {"modulus": quantity(draw, frame.effective_modulus, "Pa"), "poisson": draw(ratio)}}
     if draw(st.booleans()):
         bodies["counter"] = {
-            "modulus": quantity(draw, number(draw, 0.0, 4.0, frame.modulus), "Pa"),
+            "modulus": quantity(draw, number(draw, 0.0, 4.0, frame.effective_modulus), "Pa"),
             "poisson": draw(ratio),
         }
     return bodies

@@ -98,7 +98,7 @@ def told_apart(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> tuple[fl
 def by_range(count: int, repeats: int) -> xr.Dataset:
     """What paraboloids cost under adhesion of finite range, by their Tabor number."""
     ensemble = ensemble_of(count)
-    one = rm.tabor(rm.Paraboloid(radius=50e-6), modulus=MODULUS, work=WORK, strength=1.0)
+    one = rm.tabor(rm.Paraboloid(radius=50e-6), effective_modulus=MODULUS, work=WORK, strength=1.0)
     told = [told_apart(ensemble, Adhesion(WORK, "dugdale", tabor / one), repeats) for tabor in TABOR]
     return xr.Dataset(
         {

@@ -54,13 +54,13 @@ EXACT = 1e-12  # errors below are roundings
 def row_of_springs(points: int = 2401) -> xr.Dataset:
     """A paraboloid on a coarse row along a path in and out, its exact law, and the row at three of its points."""
     tip = rm.Paraboloid(radius=RADIUS)
-    off = rm.pull_off(tip, modulus=MODULUS, work=WORK)
+    off = rm.pull_off(tip, effective_modulus=MODULUS, work=WORK)
     way_in = -float(off.indentation) * np.linspace(-1.45, 2.2, points)
     path = np.append(way_in, way_in[-2::-1])
     contact = Springs.of(tip, MODULUS, WORK, DRAWN)
     state = contact.follow(path)
     row, _, _ = next(contact.rows.fitted(path.max(keepdims=True), loaded=False))
-    exact = rm.indent(tip, modulus=MODULUS, work=WORK, indentation=path).force.to_numpy()
+    exact = rm.indent(tip, effective_modulus=MODULUS, work=WORK, indentation=path).force.to_numpy()
     exact[:points][way_in < 0.0] = 0.0  # not yet touched
     held = np.flatnonzero(state["contact_radius"])
     stages = {
@@ -105,10 +105,10 @@ class Point(NamedTuple):
 
 def measured(shape: Shape, work: float, counts: NDArray[np.int64], repeats: int) -> tuple[list[Point], float]:
     """The errors and the time per contact for each number of springs, and that of the closed forms."""
-    off = rm.pull_off(shape, modulus=MODULUS, work=WORK)
+    off = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK)
     depth = -float(off.indentation) * (DEPTHS - (1.0 if work else 0.0))
-    exact = rm.indent(shape, modulus=MODULUS, work=work, indentation=depth)
-    scale = np.abs(exact.force) - float(rm.pull_off(shape, modulus=MODULUS, work=WORK, control="force").force)
+    exact = rm.indent(shape, effective_modulus=MODULUS, work=work, indentation=depth)
+    scale = np.abs(exact.force) - float(rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="force").force)
     points = []
     for count in counts:
         row, seconds = _timed(shape, work, depth, repeats, int(count))
@@ -124,9 +124,11 @@ def _timed(shape: Shape, work: float, depth: Floats, repeats: int, count: int | 
     for _ in range(repeats):
         started = time.perf_counter()
         if count is None:
-            found = rm.indent(shape, modulus=MODULUS, work=work, indentation=depth)
+            found = rm.indent(shape, effective_modulus=MODULUS, work=work, indentation=depth)
         else:
-            found = rm.indent(shape, modulus=MODULUS, work=work, indentation=depth, method="springs", springs=count)
+            found = rm.indent(
+                shape, effective_modulus=MODULUS, work=work, indentation=depth, method="springs", springs=count
+            )
         seconds.append((time.perf_counter() - started) / depth.size)
     return found, min(seconds)
 

@@ -43,8 +43,8 @@ class Reference(Protocol):
 class PlainReference:
     """Without adhesion, or with JKR's."""
 
-    def __init__(self, shape: rm.PowerLaw, modulus: float, work: float) -> None:
-        self.twin, self.width = Twin(shape, modulus, work), shape.stretched()[0]
+    def __init__(self, shape: rm.PowerLaw, effective_modulus: float, work: float) -> None:
+        self.twin, self.width = Twin(shape, effective_modulus, work), shape.stretched()[0]
 
     def depth(self) -> Real:
         """How far it is pulled before it lets go [m], 0 without adhesion."""
@@ -75,8 +75,8 @@ class PlainReference:
 class CohesiveReference:
     """With Dugdale's adhesion."""
 
-    def __init__(self, shape: rm.PowerLaw, modulus: float, work: float, strength: float) -> None:
-        self.twin = CohesiveTwin(shape, modulus, work, strength)
+    def __init__(self, shape: rm.PowerLaw, effective_modulus: float, work: float, strength: float) -> None:
+        self.twin = CohesiveTwin(shape, effective_modulus, work, strength)
 
     def depth(self) -> Real:
         """How far it is pulled before it lets go [m], 0 without adhesion."""

@@ -42,8 +42,8 @@ class CohesiveParaboloid(Cohesion):
 class CohesivePunch(Follower):
     """A flat punch: all its contacts have c = b."""
 
-    def __init__(self, radius: float, modulus: float, work: float, strength: float) -> None:
-        self.punch = Punch(radius, modulus, work, strength)
+    def __init__(self, radius: float, effective_modulus: float, work: float, strength: float) -> None:
+        self.punch = Punch(radius, effective_modulus, work, strength)
         self.touch = -self.punch.work / self.punch.strength
         super().__init__([(self.punch.pull_off("displacement").delta, mp.inf)])
 
@@ -55,9 +55,9 @@ class CohesivePunch(Follower):
 class Cohesive(Follower):
     """Any other shape, pressed no farther than ``deepest`` [m]."""
 
-    def __init__(self, shape: Shape, modulus: float, work: float, strength: float, deepest: float) -> None:
+    def __init__(self, shape: Shape, effective_modulus: float, work: float, strength: float, deepest: float) -> None:
         kind = CohesiveParaboloid if isinstance(shape, Paraboloid) else Cohesion
-        law = profile_of(shape.name, dict(shape.parameters)), mp.mpf(modulus), mp.mpf(work), mp.mpf(strength)
+        law = profile_of(shape.name, dict(shape.parameters)), mp.mpf(effective_modulus), mp.mpf(work), mp.mpf(strength)
         self.exact, self.rough = kind(*law, DIGITS), kind(*law, 0)
         self.curve = Curve(*law, float(shape.stretched()[0]), 1.0)
         self.curve.exact, self.curve.rough = self.exact, self.rough

@@ -111,10 +111,10 @@ class Follower:
 class Punch(Follower):
     """A flat punch without adhesion or with JKR's: its radius is always b."""
 
-    def __init__(self, radius: float, modulus: float, work: float) -> None:
+    def __init__(self, radius: float, effective_modulus: float, work: float) -> None:
         b = mp.mpf(radius)
-        super().__init__([(-mp.sqrt(2 * mp.pi * b * work / mp.mpf(modulus)), mp.inf)])
-        self.stiffness = 2 * mp.mpf(modulus) * b
+        super().__init__([(-mp.sqrt(2 * mp.pi * b * work / mp.mpf(effective_modulus)), mp.inf)])
+        self.stiffness = 2 * mp.mpf(effective_modulus) * b
 
     def force(self, branch: int, delta: Number) -> Number:
         """[N]"""
@@ -124,9 +124,9 @@ class Punch(Follower):
 class Touching(Follower):
     """Any other shape without adhesion or with JKR's."""
 
-    def __init__(self, shape: Shape, modulus: float, work: float) -> None:
+    def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
         width, _, _ = shape.stretched()
-        self.shape, self.asperity = shape, Asperity(profile(shape), modulus, work, width)
+        self.shape, self.asperity = shape, Asperity(profile(shape), effective_modulus, work, width)
         self.arcs = self.asperity.branches("indentation")
         super().__init__([(arc.value, self._top(arc)) for arc in self.arcs])
 
@@ -159,7 +159,7 @@ class Touching(Follower):
 
     def _roughly(self, arc: Branch, delta: float) -> Number:
         """The contact radius [m] on an arc in plain double: where Newton's method begins."""
-        low, work, modulus = float(arc.lo), float(self.asperity.work), float(self.asperity.modulus)
+        low, work, effective_modulus = float(arc.lo), float(self.asperity.work), float(self.asperity.effective_modulus)
         start = low or float(self.asperity.width)
 
         def radius(y: float) -> float:
@@ -169,6 +169,6 @@ class Touching(Follower):
 
         def above(y: float) -> float:
             a = radius(y)
-            return float(self.shape.g(a)) - stretch_at(a, modulus, work) - delta
+            return float(self.shape.g(a)) - stretch_at(a, effective_modulus, work) - delta
 
         return mp.mpf(radius(brentq(above, -_FARTHEST, _FARTHEST, xtol=1e-15)))

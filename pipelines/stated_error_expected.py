@@ -143,7 +143,7 @@ class Tip:
         source, scene = of.scene.asperities, of.scene
         values = {name: float(column[number]) for name, column in nodes.parameters.items()}
         self.shape = source.fixed or SHAPES[source.shape_name](**values)
-        self.contact = Contact.of(self.shape, scene.modulus, scene.law)
+        self.contact = Contact.of(self.shape, scene.effective_modulus, scene.law)
         self.heights: Heights = nodes.heights[number]
         self.separation = of.separation
         self.feet, tops = branch_ends(self.contact)
@@ -209,13 +209,13 @@ class Tip:
     @cached_property
     def _corners(self) -> Floats:
         """Indentations [m] at which the edge of the contact comes to where the profile has a kink, or to the axis."""
-        modulus, adhesion = self.contact.modulus, self.contact.adhesion
+        effective_modulus, adhesion = self.contact.effective_modulus, self.contact.adhesion
         if adhesion.cohesive:
-            return np.array([-self._opening * 2.0 * adhesion.strength / modulus])
+            return np.array([-self._opening * 2.0 * adhesion.strength / effective_modulus])
         if not isinstance(self.shape, Curved):
             return np.zeros(0)
         radii = [float(b) for b in profile(self.shape).kinks]
-        return np.array([float(self.shape.g(b)) - stretch_at(b, modulus, adhesion.work) for b in radii])
+        return np.array([float(self.shape.g(b)) - stretch_at(b, effective_modulus, adhesion.work) for b in radii])
 
     @cached_property
     def _beside_leaps(self) -> Floats:
@@ -244,7 +244,7 @@ class Tip:
         if isinstance(self.shape, FlatPunch):
             return self.shape.radius
         adhesion, end = self.contact.adhesion, 1.0
-        pull = 2.0 * adhesion.strength / self.contact.modulus * (1.0 - 2.0 / math.pi)
+        pull = 2.0 * adhesion.strength / self.contact.effective_modulus * (1.0 - 2.0 / math.pi)
 
         def above(c: float) -> float:
             return float(self.shape.f(c)) + pull * c - adhesion.reach

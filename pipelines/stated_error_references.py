@@ -51,11 +51,11 @@ def follower(shape: Shape, scene: Scene, deepest: float) -> Follower:
     law = scene.law
     if isinstance(shape, FlatPunch):
         if law.cohesive:
-            return CohesivePunch(shape.radius, scene.modulus, law.work, law.strength)
-        return Punch(shape.radius, scene.modulus, law.work)
+            return CohesivePunch(shape.radius, scene.effective_modulus, law.work, law.strength)
+        return Punch(shape.radius, scene.effective_modulus, law.work)
     if law.cohesive:
-        return Cohesive(shape, scene.modulus, law.work, law.strength, deepest)
-    return Touching(shape, scene.modulus, law.work)
+        return Cohesive(shape, scene.effective_modulus, law.work, law.strength, deepest)
+    return Touching(shape, scene.effective_modulus, law.work)
 
 
 def expected_force(scene: Scene, separation: Floats, stated: float) -> Floats:

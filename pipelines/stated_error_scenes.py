@@ -53,11 +53,11 @@ def scene(number: int) -> Drawn:
     else:
         shape = str(rng.choice(list(SHAPES)))
     source = "nayak" if shape == "paraboloid" and rng.uniform() < 0.2 else "random"
-    modulus, width, slope = decades(rng, 3, 13), decades(rng, -9, 0), decades(rng, -4, 0)
+    effective_modulus, width, slope = decades(rng, 3, 13), decades(rng, -9, 0), decades(rng, -4, 0)
     # How far the edge of a contact of this width is stretched, over the rise of the tip there.
     reach = decades(rng, -2, 1.5)
-    work = min(reach**2 * (slope * width) ** 2 * modulus / (2.0 * math.pi * width), _LARGEST_WORK)
-    reach = math.sqrt(2.0 * math.pi * width * work / modulus) / (slope * width)
+    work = min(reach**2 * (slope * width) ** 2 * effective_modulus / (2.0 * math.pi * width), _LARGEST_WORK)
+    reach = math.sqrt(2.0 * math.pi * width * work / effective_modulus) / (slope * width)
     rise = slope * width
     size = Size(width, rise, rise * reach ** (4.0 / 3.0) if adhesion != "none" else 0.0)
     std = max(size.depth * decades(rng, -1.5, 2), rise * 1e-6) if adhesion != "none" else rise * decades(rng, -3, 0.5)
@@ -69,7 +69,7 @@ def scene(number: int) -> Drawn:
     table: Table = {
         "title": f"Random scene {number}",
         "seed": int(rng.integers(2**31)),
-        "material": {"effective_modulus": modulus},
+        "material": {"effective_modulus": effective_modulus},
         "asperities": asperities,
         "path": _path(rng, std, datum, size),
         "output": {"variables": ["force"]},
@@ -79,7 +79,7 @@ def scene(number: int) -> Drawn:
         table["adhesion"] = {"model": adhesion, "work": work}
     if adhesion == "dugdale":
         tabor = decades(rng, -2, 2)
-        stretch = math.sqrt(2.0 * math.pi * width * work / modulus)
+        stretch = math.sqrt(2.0 * math.pi * width * work / effective_modulus)
         table["adhesion"]["strength"] = tabor * math.pi ** (2.0 / 3.0) * work / stretch
     if estimator != "expected" and rng.uniform() < 0.2:
         table["batch"]["realizations"] = 3

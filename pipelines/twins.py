@@ -34,11 +34,11 @@ def coefficient_and_exponent(shape: PowerShape) -> tuple[Real, Real]:
 class Twin:
     """f = c r^n pressed into a half-space, without (work = 0) or with JKR adhesion."""
 
-    def __init__(self, shape: PowerShape, modulus: float, work: float) -> None:
+    def __init__(self, shape: PowerShape, effective_modulus: float, work: float) -> None:
         c, self.n = coefficient_and_exponent(shape)
         self.kappa = kappa(self.n)
         self.g_at_1 = self.kappa * c
-        self.modulus = mp.mpf(modulus)
+        self.effective_modulus = mp.mpf(effective_modulus)
         self.work = mp.mpf(work)
 
     def g(self, a: Real) -> Real:
@@ -51,7 +51,7 @@ class Twin:
 
     def stretch(self, a: Real) -> Real:
         """dl, at which a spring at a lets go."""
-        return mp.sqrt(2 * mp.pi * a * self.work / self.modulus)
+        return mp.sqrt(2 * mp.pi * a * self.work / self.effective_modulus)
 
     def indentation(self, a: Real) -> Real:
         """delta [m] of equilibrium (H 40)."""
@@ -59,12 +59,12 @@ class Twin:
 
     def force(self, a: Real) -> Real:
         """P [N] (H 41)."""
-        return 2 * self.modulus * (a * self.g(a) - self.G(a) - a * self.stretch(a))
+        return 2 * self.effective_modulus * (a * self.g(a) - self.G(a) - a * self.stretch(a))
 
     def stiffness(self, a: Real) -> Real:
         """dP/d(delta) [N/m] along the equilibria."""
         slope, dl = self.n * self.g(a) / a, self.stretch(a)
-        return 2 * self.modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
+        return 2 * self.effective_modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
 
     def fold(self, control: str) -> Real:
         """The a where a g' is dl/2 (under fixed "indentation") or 3/2 dl (under fixed "force"); 0 without adhesion."""
@@ -79,7 +79,7 @@ class Twin:
             return (value / law(mp.mpf(1))) ** (1 / power)
         weight: dict[str, Callable[[Real], Real]] = {
             "indentation": lambda a: self.n * self.g(a) - self.stretch(a) / 2,
-            "force": lambda a: 2 * self.modulus * a * (self.n * self.g(a) - 3 * self.stretch(a) / 2),
+            "force": lambda a: 2 * self.effective_modulus * a * (self.n * self.g(a) - 3 * self.stretch(a) / 2),
         }
         return _newton(law, weight[control], value, self.fold(control), 1 / self.n)
 

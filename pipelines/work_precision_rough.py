@@ -43,7 +43,7 @@ class Surface(NamedTuple):
         rough = self.rough
         lognormal = {"distribution": "lognormal", "mean": rough.radius, "std": rough.radius_std}
         return {
-            "material": {"effective_modulus": rough.modulus},
+            "material": {"effective_modulus": rough.effective_modulus},
             "adhesion": {"model": "jkr", "work": rough.work},
             "asperities": {
                 "source": "random",
@@ -113,7 +113,7 @@ def expected_by_nodes(surface: Surface, exact: Reference, quick: bool) -> Iterat
     if not surface.rough.radius_std:
         return
     scene, route = surface.cell
-    asked = Asked(scene.asperities, route, scene.modulus, scene.law, (FORCE, AREA))
+    asked = Asked(scene.asperities, route, scene.effective_modulus, scene.law, (FORCE, AREA))
     steps = list(range(route.separation.size))
 
     def found(order: int) -> Curve:
@@ -171,7 +171,7 @@ def _plainly(sum_up: Callable[..., Sums]) -> Draw:
         radius = rough.radius * np.exp(spread * rng.standard_normal(COUNT) - 0.5 * spread**2)
         height = rough.std * rng.standard_normal(COUNT)
         path = _cell(surface).route.separation
-        found = sum_up(height, radius, path, rough.modulus, rough.work)
+        found = sum_up(height, radius, path, rough.effective_modulus, rough.work)
         return _curve(found.force, found.area, found.visits)
 
     return draw

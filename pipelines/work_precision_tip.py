@@ -38,7 +38,7 @@ class Tip(NamedTuple):
     @property
     def fold(self) -> tuple[float, float]:
         """Radius [m] and depth [m] at which fixed grips lose it."""
-        off = rm.pull_off(self.shape, modulus=MODULUS, work=WORK)
+        off = rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK)
         return float(off.contact_radius), -float(off.indentation)
 
     @property
@@ -100,8 +100,8 @@ def load(push: Formula, a: Floats) -> Floats:
 def reference(tip: Tip, *, quick: bool) -> Reference:
     """By quadrature of f' alone with ``DIGITS`` digits."""
     steps = list(range(0, DEPTHS.size, 50 if quick else 20))
-    found = rm.indent(tip.shape, modulus=MODULUS, work=WORK, indentation=tip.indentation[steps])
-    loosest = rm.pull_off(tip.shape, modulus=MODULUS, work=WORK, control="force")
+    found = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation[steps])
+    loosest = rm.pull_off(tip.shape, effective_modulus=MODULUS, work=WORK, control="force")
     with mp.workdps(DIGITS):
         precise = _Precise(tip)
         radii = [
@@ -142,14 +142,14 @@ class _Precise:
 
 def by_package(tip: Tip, shape: Shape) -> Curve:
     """The states that the package finds for a shape."""
-    state = rm.indent(shape, modulus=MODULUS, work=WORK, indentation=tip.indentation)
-    off = rm.pull_off(shape, modulus=MODULUS, work=WORK, control="force")
+    state = rm.indent(shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation)
+    off = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="force")
     return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), float(off.force), DEPTHS.size + 1)
 
 
 def as_table(tip: Tip, points: int) -> Shape:
     """The same profile as a table of so many points, as far as the contact reaches and a half."""
-    farthest = rm.indent(tip.shape, modulus=MODULUS, work=WORK, indentation=float(tip.indentation[-1]))
+    farthest = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=float(tip.indentation[-1]))
     r = np.linspace(0.0, 1.5 * float(farthest.contact_radius), points)
     return rm.Tabulated(r, tip.shape.f(r))
 
@@ -157,7 +157,7 @@ def as_table(tip: Tip, points: int) -> Shape:
 def by_springs(tip: Tip, count: int) -> Curve:
     """A row of springs for each indentation, and one under dead load."""
     state = rm.indent(
-        tip.shape, modulus=MODULUS, work=WORK, indentation=tip.indentation, method="springs", springs=count
+        tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation, method="springs", springs=count
     )
     row = Springs.of(tip.shape, MODULUS, WORK, count)
     evaluations = (DEPTHS.size + 1) * count

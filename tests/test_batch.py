@@ -47,7 +47,11 @@ def test_a_realisation_equals_the_ensemble_pressed_alone(base: xr.Dataset) -> No
     asked = read(scene())
     data = rm.generate(asked.asperities, seed=7, realization=4)
     alone = rm.load_separation(
-        data, separation=asked.path.separations(1e-6), modulus=asked.modulus, work=asked.work, unload=True
+        data,
+        separation=asked.path.separations(1e-6),
+        effective_modulus=asked.effective_modulus,
+        work=asked.work,
+        unload=True,
     )
     for name in ("force", "contact_area", "contact_count", "stiffness"):
         np.testing.assert_array_equal(base[name][4], alone[name])

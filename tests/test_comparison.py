@@ -57,7 +57,7 @@ def check(plan: Plan, law: str, theory: Callable[[str, np.ndarray], np.ndarray],
 
 
 def by_hand(**others: Any) -> dict[str, Any]:
-    return {"modulus": MODULUS, "radius": RADIUS, "density": COUNT / AREA, "std": STD, **others}
+    return {"effective_modulus": MODULUS, "radius": RADIUS, "density": COUNT / AREA, "std": STD, **others}
 
 
 def test_greenwood_and_williamson_count_the_separation_from_the_mean_of_the_heights() -> None:
@@ -78,7 +78,7 @@ def test_fuller_and_tabor_too_in_and_out() -> None:
 
 def test_maugis_too_where_the_tabor_number_is_small() -> None:
     plan = asked(adhesion={"model": "dugdale", "work": 1e-3, "strength": 1e5}, material={"effective_modulus": 1e12})
-    law, given = rm.theory.dmt_maugis, by_hand(modulus=1e12, work=1e-3)
+    law, given = rm.theory.dmt_maugis, by_hand(effective_modulus=1e12, work=1e-3)
     check(plan, "dmt_maugis", lambda name, h: law(separation=h - MEAN, variable=name, **given))
 
 
@@ -131,11 +131,11 @@ def test_the_elliptic_law_of_greenwood_is_the_expected_one_of_a_gaussian_surface
 def test_the_laws_of_a_gaussian_surface_by_hand() -> None:
     plan = asked(asperities=SURFACE)
     found, h = named_laws(plan, ["force", "contact_fraction"]), plan.cells[0].route.separation
-    moments = {"modulus": MODULUS, **SPECTRUM.moments._asdict()}
+    moments = {"effective_modulus": MODULUS, **SPECTRUM.moments._asdict()}
     bush = lines_of(found, "bush_gibson_thomas")
     pressure = rm.theory.bush_gibson_thomas(separation=h, **moments)
     np.testing.assert_allclose(bush["force"], 1e-8 * pressure, rtol=1e-12)
-    of_load = {"modulus": MODULUS, "rms_slope": SPECTRUM.rms_slope}
+    of_load = {"effective_modulus": MODULUS, "rms_slope": SPECTRUM.rms_slope}
     asymptote = lines_of(found, "bush_gibson_thomas_asymptote")
     np.testing.assert_allclose(
         asymptote["contact_fraction"], rm.theory.bush_gibson_thomas_asymptote(pressure=pressure, **of_load), rtol=1e-12
@@ -144,7 +144,7 @@ def test_the_laws_of_a_gaussian_surface_by_hand() -> None:
     touching = h <= 0.0
     assert 0 < touching.sum() < h.size
     assert np.isnan(loads[touching]).all()
-    gaps = rm.theory.persson_separation(pressure=loads[~touching], modulus=MODULUS, spectrum=SPECTRUM)
+    gaps = rm.theory.persson_separation(pressure=loads[~touching], effective_modulus=MODULUS, spectrum=SPECTRUM)
     np.testing.assert_allclose(gaps, h[~touching], rtol=1e-11)
     np.testing.assert_allclose(
         lines_of(found, "persson_contact_fraction")["contact_fraction"][~touching],
@@ -159,16 +159,16 @@ def test_the_laws_of_a_gaussian_surface_by_hand() -> None:
 
 @pytest.mark.parametrize("separation", [np.array([2e-6, 1e-9, 1e-6]), np.array(5e-7), np.array([])])
 def test_pressure_and_gap_of_persson_are_inverse(separation: np.ndarray) -> None:
-    pressure = rm.theory.persson_pressure(separation=separation, modulus=MODULUS, spectrum=SPECTRUM)
+    pressure = rm.theory.persson_pressure(separation=separation, effective_modulus=MODULUS, spectrum=SPECTRUM)
     assert pressure.shape == separation.shape
-    again = rm.theory.persson_separation(pressure=pressure, modulus=MODULUS, spectrum=SPECTRUM)
+    again = rm.theory.persson_separation(pressure=pressure, effective_modulus=MODULUS, spectrum=SPECTRUM)
     np.testing.assert_allclose(again, separation, rtol=1e-12)
 
 
 @pytest.mark.parametrize("separation", [0.0, -1e-6, 1.0])
 def test_a_gap_without_pressure_is_refused(separation: float) -> None:
     with pytest.raises(rm.OutOfRange, match=r"separation is from .* it must be above .* and below"):
-        rm.theory.persson_pressure(separation=separation, modulus=MODULUS, spectrum=SPECTRUM)
+        rm.theory.persson_pressure(separation=separation, effective_modulus=MODULUS, spectrum=SPECTRUM)
 
 
 SAVED = {"source": "file", "file": "saved.nc"}

@@ -38,14 +38,19 @@ def test_the_shape_of_the_guide_works(conoid: ModuleType) -> None:
         np.testing.assert_allclose(getattr(new, name)(x), getattr(same, name)(x), rtol=1e-14)
     for work in (0.0, W):
         for control, values in (("indentation", [1e-9, 1e-7, 3e-6]), ("force", [1e-8, 1e-6, 1e-4])):
-            one, other = (rm.indent(shape, modulus=E, work=work, **{control: values}) for shape in (new, same))
+            one, other = (
+                rm.indent(shape, effective_modulus=E, work=work, **{control: values}) for shape in (new, same)
+            )
             for name in one.data_vars:
                 np.testing.assert_allclose(one[name], other[name], rtol=1e-12)
     for control in ("displacement", "force"):
-        one, other = (rm.pull_off(shape, modulus=E, work=W, control=control) for shape in (new, same))
+        one, other = (rm.pull_off(shape, effective_modulus=E, work=W, control=control) for shape in (new, same))
         assert float(one.force) == pytest.approx(float(other.force), rel=1e-12)
-    assert rm.equilibria(new, modulus=E, work=W, indentation=float(one.indentation)).sizes["equilibrium"] > 0
+    assert rm.equilibria(new, effective_modulus=E, work=W, indentation=float(one.indentation)).sizes["equilibrium"] > 0
     data = ensemble([0.0, -1e-7], shape="conoid", slope=[S, 2.0 * S], radius=R)
-    law = rm.load_separation(data, separation=[1e-6, -1e-6, 1e-6], modulus=E, work=W)
-    alone = [rm.indent(conoid.Conoid(s, R), modulus=E, work=W, indentation=d) for s, d in ((S, 1e-6), (2 * S, 0.9e-6))]
+    law = rm.load_separation(data, separation=[1e-6, -1e-6, 1e-6], effective_modulus=E, work=W)
+    alone = [
+        rm.indent(conoid.Conoid(s, R), effective_modulus=E, work=W, indentation=d)
+        for s, d in ((S, 1e-6), (2 * S, 0.9e-6))
+    ]
     assert float(law.force[1]) == pytest.approx(sum(float(one.force) for one in alone), rel=1e-12)

@@ -25,8 +25,8 @@ E, W = 4e6, 0.05
 VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
 
 
-def strength_of(tabor: float, radius: float = 5e-5, modulus: float = E, work: float = W) -> float:
-    return float(tabor * work / (radius * work**2 / modulus**2) ** (1.0 / 3.0))
+def strength_of(tabor: float, radius: float = 5e-5, effective_modulus: float = E, work: float = W) -> float:
+    return float(tabor * work / (radius * work**2 / effective_modulus**2) ** (1.0 / 3.0))
 
 
 class Walk:
@@ -67,7 +67,7 @@ def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
     reach = W / strength
     path = np.concatenate([[z.max() + 2.0 * reach + 1e-7], rng.uniform(-5e-8, 8e-8 + reach, 25), [-4e-8, 1e-6 + reach]])
     law = rm.load_separation(
-        ensemble(z, radius=radius), separation=path, modulus=E, work=W, adhesion="dugdale", strength=strength
+        ensemble(z, radius=radius), separation=path, effective_modulus=E, work=W, adhesion="dugdale", strength=strength
     )
     expected = np.zeros(path.size)
     for height, own in zip(z, radius, strict=True):
@@ -80,7 +80,7 @@ def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
 
 def test_attraction_begins_before_touch_and_ends_at_the_fold() -> None:
     tip, strength = rm.Paraboloid(5e-5), strength_of(2.0)
-    law = {"modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
+    law = {"effective_modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
     off, on = float(rm.pull_off(tip, **law).indentation), -W / strength
     assert off < on
     path = -np.array([on * 1.0001, on * 0.9999, 0.0, on, off * 0.9999, off * 1.0001])
@@ -97,7 +97,7 @@ def test_at_small_tabor_numbers_asperities_attract_without_touching() -> None:
     law = rm.load_separation(
         ensemble([0.0, 0.0], radius=5e-5),
         separation=[0.5 * W / strength],
-        modulus=E,
+        effective_modulus=E,
         work=W,
         adhesion="dugdale",
         strength=strength,
@@ -118,8 +118,8 @@ SHAPES = {
 def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> None:
     shape, numbers = SHAPES[kind]
     for tabor in numbers:
-        strength = tabor / rm.tabor(shape, modulus=E, work=W, strength=1.0)
-        law = {"modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
+        strength = tabor / rm.tabor(shape, effective_modulus=E, work=W, strength=1.0)
+        law = {"effective_modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
         far, reach = -float(rm.pull_off(shape, **law).indentation), W / strength
         out = np.linspace(-0.5 * far, reach, 6001)
         before, after = reach * (1.0 + 1e-9), far * (1.0 + 1e-9)
@@ -141,9 +141,14 @@ def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> No
 @pytest.mark.parametrize("reach", [1e-6, 0.1, 1e10, 1e20])
 def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> None:
     """Else the force of a punch, P/(2 E*) = b delta - beta/2 (a m + b^2 theta), is right to the stated error."""
-    b, beta, modulus = 1e-6, 2e-3, 1e9
-    strength = 0.5 * beta * modulus
-    law = {"modulus": modulus, "work": reach * strength, "adhesion": "dugdale", "strength": strength}
+    b, beta, effective_modulus = 1e-6, 2e-3, 1e9
+    strength = 0.5 * beta * effective_modulus
+    law = {
+        "effective_modulus": effective_modulus,
+        "work": reach * strength,
+        "adhesion": "dugdale",
+        "strength": strength,
+    }
     data, way = ensemble([0.0], shape="flat_punch", radius=b), np.linspace(2.0, -1.0, 31) * beta * b
     if reach > 1.0:
         with pytest.raises(rm.OutOfRange, match=r"is lost in its roundings"):
@@ -155,7 +160,7 @@ def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> No
     m = np.clip(way / beta, 0.0, b)
     a = np.sqrt((b - m) * (b + m))
     pulled = 0.5 * beta * (a * m + b * b * np.arctan2(m, a))
-    expected = 2.0 * modulus * (b * np.maximum(-way, 0.0) - pulled)
+    expected = 2.0 * effective_modulus * (b * np.maximum(-way, 0.0) - pulled)
     assert np.abs(curve.force - expected).max() <= float(curve.numerical_error) * np.abs(expected).max()
 
 
@@ -164,7 +169,7 @@ def test_the_cohesive_zone_ends_with_the_sphere(reach: float, beta: float) -> No
     """P and k are Maugis's with c = R, and the work of the force is the energy stored and lost."""
     radius, strength = 2e-6, 0.5 * beta * E
     sphere = rm.Sphere(radius)
-    law = {"modulus": E, "work": reach * radius * strength, "adhesion": "dugdale", "strength": strength}
+    law = {"effective_modulus": E, "work": reach * radius * strength, "adhesion": "dugdale", "strength": strength}
     contact = rm.indent(sphere, indentation=np.linspace(1.5, 5.0, 8) * radius, **law)
     a = contact.contact_radius.to_numpy()
     m, theta = np.sqrt((radius - a) * (radius + a)), np.arccos(a / radius)
@@ -201,7 +206,7 @@ def test_the_same_physics_in_other_units(tabor: float, length: float, stiff: flo
         rm.load_separation(
             ensemble(z * factor, radius=5e-5 * factor),
             separation=path * factor,
-            modulus=E * hard,
+            effective_modulus=E * hard,
             work=W * factor * hard,
             adhesion="dugdale",
             strength=strength_of(tabor) * hard,
@@ -231,7 +236,7 @@ def test_the_bound_on_the_error_holds(name: str) -> None:
     for case in json.loads((DATA / f"dugdale_{name}.json").read_text())["cases"]:
         rows = [row for row in case["rows"] if "displacement" in row["answers"]]
         rows.sort(key=lambda row: -mp.mpf(row["indentation"]))
-        law = {key: case[key] for key in ("modulus", "work", "strength")}
+        law = {key: case[key] for key in ("effective_modulus", "work", "strength")}
         for height in (0.0, 3e-7, -7e-5):
             data = ensemble(np.full(40, height), shape=name, **case["parameters"])
             path = [height - float(row["indentation"]) for row in rows]
@@ -265,12 +270,14 @@ def test_the_cheapest_law_that_is_right_enough_is_taken() -> None:
 
 def test_jkr_of_a_small_tabor_number_warns_with_the_number() -> None:
     tip, strength = rm.Paraboloid(5e-5), strength_of(0.5)
-    number = rm.tabor(tip, modulus=E, work=W, strength=strength)
+    number = rm.tabor(tip, effective_modulus=E, work=W, strength=strength)
     assert number == pytest.approx(0.5, rel=1e-12)
     with pytest.warns(rm.LimitWarning, match=r"a Tabor number of 0\.5: "):
-        rm.indent(tip, modulus=E, work=W, strength=strength, indentation=0.0)
+        rm.indent(tip, effective_modulus=E, work=W, strength=strength, indentation=0.0)
     with pytest.warns(rm.LimitWarning, match=r"a Tabor number of 0\.5: "):
-        rm.load_separation(ensemble([0.0], radius=5e-5), separation=[0.0], modulus=E, work=W, strength=strength)
+        rm.load_separation(
+            ensemble([0.0], radius=5e-5), separation=[0.0], effective_modulus=E, work=W, strength=strength
+        )
     adhesion = {"model": "jkr", "work": W, "range": W / strength}
     asked = scene(adhesion=adhesion, batch=None)
     assert "a Tabor number of 0." in rm.run(asked).attrs["warnings"]
@@ -305,13 +312,13 @@ def test_what_does_not_go_together_is_refused(adhesion: dict[str, object], says:
 def test_one_asperity_refuses(changes: dict[str, object], says: str) -> None:
     control = {} if "contact_radius" in changes else {"indentation": 0.0}
     with pytest.raises(rm.RoughmdrError, match=says):
-        rm.indent(rm.Paraboloid(1e-6), modulus=1e9, work=W, **control, **changes)
+        rm.indent(rm.Paraboloid(1e-6), effective_modulus=1e9, work=W, **control, **changes)
 
 
 @pytest.mark.parametrize("radius", [2.068411851025195, 2.104768134310386, 3.096157246512134])
 def test_next_to_the_fold_every_float_has_its_contact(radius: float) -> None:
     """There the indentation is all roundings, along which Newton's method would creep."""
-    tip, law = rm.Paraboloid(radius), {"modulus": 251837.4456117847, "work": 0.09166012584432522}
+    tip, law = rm.Paraboloid(radius), {"effective_modulus": 251837.4456117847, "work": 0.09166012584432522}
     cohesion = {"adhesion": "dugdale", "strength": 240.14722117573052}
     fold = rm.pull_off(tip, **law, **cohesion)
     near = float(fold.indentation) + np.arange(3000) * np.spacing(abs(float(fold.indentation)))

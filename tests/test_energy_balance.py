@@ -33,7 +33,7 @@ def folds(data: xr.Dataset) -> np.ndarray:
     kind = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw}[data.attrs["shape"]]
     names = [name for name in data.data_vars if name != "height"]
     shapes = [kind(**{name: float(data[name][i]) for name in names}) for i in range(data.sizes["asperity"])]
-    return -np.array([float(rm.pull_off(shape, modulus=E, work=W).indentation) for shape in shapes])
+    return -np.array([float(rm.pull_off(shape, effective_modulus=E, work=W).indentation) for shape in shapes])
 
 
 def down(stops: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -62,7 +62,7 @@ def test_the_work_of_a_closed_load_cycle_is_what_the_jumps_dissipate(kind: str) 
     pieces = [*down(np.array([*made, lowest])), *up(np.array([lowest, *lost]))]
     path = np.concatenate([*(h for h, _ in pieces), [lost[-1] * 1.001]])
     weights = np.concatenate([*(w for _, w in pieces), [0.0]])
-    law = rm.load_separation(data, separation=path, modulus=E, work=W, variables=VARIABLES)
+    law = rm.load_separation(data, separation=path, effective_modulus=E, work=W, variables=VARIABLES)
     work = -float(np.sum(law.force * weights))
     assert float(law.contact_count[-1]) == float(law.energy[-1]) == 0.0
     assert abs(work / float(law.dissipated_energy[-1]) - 1.0) < 1e-12
@@ -74,9 +74,9 @@ def test_without_adhesion_nothing_is_dissipated_and_the_energy_is_the_work(kind:
     z = np.sort(data.height.to_numpy())[::-1]
     whole = np.concatenate([h for h, _ in down(np.array([*z, -3e-6]))])
     weights = np.concatenate([w for _, w in down(np.array([*z, -3e-6]))])
-    law = rm.load_separation(data, separation=[*whole, -3e-6], modulus=E, variables=VARIABLES)
+    law = rm.load_separation(data, separation=[*whole, -3e-6], effective_modulus=E, variables=VARIABLES)
     assert float(law.energy[-1]) == pytest.approx(-float(np.sum(law.force[:-1] * weights)), rel=1e-7)
-    back = rm.load_separation(data, separation=[-1e-6, 5e-6], modulus=E, variables=VARIABLES)
+    back = rm.load_separation(data, separation=[-1e-6, 5e-6], effective_modulus=E, variables=VARIABLES)
     assert back.energy.to_numpy()[1] == 0.0
     assert not back.dissipated_energy.any()
     assert not law.dissipated_energy.any()
@@ -91,8 +91,8 @@ def test_without_adhesion_nothing_is_dissipated_and_the_energy_is_the_work(kind:
 def test_every_jump_is_counted_once_on_any_path(path: list[int], heights: list[int], unit: float) -> None:
     data = ensemble((np.array(heights) + 0.5) * unit, radius=50.0 * unit)
     way, work = np.array(path) * unit, W * unit / 1e-6
-    law = rm.load_separation(data, separation=way, modulus=E, work=work, variables=VARIABLES)
-    fold = -float(rm.pull_off(rm.Paraboloid(50.0 * unit), modulus=E, work=work).indentation)
+    law = rm.load_separation(data, separation=way, effective_modulus=E, work=work, variables=VARIABLES)
+    fold = -float(rm.pull_off(rm.Paraboloid(50.0 * unit), effective_modulus=E, work=work).indentation)
     a0 = (2.0 * np.pi * work * (50.0 * unit) ** 2 / E) ** (1.0 / 3.0)
     on, off = 0.6 * np.pi * work * a0**2, 0.4 * 4.0 ** (-4.0 / 3.0) * np.pi * work * a0**2
     spent, held, expected = 0.0, np.zeros(data.sizes["asperity"], dtype=bool), []
@@ -110,7 +110,12 @@ def test_a_coarse_path_dissipates_as_much_as_a_fine_one() -> None:
     ends = []
     for steps in (3, 30, 3000):
         law = rm.load_separation(
-            data, separation=np.linspace(4e-6, -1e-6, steps), modulus=E, work=W, unload=True, variables=VARIABLES
+            data,
+            separation=np.linspace(4e-6, -1e-6, steps),
+            effective_modulus=E,
+            work=W,
+            unload=True,
+            variables=VARIABLES,
         )
         assert (np.diff(law.dissipated_energy) >= 0.0).all()
         ends.append(float(law.dissipated_energy[-1]))
@@ -120,7 +125,7 @@ def test_a_coarse_path_dissipates_as_much_as_a_fine_one() -> None:
 
 def test_an_energy_that_no_float_can_hold_is_refused_only_where_it_is_asked_for() -> None:
     data = ensemble([1e-160], radius=1e-160, area=None)
-    law = {"separation": [0.0], "modulus": 1e30}
+    law = {"separation": [0.0], "effective_modulus": 1e30}
     assert float(rm.load_separation(data, **law, variables=["force"]).force[0]) > 0.0
     with pytest.raises(rm.OutOfRange, match="not representable"):
         rm.load_separation(data, **law, variables=["energy"])

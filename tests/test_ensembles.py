@@ -93,7 +93,7 @@ def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
     section = {key: value for key, value in ASPERITIES.items() if key != "radius"}
     data = rm.generate({**section, "shape": shape, **parameters}, seed=1)
     assert set(data.data_vars) == {"height", *parameters}
-    law = rm.load_separation(data, separation=[1e-6, 0.0], modulus=1e7, work=0.01)
+    law = rm.load_separation(data, separation=[1e-6, 0.0], effective_modulus=1e7, work=0.01)
     assert float(law.force[1]) > float(law.force[0])
 
 

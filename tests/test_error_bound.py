@@ -45,12 +45,14 @@ def true_error(shape: Shape, work: float, data: xr.Dataset, law: xr.Dataset) -> 
 @pytest.mark.parametrize("datum", [0.0, 1.0])
 def test_the_stated_error_holds_up_to_the_fold(kind: str, work: float, datum: float) -> None:
     shape = SHAPES[kind]
-    fold = -float(rm.pull_off(shape, modulus=E, work=work).indentation) if work else 1e-6
+    fold = -float(rm.pull_off(shape, effective_modulus=E, work=work).indentation) if work else 1e-6
     offsets = np.array([1.0, 0.4, 0.0]) * fold
     data = ensemble(datum + offsets, shape=kind, **COLUMNS[kind])
     for near in (1e-3, 1e-6, 1e-9):
         path = datum + np.array([2.0, -0.5, 0.3, 1.0, (2.0 if work else 1.0) * (1.0 - near)]) * fold
-        law = rm.load_separation(data, separation=path, modulus=E, work=work, variables=["force", "contact_count"])
+        law = rm.load_separation(
+            data, separation=path, effective_modulus=E, work=work, variables=["force", "contact_count"]
+        )
         stated = float(law.numerical_error)
         assert true_error(shape, work, data, law) <= stated
         assert stated < 1e-2 if datum else stated < 1e-6
@@ -61,7 +63,8 @@ def test_the_stated_error_is_of_use_on_an_ordinary_ensemble() -> None:
     data = ensemble(np.sort(rng.normal(0.0, 1e-6, 60))[::-1], radius=5e-5)
     for work in (0.0, W):
         law = rm.load_separation(
-            data, separation=np.linspace(2e-6, -1e-6, 8), modulus=E, work=work, variables=["force", "contact_count"],
+            data, separation=np.linspace(2e-6, -1e-6, 8), effective_modulus=E, work=work,
+            variables=["force", "contact_count"],
             unload=True,
         )  # fmt: skip
         true = true_error(rm.Paraboloid(5e-5), work, data, law)
@@ -87,7 +90,9 @@ def test_equal_heights_in_any_order_give_the_same_bits() -> None:
     z = np.repeat(rng.normal(0.0, 1e-6, 40), 25)
     data = ensemble(z, radius=rng.uniform(1e-5, 9e-5, z.size))
     laws = [
-        rm.load_separation(data.isel(asperity=order), separation=np.linspace(2e-6, -1e-6, 9), modulus=E, work=W)
+        rm.load_separation(
+            data.isel(asperity=order), separation=np.linspace(2e-6, -1e-6, 9), effective_modulus=E, work=W
+        )
         for order in (np.arange(z.size), rng.permutation(z.size))
     ]
     for name in ("force", "contact_area", "stiffness"):
@@ -96,7 +101,7 @@ def test_equal_heights_in_any_order_give_the_same_bits() -> None:
 
 def test_what_no_float_can_hold_is_refused() -> None:
     with pytest.raises(rm.OutOfRange, match="not representable"):
-        rm.load_separation(ensemble([1e-200], radius=1e-200, area=None), separation=[0.0], modulus=E)
+        rm.load_separation(ensemble([1e-200], radius=1e-200, area=None), separation=[0.0], effective_modulus=E)
 
 
 def outside(kind: str, adhesive: bool, seeds: range) -> list[tuple[object, object]]:
@@ -118,13 +123,15 @@ def test_the_stated_error_of_very_many_random_asperities_holds(group: asperity_e
     assert not outside(*group)
 
 
-def of_one(shape: Shape, modulus: float, work: float, indentation: float) -> tuple[float, float, float]:
+def of_one(shape: Shape, effective_modulus: float, work: float, indentation: float) -> tuple[float, float, float]:
     """True and stated error of a sum over one asperity, over its force, and that of the asperity alone."""
-    exact = Exact(shape, modulus, work)
+    exact = Exact(shape, effective_modulus, work)
     columns = {"exponent": ("term", list(shape.terms)), "terms": ("term", list(shape.terms.values()))}
     data = xr.Dataset({"height": ("asperity", [0.0]), **columns}, attrs={"shape": shape.name})
-    law = rm.load_separation(data, separation=[0.0, -indentation], modulus=modulus, work=work, variables=["force"])
-    alone = rm.indent(shape, modulus=modulus, work=work, indentation=indentation)
+    law = rm.load_separation(
+        data, separation=[0.0, -indentation], effective_modulus=effective_modulus, work=work, variables=["force"]
+    )
+    alone = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=indentation)
     width = shape.stretched()[0]
     t = exact.state(mp.mpf(indentation), float(alone.contact_radius) / width, mp.mpf(0), mp.inf)
     force = exact.force(t)
@@ -134,7 +141,7 @@ def of_one(shape: Shape, modulus: float, work: float, indentation: float) -> tup
 
 
 @pytest.mark.parametrize(
-    ("terms", "modulus", "work", "distance"),
+    ("terms", "effective_modulus", "work", "distance"),
     [
         ({0.51: 4.61651885981686e-06, 3: 31560506.062446207}, 118883500.2033251, 4.284641315594834e-05, 2.98e-12),
         ({0.52: 0.007272545523147884, 0.9: 0.00011301377253670167}, 2601093244.77, 0.5764512712935, 3e-6),
@@ -143,10 +150,12 @@ def of_one(shape: Shape, modulus: float, work: float, indentation: float) -> tup
         ({2: 1e4, 150: 1e300}, 1e7, 0.05, 1e-3),
     ],
 )
-def test_a_series_near_its_fold(terms: dict[float, float], modulus: float, work: float, distance: float) -> None:
+def test_a_series_near_its_fold(
+    terms: dict[float, float], effective_modulus: float, work: float, distance: float
+) -> None:
     shape = rm.PowerSeries(terms)
-    fold = float(rm.pull_off(shape, modulus=modulus, work=work, control="displacement").indentation)
-    true, stated, alone = of_one(shape, modulus, work, fold * (1.0 - distance))
+    fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement").indentation)
+    true, stated, alone = of_one(shape, effective_modulus, work, fold * (1.0 - distance))
     assert true <= stated
     assert stated <= 1e4 * max(true, 1e-15)
     assert alone <= 1e-12 + 3e-16 / math.sqrt(distance)
@@ -155,7 +164,7 @@ def test_a_series_near_its_fold(terms: dict[float, float], modulus: float, work:
 def test_a_steep_series_without_adhesion_is_found_to_the_last_digit_of_its_value() -> None:
     shape = rm.PowerSeries({100.0: 1.0, 150.0: 1.0})
     for indentation in np.geomspace(1e-3, 1e2, 40):
-        contact = rm.indent(shape, modulus=E, indentation=float(indentation))
+        contact = rm.indent(shape, effective_modulus=E, indentation=float(indentation))
         exact = Exact(shape, E, 0.0)
         t = exact.state(mp.mpf(float(indentation)), float(contact.contact_radius), mp.mpf(0), mp.inf)
         assert abs(float(contact.force) / exact.force(t) - 1) < 400 * 2.0**-53
@@ -199,11 +208,11 @@ def test_the_stated_error_of_a_sum_of_unlike_asperities_holds() -> None:
             data = ensemble(z, shape=kind, **columns)
             shapes = [rm.shapes.SHAPES[kind](**{name: float(c[i]) for name, c in columns.items()}) for i in range(12)]
             h = float(z.min() - 1e-9)
-            law = rm.load_separation(data, separation=[h], modulus=1e8, work=1e-2, variables=["force"])
+            law = rm.load_separation(data, separation=[h], effective_modulus=1e8, work=1e-2, variables=["force"])
             exact = mp.mpf(0)
             for shape, height in zip(shapes, z.tolist(), strict=True):
                 depth = float(mp.mpf(height) - mp.mpf(h))
-                a = float(rm.indent(shape, modulus=1e8, work=1e-2, indentation=depth).contact_radius)
+                a = float(rm.indent(shape, effective_modulus=1e8, work=1e-2, indentation=depth).contact_radius)
                 width, _, form = shape.stretched()
                 own = Exact(shape, 1e8, 1e-2)
                 begin = shape.profile.place(a, width, [form])

@@ -130,7 +130,7 @@ def test_generate_writes_the_asperities_of_a_run(folder: Path) -> None:
         np.testing.assert_array_equal(ensemble.radius, expected.radius)
         assert ensemble.attrs["patch"] == 1e-3
         assert ensemble.attrs["seed"] == 7
-        law = rm.load_separation(ensemble, separation=[1e-6], modulus=3e6)
+        law = rm.load_separation(ensemble, separation=[1e-6], effective_modulus=3e6)
         assert float(law.force[0]) > 0.0
     swept = roughmdr("generate", "small.toml", "-o", "x.nc", "--set", "sweep.asperities.count=[1,2]", cwd=folder)
     assert swept.returncode == 2

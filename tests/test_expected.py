@@ -37,14 +37,16 @@ def scene(asperities: dict[str, object], adhesion: dict[str, object] | None, **m
     }
 
 
-def jkr_mean(path: np.ndarray, lowest: np.ndarray, modulus: float, work: float, radii: np.ndarray) -> np.ndarray:
+def jkr_mean(
+    path: np.ndarray, lowest: np.ndarray, effective_modulus: float, work: float, radii: np.ndarray
+) -> np.ndarray:
     """The mean JKR force [radius, step] over normal heights of std 1 um from ``lowest``, plain, by contact radius."""
     nodes, weights = leggauss(60)
     R, h = radii[:, None, None], path[None, :, None]
-    fold = (math.pi * work * R * R / (8.0 * modulus)) ** (1.0 / 3.0)
+    fold = (math.pi * work * R * R / (8.0 * effective_modulus)) ** (1.0 / 3.0)
 
     def indentation(a: np.ndarray) -> np.ndarray:
-        return a * a / R - np.sqrt(2.0 * math.pi * a * work / modulus)
+        return a * a / R - np.sqrt(2.0 * math.pi * a * work / effective_modulus)
 
     def radius(delta: np.ndarray) -> np.ndarray:
         low, high = fold + 0.0 * delta, 5.0 * fold + np.sqrt(R * np.maximum(delta, 0.0))
@@ -59,8 +61,8 @@ def jkr_mean(path: np.ndarray, lowest: np.ndarray, modulus: float, work: float, 
     total = np.zeros(lowest.shape)
     for low, high in pairwise([radius(first), *ends]):
         a = low + 0.5 * (high - low) * (1.0 + nodes)
-        force = 4.0 * modulus * a**3 / (3.0 * R) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
-        slope = 2.0 * a / R - 0.5 * np.sqrt(2.0 * math.pi * work / modulus / a)
+        force = 4.0 * effective_modulus * a**3 / (3.0 * R) - np.sqrt(8.0 * math.pi * effective_modulus * work * a**3)
+        slope = 2.0 * a / R - 0.5 * np.sqrt(2.0 * math.pi * work / effective_modulus / a)
         density = np.exp(-0.5 * ((h + indentation(a)) / UM) ** 2) / (UM * math.sqrt(2.0 * math.pi))
         total += 0.5 * (high - low)[..., 0] * ((force * density * slope) @ weights)
     return total
@@ -68,7 +70,7 @@ def jkr_mean(path: np.ndarray, lowest: np.ndarray, modulus: float, work: float, 
 
 def test_jkr_in_and_out_against_plain_quadrature() -> None:
     """Also where some asperities still hold on to their lowest summits, and others not; within the error it states."""
-    modulus, work = 4e6, 0.05
+    effective_modulus, work = 4e6, 0.05
     path = np.array([2.0, 0.5, -0.5, -0.3, -0.2, -0.09, -0.08, -0.07, -0.06, 0.5, 2.0]) * UM
     asked = scene({"shape": "paraboloid", "radius": LOGNORMAL}, {"model": "jkr", "work": work})
     got = rm.run({**asked, "path": {"separation": path}, "batch": {"estimator": "expected"}})
@@ -76,13 +78,13 @@ def test_jkr_in_and_out_against_plain_quadrature() -> None:
     scores, step = np.linspace(-8.0, 8.0, 1001, retstep=True)
     shares = np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi) * step
     radii = 50.0 * UM * np.exp(math.sqrt(variance) * scores - 0.5 * variance)
-    depth = 3.0 * (math.pi * work / (8.0 * modulus)) ** (2.0 / 3.0) * radii ** (1.0 / 3.0)
+    depth = 3.0 * (math.pi * work / (8.0 * effective_modulus)) ** (2.0 / 3.0) * radii ** (1.0 / 3.0)
     closest = np.minimum.accumulate(path)
     lowest = np.where(path == closest, path, np.maximum(closest, path - depth[:, None]))
     held = (lowest == closest).mean(axis=0)
     assert ((held > 0.0) & (held < 1.0)).sum() >= 2  # steps at which some hold on and others not
     parts = np.array_split(np.arange(scores.size), 40)
-    force = sum(shares[part] @ jkr_mean(path, lowest[part], modulus, work, radii[part]) for part in parts)
+    force = sum(shares[part] @ jkr_mean(path, lowest[part], effective_modulus, work, radii[part]) for part in parts)
     largest = float(np.abs(got.force).max())
     np.testing.assert_allclose(got.force[0], 2000 * force, rtol=0.0, atol=1e-8 * largest)
     assert float(got.numerical_error[0]) < 1e-10
@@ -165,7 +167,7 @@ def test_summits_of_a_gaussian_surface_are_greenwoods(m4: float) -> None:
     got = rm.run({**asked, "path": path, "output": output, "batch": {"estimator": "expected"}}).isel(realization=0)
     density = m4 / 0.02 / (6.0 * math.pi * math.sqrt(3.0))
     for name in output["variables"]:
-        law = rm.theory.greenwood_elliptic(separation=got.separation, modulus=4e6, variable=name, **moments)
+        law = rm.theory.greenwood_elliptic(separation=got.separation, effective_modulus=4e6, variable=name, **moments)
         law *= round(density * 1e-6) / (density * 1e-6)  # the patch holds a whole number
         assert float(np.abs(got[name] - law).max()) <= 2.0 * float(got.numerical_error) * law.max()
     assert float(got.numerical_error) < (1e-9 if m4 >= 1e9 else 1e-2)
@@ -218,7 +220,7 @@ def test_intervals_remember_what_asperities_do(turns: list[float], corners: bool
     counted = np.zeros(path.size)
     np.add.at(counted, held.step, inside.sum(axis=1))
     data = ensemble(heights, shape=shape.name, **shape.parameters)
-    law = rm.load_separation(data, separation=path, modulus=4e6, work=work, variables="contact_count")
+    law = rm.load_separation(data, separation=path, effective_modulus=4e6, work=work, variables="contact_count")
     edge = np.isin(np.round(heights / UM, 12), np.round(path / UM, 12)).any()
     np.testing.assert_allclose(counted, law.contact_count, atol=2.0 if edge else 0.0)
 

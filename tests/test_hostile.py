@@ -69,7 +69,7 @@ def test_a_patch_without_an_area_is_refused(patch: float) -> None:
 def test_a_pressure_that_no_float_can_hold_is_refused() -> None:
     with pytest.raises(rm.OutOfRange, match="pressure is not representable"):
         rm.load_separation(
-            ensemble([1.0], radius=1.0, area=1e-307), separation=[0.0], modulus=1e9, variables=["pressure"]
+            ensemble([1.0], radius=1.0, area=1e-307), separation=[0.0], effective_modulus=1e9, variables=["pressure"]
         )
 
 
@@ -128,9 +128,9 @@ def test_a_scene_in_python_takes_arrays_tuples_and_numpy_numbers() -> None:
 
 def test_whole_numbers_are_numbers() -> None:
     for shape in (rm.Paraboloid(radius=1), rm.Cone(slope=1), rm.PowerLaw(exponent=2, width=1, rise=1)):
-        whole = rm.indent(shape, modulus=1_000_000, work=1, indentation=1)
+        whole = rm.indent(shape, effective_modulus=1_000_000, work=1, indentation=1)
         floats = type(shape)(**{name: float(value) for name, value in shape.parameters.items()})
-        assert whole.equals(rm.indent(floats, modulus=1e6, work=1.0, indentation=1.0))
+        assert whole.equals(rm.indent(floats, effective_modulus=1e6, work=1.0, indentation=1.0))
 
 
 def test_one_mistake_is_said_once_and_counted() -> None:
@@ -379,7 +379,7 @@ def test_statistics_of_cells_that_are_far_apart_are_those_of_single_runs() -> No
     base = {"adhesion": None, "output": {"keep": "statistics"}, "batch": {"realizations": 5}}
     values = [1e-200, 1.0, 1e200]
     swept = rm.run(scene(material={"effective_modulus": 1}, sweep={"material.effective_modulus": values}, **base))
-    for i, modulus in enumerate(values):
-        alone = rm.run(scene(material={"effective_modulus": modulus}, **base))
+    for i, effective_modulus in enumerate(values):
+        alone = rm.run(scene(material={"effective_modulus": effective_modulus}, **base))
         for name in ("force_mean", "force_sem", "stiffness_sem"):
             np.testing.assert_array_equal(swept[name][i], alone[name])

@@ -72,7 +72,7 @@ def test_only_asperities_within_reach_are_visited(studied: Studied, name: str) -
     visits = 0
     for realization in range(size.realizations):
         ensemble = scene.asperities.ensemble(scene.seed, realization)
-        reduced = np.pi**2 * (scene.work / scene.modulus) ** 2 * ensemble.parameters["radius"]
+        reduced = np.pi**2 * (scene.work / scene.effective_modulus) ** 2 * ensemble.parameters["radius"]
         fold = 0.75 * np.cbrt(reduced)  # |delta_c| of a paraboloid
         for start in range(0, size.asperities, BLOCK):
             z, deepest = ensemble.height[start : start + BLOCK], fold[start : start + BLOCK].max()

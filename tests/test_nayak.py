@@ -281,7 +281,9 @@ def test_a_scene_runs_and_sweeps_its_slope() -> None:
     ensemble = rm.generate({**asperities, "rms_slope": 0.1}, seed=7, realization=1)
     h = result.separation.sel(asperities_rms_slope=0.1, asperities_hurst=0.8)
     assert float(h[0]) == pytest.approx(3.0 * section().sigma, rel=1e-12)
-    alone = rm.load_separation(ensemble, separation=h.to_numpy()[:40], modulus=rm.effective_modulus(3e6, 0.49))
+    alone = rm.load_separation(
+        ensemble, separation=h.to_numpy()[:40], effective_modulus=rm.effective_modulus(3e6, 0.49)
+    )
     np.testing.assert_allclose(force[1, 1, 1, :40], alone.force, rtol=1e-12)
 
 

@@ -141,12 +141,15 @@ def test_the_scene_of_shapes_agrees_with_single_asperities() -> None:
     scene = tomllib.loads((PIPELINES / "scenes" / "shape_and_pull_off.toml").read_text())
     scene["batch"]["realizations"] = 2
     law = rm.run(scene)
-    modulus = rm.effective_modulus(2e9, 0.4)
+    effective_modulus = rm.effective_modulus(2e9, 0.4)
     most = -law.force.min("step").mean("realization") / 100
     single = [
         -float(
             rm.pull_off(
-                rm.PowerLaw(exponent=float(n), width=1e-6, rise=11.5e-9), modulus=modulus, work=0.05, control="force"
+                rm.PowerLaw(exponent=float(n), width=1e-6, rise=11.5e-9),
+                effective_modulus=effective_modulus,
+                work=0.05,
+                control="force",
             ).force
         )
         for n in law.asperities_exponent

@@ -176,7 +176,7 @@ def test_an_ensemble_from_a_file_is_that_ensemble(tmp_path: Path) -> None:
     """Its law is that of the ensemble in Python, in any order and unit; what is no ensemble is refused."""
     data = generate(count=300)
     path = [2 * UM, 0.5 * UM, 2 * UM]
-    law = rm.load_separation(data, separation=path, modulus=4e6, work=0.05)
+    law = rm.load_separation(data, separation=path, effective_modulus=4e6, work=0.05)
     turned = data.isel(asperity=slice(None, None, -1))
     turned["height"] = turned.height * 1e6
     turned["height"].attrs["units"] = "um"

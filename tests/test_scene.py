@@ -25,7 +25,7 @@ def test_the_scene_of_the_demo() -> None:
     demo = read(SCENES / "rubber_on_glass.toml")
     assert demo.title == "Rubber on rough glass"
     assert demo.seed == 2026
-    assert demo.modulus == rm.effective_modulus(3e6, 0.49)
+    assert demo.effective_modulus == rm.effective_modulus(3e6, 0.49)
     assert demo.work == 0.05
     assert demo.batch.realizations == 32
     np.testing.assert_allclose(demo.path.separations(1e-6), np.linspace(4e-6, -0.5e-6, 200), rtol=1e-15)
@@ -43,8 +43,8 @@ def test_defaults(tmp_path: Path) -> None:
 
 def test_both_bodies_count() -> None:
     both = read(scene(counter={"modulus": "1 GPa", "poisson": 0.3}))
-    assert both.modulus == rm.effective_modulus(3e6, 0.49, 1e9, 0.3)
-    assert read(scene(material={"effective_modulus": "4 MPa"})).modulus == 4e6
+    assert both.effective_modulus == rm.effective_modulus(3e6, 0.49, 1e9, 0.3)
+    assert read(scene(material={"effective_modulus": "4 MPa"})).effective_modulus == 4e6
 
 
 def test_changes_are_toml_or_strings() -> None:

@@ -140,11 +140,11 @@ def test_any_distribution_is_that_of_scipy(
 @pytest.mark.parametrize("estimator", ["sampled", "stratified", "expected"])
 def test_the_force_is_that_of_scipys_heights(estimator: str) -> None:
     """Of Hertzian contacts all in reach, by the moment of the heights above the flat, without loc."""
-    a, size, radius, modulus = 2.0, 1e-6, 50e-6, 4e6
+    a, size, radius, effective_modulus = 2.0, 1e-6, 50e-6, 4e6
     section = {**ASPERITIES, "radius": radius, "height": {"distribution": "gamma", "a": a, "scale": size}}
     found = rm.run(
         {
-            "material": {"effective_modulus": modulus},
+            "material": {"effective_modulus": effective_modulus},
             "asperities": section,
             "path": {"separation": [0.0]},
             "output": {"variables": ["force"]},
@@ -152,7 +152,7 @@ def test_the_force_is_that_of_scipys_heights(estimator: str) -> None:
         }
     )
     moment = math.gamma(a + 1.5) / math.gamma(a) * size**1.5
-    exact = 1000 * 4.0 / 3.0 * modulus * math.sqrt(radius) * moment
+    exact = 1000 * 4.0 / 3.0 * effective_modulus * math.sqrt(radius) * moment
     tolerance = {"sampled": 4.0 * 1.25 / math.sqrt(64_000), "stratified": 3e-3, "expected": 1e-9}
     assert float(found.force.mean()) == pytest.approx(exact, rel=tolerance[estimator])
     assert NOT_AT_ZERO in found.attrs["warnings"]

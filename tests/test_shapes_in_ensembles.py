@@ -82,14 +82,14 @@ def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
     rng = np.random.default_rng(47)
     for omega in omegas:
         work = tension(shape, omega)
-        depth = -float(rm.pull_off(shape, modulus=E, work=work).indentation)
+        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work).indentation)
         path = -depth * np.concatenate([[-1.5, 0.3], rng.uniform(-1.05, 0.6, 60), [-1.5]])
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
         for name, value in (columns or shape.parameters).items():
             data[name] = ((shape.along,), value) if columns else (("asperity",), [value])
         names = [*VARIABLES, "contact_radius_sum"]
-        law = rm.load_separation(data, separation=path, modulus=E, work=work, variables=names)
+        law = rm.load_separation(data, separation=path, effective_modulus=E, work=work, variables=names)
         expected = walk(shape, work, -path, 4.0 * shape.stretched()[0])
         held = expected > 0.0
         near = np.abs(law.contact_radius_sum - expected) <= 2e-3 * expected + 1e-6 * shape.stretched()[0]
@@ -103,14 +103,14 @@ def test_their_energy_balance_closes(case: str) -> None:
     shape, omegas = BRANCHED[case]
     for omega in omegas:
         work = tension(shape, omega)
-        depth = -float(rm.pull_off(shape, modulus=E, work=work).indentation)
+        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work).indentation)
         way = depth * np.concatenate([np.linspace(0.5, -0.5, 2001), np.linspace(-0.5, 1.1, 20_001)])
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
         for name, value in (columns or shape.parameters).items():
             data[name] = ((shape.along,), value) if columns else (("asperity",), [value])
         way = np.concatenate([way, np.linspace(way[-1], 0.02 * depth, 9), np.linspace(0.02 * depth, way[-1], 9)])
-        law = rm.load_separation(data, separation=way, modulus=E, work=work, variables=VARIABLES)
+        law = rm.load_separation(data, separation=way, effective_modulus=E, work=work, variables=VARIABLES)
         done = -float(np.trapezoid(law.force[:22_002], way[:22_002]))
         spent = float(law.dissipated_energy[22_001])
         assert float(law.contact_count[-1]) == 0.0
@@ -123,12 +123,12 @@ def test_their_energy_balance_closes(case: str) -> None:
 def test_the_sum_is_that_of_its_asperities(kind: str, work: float) -> None:
     data = rough(kind, 12)
     path = np.concatenate([np.linspace(3e-7, -2e-7, 9), np.linspace(-1.9e-7, 9e-7, 9)])
-    law = rm.load_separation(data, separation=path, modulus=E, work=work, variables=VARIABLES)
+    law = rm.load_separation(data, separation=path, effective_modulus=E, work=work, variables=VARIABLES)
     totals = {name: np.zeros(path.size) for name in ("force", "contact_area", "stiffness")}
     for i in range(data.sizes["asperity"]):
         shape = SHAPES[kind](**{name: float(data[name][i]) for name in COLUMNS[kind]})
         delta = float(data.height[i]) - path
-        one = rm.indent(shape, modulus=E, work=work, indentation=delta)
+        one = rm.indent(shape, effective_modulus=E, work=work, indentation=delta)
         touched = np.maximum.accumulate(delta >= 0.0) if work else delta > 0.0
         for name, total in totals.items():
             totals[name] = total + np.where(touched, one[name], 0.0)
@@ -156,18 +156,21 @@ def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
     """Few steps for many at once, against a search that is held: any shape, from the fold to 1e4 times its depth."""
     rng = np.random.default_rng([53, *kind.encode()])
     for _ in range(20):
-        shape, modulus = any_shape(kind, rng), 10.0 ** rng.uniform(5.0, 12.0)
-        work = tension(shape, 10.0 ** rng.uniform(-4.0, 2.5)) * modulus / E
-        off = rm.pull_off(shape, modulus=modulus, work=work)
+        shape, effective_modulus = any_shape(kind, rng), 10.0 ** rng.uniform(5.0, 12.0)
+        work = tension(shape, 10.0 ** rng.uniform(-4.0, 2.5)) * effective_modulus / E
+        off = rm.pull_off(shape, effective_modulus=effective_modulus, work=work)
         depth, holds = (
             -float(off.indentation),
-            -float(rm.pull_off(shape, modulus=modulus, work=work, control="force").force),
+            -float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="force").force),
         )
         X = 10.0 ** np.sort(rng.uniform(-9.0, 4.0, 60))[::-1]
-        alone = rm.indent(shape, modulus=modulus, work=work, indentation=depth * (X - 1.0))
+        alone = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=depth * (X - 1.0))
         columns = {name: [value] for name, value in shape.parameters.items() if value is not None}
         law = rm.load_separation(
-            ensemble([0.0], shape=kind, **columns), separation=depth * (1.0 - X), modulus=modulus, work=work
+            ensemble([0.0], shape=kind, **columns),
+            separation=depth * (1.0 - X),
+            effective_modulus=effective_modulus,
+            work=work,
         )
         bound = 1e-12 + 3e-15 / np.sqrt(X)
         assert (law.contact_count == 1.0).all()
@@ -189,8 +192,8 @@ def test_a_scene_of_any_shape_is_its_ensemble_pressed(shape: str) -> None:
     result = rm.run({**SCENE, "asperities": section, "batch": {}})
     data = rm.generate(section, seed=SCENE["seed"])
     half = result.separation.to_numpy()[:40]
-    modulus = rm.effective_modulus(3e6, 0.49)
-    law = rm.load_separation(data, separation=half, modulus=modulus, work=0.05, unload=True)
+    effective_modulus = rm.effective_modulus(3e6, 0.49)
+    law = rm.load_separation(data, separation=half, effective_modulus=effective_modulus, work=0.05, unload=True)
     for name in law.data_vars:
         if name != "numerical_error":
             np.testing.assert_array_equal(result[name].isel(realization=0), law[name])
@@ -203,27 +206,27 @@ def test_a_common_profile_is_stored_and_read_back(tmp_path: Any) -> None:
         data = rm.generate({**kept, "shape": shape, **PARAMETERS[shape], "count": 5}, seed=3)
         data.to_netcdf(tmp_path / f"{shape}.nc")
         with xr.open_dataset(tmp_path / f"{shape}.nc") as back:
-            laws = [rm.load_separation(each, separation=[0.0, -1e-6], modulus=E) for each in (data, back)]
+            laws = [rm.load_separation(each, separation=[0.0, -1e-6], effective_modulus=E) for each in (data, back)]
         xr.testing.assert_identical(*laws)
 
 
 def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
     with pytest.warns(rm.LimitWarning, match=r"slopes of up to 1 at the edge"):
-        rm.indent(rm.Cone(1.0), modulus=1e9, indentation=1e-9)
+        rm.indent(rm.Cone(1.0), effective_modulus=1e9, indentation=1e-9)
     with pytest.warns(rm.LimitWarning, match=r"1\.41 times the radius"):
-        deep = rm.indent(rm.Paraboloid(1e-6), modulus=1e9, indentation=[1e-9, 2e-6])
+        deep = rm.indent(rm.Paraboloid(1e-6), effective_modulus=1e9, indentation=[1e-9, 2e-6])
     assert "1.41 times" in deep.attrs["warnings"]
     assert "slopes of up to 1.41" in deep.attrs["warnings"]
     with pytest.warns(rm.LimitWarning, match=r"slopes of up to 1\.8e\+308"):  # a is R to the last digit
-        rm.indent(rm.Sphere(1e-5), modulus=1e6, work=0.01, indentation=0.3)
+        rm.indent(rm.Sphere(1e-5), effective_modulus=1e6, work=0.01, indentation=0.3)
     table = rm.Tabulated([0.0, 1e-6, 2e-6], [0.0, 1e-8, 4e-8])
     with pytest.warns(rm.LimitWarning, match=r"times the radius where the profile"):
-        rm.indent(table, modulus=1e9, indentation=1e-6)
+        rm.indent(table, effective_modulus=1e9, indentation=1e-6)
     data = ensemble([0.0, -1e-6], radius=1e-6)
     with pytest.warns(rm.LimitWarning, match="slopes"):
-        law = rm.load_separation(data, separation=[1e-6, -1e-6, 1e-6], modulus=1e9)
+        law = rm.load_separation(data, separation=[1e-6, -1e-6, 1e-6], effective_modulus=1e9)
     assert "warnings" in law.attrs
-    assert "warnings" not in rm.indent(rm.Paraboloid(1e-6), modulus=1e9, indentation=1e-9).attrs
+    assert "warnings" not in rm.indent(rm.Paraboloid(1e-6), effective_modulus=1e9, indentation=1e-9).attrs
 
 
 BAD: list[tuple[Any, dict[str, Any], str]] = [
@@ -254,13 +257,13 @@ def test_a_bad_shape_is_refused_by_name_and_value(shape: Any, parameters: dict[s
 
 def test_what_a_shape_cannot_do_is_refused() -> None:
     with pytest.raises(rm.ShapeError, match="flat punch"):
-        rm.indent(rm.FlatPunch(1e-6), modulus=1e9, contact_radius=1e-6)
+        rm.indent(rm.FlatPunch(1e-6), effective_modulus=1e9, contact_radius=1e-6)
     with pytest.raises(rm.ShapeError, match="on the flat"):
-        rm.indent(rm.TruncatedCone(0.1, 1e-6), modulus=1e9, contact_radius=0.5e-6)
+        rm.indent(rm.TruncatedCone(0.1, 1e-6), effective_modulus=1e9, contact_radius=0.5e-6)
     with pytest.raises(rm.OutOfRange, match=r"exponent is 0\.4"):
-        rm.indent(rm.PowerSeries({0.4: 1e-3, 2.0: 1.0}), modulus=1e9, work=0.1, indentation=0.0)
+        rm.indent(rm.PowerSeries({0.4: 1e-3, 2.0: 1.0}), effective_modulus=1e9, work=0.1, indentation=0.0)
     with pytest.raises(rm.OutOfRange, match="representable"):
-        rm.indent(rm.Sphere(1e-6), modulus=1e9, contact_radius=1e-6)
+        rm.indent(rm.Sphere(1e-6), effective_modulus=1e9, contact_radius=1e-6)
 
 
 def test_a_tip_without_a_slope_out_of_contact() -> None:
@@ -268,7 +271,7 @@ def test_a_tip_without_a_slope_out_of_contact() -> None:
     data = ensemble([1e-6, -1e-3], shape="power_series").assign(
         exponent=("term", [0.7, 2.0]), terms=("term", [1e-3, 10.0])
     )
-    law = rm.load_separation(data, separation=[1e-5, 0.0], modulus=1e9, work=1e-9)
+    law = rm.load_separation(data, separation=[1e-5, 0.0], effective_modulus=1e9, work=1e-9)
     np.testing.assert_array_equal(law.contact_count, [0.0, 1.0])
     assert np.isinf(rm.PowerSeries({0.7: 1e-3}).df([0.0]))
 
@@ -286,8 +289,8 @@ def test_a_form_that_no_float_holds_is_refused_and_nothing_else() -> None:
     """b^2 over the radius of the edge, which numpy would warn of."""
     parameters = {"flat_radius": 1.0, "edge_radius": 5e-324}
     with pytest.raises(rm.OutOfRange):
-        rm.indent(rm.RoundedPunch(**parameters), modulus=1e3, work=1.0, indentation=0.1)
+        rm.indent(rm.RoundedPunch(**parameters), effective_modulus=1e3, work=1.0, indentation=0.1)
     with pytest.raises(rm.OutOfRange):
         rm.load_separation(
-            ensemble([0.0], shape="rounded_punch", **parameters), separation=[-0.1], modulus=1e3, work=1.0
+            ensemble([0.0], shape="rounded_punch", **parameters), separation=[-0.1], effective_modulus=1e3, work=1.0
         )

@@ -117,11 +117,14 @@ def test_where_so_many_draws_cannot_promise_the_result_says_so() -> None:
     assert float(found.accuracy_reached) > 2.0 * float((found.force_sem / found.force_mean).max())
 
 
-@pytest.mark.parametrize("modulus", [1e-200, 1e200])
-def test_forces_whose_squares_no_float_holds(modulus: float) -> None:
+@pytest.mark.parametrize("effective_modulus", [1e-200, 1e200])
+def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
     """The relative error is that of any modulus."""
     table = cones(10.0, 20, 0.5)
-    count = [float(rm.run({**table, "material": {"effective_modulus": m}}).realization_count) for m in (4e6, modulus)]
+    count = [
+        float(rm.run({**table, "material": {"effective_modulus": m}}).realization_count)
+        for m in (4e6, effective_modulus)
+    ]
     assert count[0] == count[1]
 
 

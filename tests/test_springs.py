@@ -38,10 +38,10 @@ DISTANCES = np.geomspace(0.37, 17.0, 16)  # above the fold, over its depth
 METHOD = "springs"
 
 
-def onset(shape: rm.Paraboloid, modulus: float, work: float, control: str) -> float:
+def onset(shape: rm.Paraboloid, effective_modulus: float, work: float, control: str) -> float:
     """Minus the control's value at pull-off."""
     kind = "force" if control == "force" else "displacement"
-    return -float(rm.pull_off(shape, modulus=modulus, work=work, control=kind)[control])
+    return -float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control=kind)[control])
 
 
 def slope(errors: list[float]) -> float:
@@ -50,19 +50,19 @@ def slope(errors: list[float]) -> float:
 
 @pytest.mark.parametrize("control", ["indentation", "force"])
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
-@pytest.mark.parametrize(("shape", "modulus", "work", "order"), CASES, ids=NAMES)
+@pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES, ids=NAMES)
 def test_the_order_of_convergence(
-    shape: rm.Paraboloid, modulus: float, work: float, order: float, adhesive: bool, control: str
+    shape: rm.Paraboloid, effective_modulus: float, work: float, order: float, adhesive: bool, control: str
 ) -> None:
     other = "force" if control == "indentation" else "indentation"
-    values = onset(shape, modulus, work, control) * (DISTANCES - (1.0 if adhesive else 0.0))
-    scale = onset(shape, modulus, work, other)
-    law = {"modulus": modulus, "work": work if adhesive else 0.0, control: values}
+    values = onset(shape, effective_modulus, work, control) * (DISTANCES - (1.0 if adhesive else 0.0))
+    scale = onset(shape, effective_modulus, work, other)
+    law = {"effective_modulus": effective_modulus, "work": work if adhesive else 0.0, control: values}
     exact = rm.indent(shape, **law)
     sizes = {
         other: np.abs(exact[other]) + scale,
         "contact_radius": exact.contact_radius,
-        "stiffness": np.abs(exact.stiffness) + 2.0 * modulus * exact.contact_radius,  # it passes through 0
+        "stiffness": np.abs(exact.stiffness) + 2.0 * effective_modulus * exact.contact_radius,  # it passes through 0
     }
     errors: dict[str, list[float]] = {name: [] for name in sizes}
     for count in COUNTS:
@@ -82,13 +82,13 @@ def test_the_order_of_convergence(
 
 
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
-@pytest.mark.parametrize(("shape", "modulus", "work", "order"), CASES[1:], ids=NAMES[1:])
+@pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES[1:], ids=NAMES[1:])
 def test_a_given_radius_is_the_length_of_the_row(
-    shape: rm.Paraboloid, modulus: float, work: float, order: float, adhesive: bool
+    shape: rm.Paraboloid, effective_modulus: float, work: float, order: float, adhesive: bool
 ) -> None:
-    fold = float(rm.pull_off(shape, modulus=modulus, work=work).contact_radius)
+    fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)
     radii = fold * np.array([1.07, 1.9, 0.0, 1.3])
-    law = {"modulus": modulus, "work": work if adhesive else 0.0, "contact_radius": radii}
+    law = {"effective_modulus": effective_modulus, "work": work if adhesive else 0.0, "contact_radius": radii}
     exact, coarse = rm.indent(shape, **law), rm.indent(shape, **law, method=METHOD, springs=3000)
     np.testing.assert_array_equal(coarse.contact_radius, radii)
     np.testing.assert_allclose(coarse.indentation, exact.indentation, rtol=1e-12)
@@ -97,14 +97,16 @@ def test_a_given_radius_is_the_length_of_the_row(
 
 
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
-@pytest.mark.parametrize(("shape", "modulus", "work", "order"), CASES, ids=NAMES)
-def test_loading_and_unloading(shape: rm.Paraboloid, modulus: float, work: float, order: float, adhesive: bool) -> None:
+@pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES, ids=NAMES)
+def test_loading_and_unloading(
+    shape: rm.Paraboloid, effective_modulus: float, work: float, order: float, adhesive: bool
+) -> None:
     """On at first touch, off at the fold, and the exact law between; again after it let go."""
     count = 4000
-    fold, scale = onset(shape, modulus, work, "indentation"), onset(shape, modulus, work, "force")
+    fold, scale = onset(shape, effective_modulus, work, "indentation"), onset(shape, effective_modulus, work, "force")
     path = fold * np.array([-2.0, -0.5, -1e-6, 0.0, 0.3, 2.1, 1.3, 0.1, -0.4, -0.99, -1.01, -0.5, 0.2, -0.7])
     out = [0, 1, 2, 10, 11] if adhesive else np.flatnonzero(path <= 0.0)
-    law = {"modulus": modulus, "work": work if adhesive else 0.0}
+    law = {"effective_modulus": effective_modulus, "work": work if adhesive else 0.0}
     coarse = Springs.of(shape, *law.values(), count).follow(path)
     exact = rm.indent(shape, **law, indentation=path)
     for name, size in (("contact_radius", 0.0), ("force", scale)):
@@ -122,7 +124,7 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
         (rm.Paraboloid(radius=3.7e-8), 1.9, 2.0),
         (rm.FlatPunch(radius=2.3e-9), 1.0, 1.0),
     ):
-        off = rm.pull_off(shape, modulus=6.1e10, work=0.8)
+        off = rm.pull_off(shape, effective_modulus=6.1e10, work=0.8)
         errors = []
         for count in counts:
             coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).rows.row(length * float(off.contact_radius))
@@ -133,13 +135,13 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
 def test_every_contact_has_springs_enough_however_small() -> None:
     tip = rm.Paraboloid(radius=1e-5)
     depth = np.geomspace(1e-15, 1e-6, 10)
-    coarse = rm.indent(tip, modulus=1e9, indentation=depth, method=METHOD, springs=500)
-    exact = rm.indent(tip, modulus=1e9, indentation=depth)
+    coarse = rm.indent(tip, effective_modulus=1e9, indentation=depth, method=METHOD, springs=500)
+    exact = rm.indent(tip, effective_modulus=1e9, indentation=depth)
     np.testing.assert_allclose(coarse.contact_radius, exact.contact_radius, rtol=1.2e-3)
     np.testing.assert_allclose(coarse.force, exact.force, rtol=3e-6)
-    one = rm.indent(tip, modulus=1e9, indentation=float(depth[3]), method=METHOD, springs=500)
+    one = rm.indent(tip, effective_modulus=1e9, indentation=float(depth[3]), method=METHOD, springs=500)
     xr.testing.assert_equal(one, coarse.isel(indentation=3))
-    none = rm.indent(tip, modulus=1e9, work=0.05, indentation=[-1.0, -1e-6], method=METHOD, springs=500)
+    none = rm.indent(tip, effective_modulus=1e9, work=0.05, indentation=[-1.0, -1e-6], method=METHOD, springs=500)
     for name in ("force", "contact_radius", "contact_area", "stiffness"):
         np.testing.assert_array_equal(none[name], 0.0)
 
@@ -160,10 +162,10 @@ def test_a_function_is_as_good_as_a_shape(
 ) -> None:
     for control in ("indentation", "contact_radius", *(("force",) if shape is SERIES else ())):
         if control == "contact_radius":
-            values = float(rm.pull_off(shape, modulus=3e6, work=0.05).contact_radius) * np.array([1.2, 2.3])
+            values = float(rm.pull_off(shape, effective_modulus=3e6, work=0.05).contact_radius) * np.array([1.2, 2.3])
         else:
             values = onset(shape, 3e6, 0.05, control) * np.array([0.3, 3.7])
-        law = {"modulus": 3e6, "work": work, control: values}
+        law = {"effective_modulus": 3e6, "work": work, control: values}
         exact, coarse = rm.indent(shape, **law), rm.indent(f, **law, method=METHOD, springs=2000)
         rough = 2e-3 if work else 1e-5
         for name in ("force", "indentation"):
@@ -207,7 +209,7 @@ TIP = rm.Paraboloid(radius=1e-6)
         (rm.RoughmdrError, "springs is 100.0;", {"springs": 100.0}),
         (rm.RoughmdrError, "springs is True;", {"springs": True}),
         (rm.RoughmdrError, "adhesion is 'dugdale'", {"adhesion": "dugdale", "work": 0.05}),
-        (rm.OutOfRange, "modulus is -1 Pa", {"modulus": -1.0}),
+        (rm.OutOfRange, "modulus is -1 Pa", {"effective_modulus": -1.0}),
         (rm.OutOfRange, "work is nan", {"work": math.nan}),
         (rm.ShapeError, "shape is 3; it must be a shape", {"shape": 3}),
         (rm.ShapeError, "a function f", {"shape": rm.Paraboloid}),
@@ -236,7 +238,7 @@ TIP = rm.Paraboloid(radius=1e-6)
     ],
 )
 def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, object]) -> None:
-    given = {"shape": TIP, "modulus": 1e9, "indentation": 1e-9, "method": METHOD, "springs": 100, **changed}
+    given = {"shape": TIP, "effective_modulus": 1e9, "indentation": 1e-9, "method": METHOD, "springs": 100, **changed}
     with pytest.raises(error, match=text):
         rm.indent(given.pop("shape"), **given)
 
@@ -244,7 +246,7 @@ def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, o
 def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(row, "_EXTREME", 480)  # 2^60 m are enough
     with pytest.raises(rm.OutOfRange, match="grows without end"):
-        rm.indent(lambda r: np.minimum(r, 1e-10), modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
+        rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 
 
 def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

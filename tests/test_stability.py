@@ -100,7 +100,10 @@ def test_an_everyday_case_is_right(law: str) -> None:
 
 def contact(law: str, control: str) -> tuple[Reference, dict[str, float]]:
     """The first asperity of the everyday case, exactly and as roughmdr has it."""
-    shape, numbers = MILD.shapes()[0], {"modulus": MILD.stiffness, "work": 0.0 if law == "elastic" else MILD.work}
+    shape, numbers = (
+        MILD.shapes()[0],
+        {"effective_modulus": MILD.stiffness, "work": 0.0 if law == "elastic" else MILD.work},
+    )
     reference: Reference = PlainReference(shape, **numbers)
     model = {}
     if law == "dugdale":

@@ -24,7 +24,7 @@ def shape_of(data: xr.Dataset, i: int) -> rm.Paraboloid | rm.Cone | rm.PowerLaw:
     return kind(**{name: float(data[name][i]) for name in data.data_vars if name != "height"})
 
 
-def twin(data: xr.Dataset, path: np.ndarray, modulus: float, work: float) -> dict[str, np.ndarray]:
+def twin(data: xr.Dataset, path: np.ndarray, effective_modulus: float, work: float) -> dict[str, np.ndarray]:
     """One asperity after the other, one step after the other, with a memory of its own."""
     totals = {
         name: np.zeros(path.size)
@@ -32,8 +32,8 @@ def twin(data: xr.Dataset, path: np.ndarray, modulus: float, work: float) -> dic
     }
     for i in range(data.sizes["asperity"]):
         z, shape = float(data.height[i]), shape_of(data, i)
-        contacts = rm.indent(shape, modulus=modulus, work=work, indentation=z - path)
-        fold = float(rm.pull_off(shape, modulus=modulus, work=work).indentation)
+        contacts = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=z - path)
+        fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).indentation)
         held = False
         for m, delta in enumerate(z - path):
             held = (delta >= 0.0 or (held and delta > fold)) if work else delta > 0.0
@@ -49,10 +49,10 @@ def twin(data: xr.Dataset, path: np.ndarray, modulus: float, work: float) -> dic
     return totals
 
 
-def check(data: xr.Dataset, path: np.ndarray, work: float, modulus: float = E) -> None:
+def check(data: xr.Dataset, path: np.ndarray, work: float, effective_modulus: float = E) -> None:
     area = data.attrs["nominal_area"]
-    law = rm.load_separation(data, separation=path, modulus=modulus, work=work, variables=ALL)
-    expected = twin(data, path, modulus, work)
+    law = rm.load_separation(data, separation=path, effective_modulus=effective_modulus, work=work, variables=ALL)
+    expected = twin(data, path, effective_modulus, work)
     expected |= {"pressure": expected["force"] / area, "contact_fraction": expected["contact_area"] / area}
     for name in ALL:
         scale = np.max(np.abs(expected[name])) or 1.0
@@ -97,12 +97,12 @@ def test_the_same_physics_in_other_units() -> None:
     rng = np.random.default_rng(5)
     z, radius = rng.normal(0.0, 1e-6, 500), rng.uniform(3e-5, 8e-5, 500)
     path = np.linspace(3e-6, -1e-6, 30)
-    base = rm.load_separation(ensemble(z, radius=radius), separation=path, modulus=E, work=W, unload=True)
+    base = rm.load_separation(ensemble(z, radius=radius), separation=path, effective_modulus=E, work=W, unload=True)
     length, force = 2.0**20, 2.0**-13  # powers of two: only the cube root and pi/E* round differently
     scaled = rm.load_separation(
         ensemble(z * length, radius=radius * length),
         separation=path * length,
-        modulus=E * force / length**2,
+        effective_modulus=E * force / length**2,
         work=W * force / length,
         unload=True,
     )
@@ -119,7 +119,9 @@ def test_order_and_asperities_out_of_reach_change_no_bit(work: float) -> None:
     path = np.linspace(3e-6, 0.0, 25)
 
     def law(asperities: xr.Dataset) -> xr.Dataset:
-        return rm.load_separation(asperities, separation=path, modulus=E, work=work, unload=True, variables=ALL)
+        return rm.load_separation(
+            asperities, separation=path, effective_modulus=E, work=work, unload=True, variables=ALL
+        )
 
     whole = law(data)
     assert float(whole.force.max()) > 0.0
@@ -137,7 +139,7 @@ def test_the_parts_of_an_ensemble_add_up_to_the_whole() -> None:
     path = np.linspace(3e-6, -1e-6, 20)
 
     def law(part: xr.Dataset) -> xr.Dataset:
-        return rm.load_separation(part, separation=path, modulus=E, work=W, unload=True)
+        return rm.load_separation(part, separation=path, effective_modulus=E, work=W, unload=True)
 
     parts = law(data.isel(asperity=slice(0, 317))) + law(data.isel(asperity=slice(317, None)))
     for name in ("force", "contact_area", "contact_count"):
@@ -148,11 +150,13 @@ def test_the_parts_of_an_ensemble_add_up_to_the_whole() -> None:
 def test_only_asperities_within_reach_are_visited(work: float) -> None:
     rng = np.random.default_rng(17)
     data = ensemble(rng.normal(0.0, 1e-6, 5000), radius=5e-5)
-    fold = -float(rm.pull_off(rm.Paraboloid(5e-5), modulus=E, work=work).indentation)
+    fold = -float(rm.pull_off(rm.Paraboloid(5e-5), effective_modulus=E, work=work).indentation)
     way_in = np.linspace(4e-6, 0.0, 50)
     route = Route.along(way_in, unload=True, adhesive=work > 0.0)
     asperities = Ensemble.from_dataset(data)
-    result = compute(asperities, route, modulus=E, adhesion=Adhesion(work), variables=["force", "contact_count"])
+    result = compute(
+        asperities, route, effective_modulus=E, adhesion=Adhesion(work), variables=["force", "contact_count"]
+    )
     z = asperities.height
     needed = sum(int((z > h).sum()) for h in way_in) + sum(int(((z > h - fold) & (z >= 0.0)).sum()) for h in way_in)
     assert result.visits == needed
@@ -177,18 +181,21 @@ def test_a_loop_of_the_path_dissipates_and_its_memory_fades() -> None:
     data = ensemble(rng.normal(0.0, 1e-6, 300), radius=5e-5)
     straight = np.array([3.0, 0.0, 2.0]) * 1e-6
     looped = np.array([3.0, 1.0, 1.6, 0.9, 0.0, 2.0]) * 1e-6
-    last = [rm.load_separation(data, separation=path, modulus=E, work=W).isel(step=-1) for path in (straight, looped)]
+    last = [
+        rm.load_separation(data, separation=path, effective_modulus=E, work=W).isel(step=-1)
+        for path in (straight, looped)
+    ]
     assert float(last[0].force) == float(last[1].force)
-    way = rm.load_separation(data, separation=np.linspace(4e-6, -1e-6, 400), modulus=E, work=W, unload=True)
+    way = rm.load_separation(data, separation=np.linspace(4e-6, -1e-6, 400), effective_modulus=E, work=W, unload=True)
     inward, outward = way.force[:400], way.force[400:][::-1]
     assert float((inward - outward).mean()) > 0.0
 
 
 def test_branches_of_a_crooked_path() -> None:
     data = ensemble([0.0], radius=1e-5)
-    law = rm.load_separation(data, separation=[3.0, 2.0, 2.0, 3.0, 3.0, 1.0], modulus=E)
+    law = rm.load_separation(data, separation=[3.0, 2.0, 2.0, 3.0, 3.0, 1.0], effective_modulus=E)
     assert law.branch.to_numpy().tolist() == ["loading", "loading", "unloading", "unloading", "loading", "loading"]
-    law = rm.load_separation(data, separation=[3.0, 2.0], modulus=E, unload=True)
+    law = rm.load_separation(data, separation=[3.0, 2.0], effective_modulus=E, unload=True)
     assert law.branch.to_numpy().tolist() == ["loading", "loading", "unloading", "unloading"]
     assert law.separation.to_numpy().tolist() == [3.0, 2.0, 2.0, 3.0]
 
@@ -209,7 +216,7 @@ def test_branches_of_a_crooked_path() -> None:
 )
 def test_a_wrong_ensemble_is_refused(data: xr.Dataset, says: str) -> None:
     with pytest.raises(rm.SceneError, match=says):
-        rm.load_separation(data, separation=[0.0], modulus=E, variables=["pressure"])
+        rm.load_separation(data, separation=[0.0], effective_modulus=E, variables=["pressure"])
 
 
 def test_an_ensemble_may_come_in_other_units() -> None:
@@ -217,7 +224,7 @@ def test_an_ensemble_may_come_in_other_units() -> None:
     other = ensemble([1.0, 2.0], radius=[30.0, 40.0])
     for name in ("height", "radius"):
         other[name].attrs["units"] = "um"
-    laws = [rm.load_separation(data, separation=[0.0], modulus=E, work=W) for data in (plain, other)]
+    laws = [rm.load_separation(data, separation=[0.0], effective_modulus=E, work=W) for data in (plain, other)]
     assert float(laws[0].force[0]) == pytest.approx(float(laws[1].force[0]), rel=1e-14)
 
 
@@ -226,14 +233,14 @@ def test_an_ensemble_may_come_in_other_units() -> None:
     [
         ({"separation": [np.nan]}, "separation"),
         ({"separation": []}, "separation"),
-        ({"modulus": -1.0}, "modulus is -1"),
+        ({"effective_modulus": -1.0}, "modulus is -1"),
         ({"work": -1.0}, "work is -1"),
         ({"variables": ["forc"]}, "'forc' is not available"),
         ({"adhesion": "dmt"}, "adhesion is 'dmt'"),
-        ({"modulus": 1e-300, "work": 1e300}, "not representable"),
+        ({"effective_modulus": 1e-300, "work": 1e300}, "not representable"),
     ],
 )
 def test_a_wrong_argument_is_refused(arguments: dict[str, object], says: str) -> None:
-    asked = {"separation": [0.0], "modulus": E, **arguments}
+    asked = {"separation": [0.0], "effective_modulus": E, **arguments}
     with pytest.raises(rm.RoughmdrError, match=says):
         rm.load_separation(ensemble([1e-6], radius=1e-5), **asked)  # type: ignore[arg-type]

@@ -128,7 +128,7 @@ def test_the_measured_surface_has_about_140_summits() -> None:
     assert 1e-6 < float(data.radius.min()) < float(data.radius.max()) < 1e-4
     path = np.linspace(1.2e-6, 0.0, 60)
     for work in (0.0, 0.05):
-        law = rm.load_separation(data, separation=path, modulus=6.6e6, work=work, unload=True)
+        law = rm.load_separation(data, separation=path, effective_modulus=6.6e6, work=work, unload=True)
         assert float(law.force.max()) > 0.0
         assert (float(law.force.min()) < 0.0) == (work > 0.0)
 

@@ -246,7 +246,7 @@ def test_the_warning_of_a_coarse_map_goes_along(folder: Path, recwarn: pytest.Wa
     result = rm.run("s.toml", "out.nc")
     swept = rm.run(rm.scene.read("s.toml", [f'sweep={{"adhesion.work"={works}}}']))
     made = rm.generate({"source": "surface", "file": "coarse.npy", "size": "64 um"}, seed=0)
-    law = rm.load_separation(made, separation=[1e-6], modulus=1e6)
+    law = rm.load_separation(made, separation=[1e-6], effective_modulus=1e6)
     for each in (result, swept, made, law):
         assert each.attrs["warnings"].count("coarse.npy: ") == each.attrs["warnings"].count("points a summit") == 1
     assert len(warned(recwarn.list)) == 4

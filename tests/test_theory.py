@@ -11,13 +11,15 @@ from scenes import ASPERITIES
 
 import roughmdr as rm
 
-GW = {"modulus": 4e6, "radius": 5e-5, "std": 1e-6, "density": 2e9}
+GW = {"effective_modulus": 4e6, "radius": 5e-5, "std": 1e-6, "density": 2e9}
 
 
 def f_3_2(h: float) -> float:
     """F_3/2 of Greenwood and Williamson for a standard normal."""
     pressure = rm.theory.greenwood_williamson(separation=h * GW["std"], **GW)
-    return float(pressure) / (4.0 / 3.0 * GW["modulus"] * math.sqrt(GW["radius"]) * GW["density"] * GW["std"] ** 1.5)
+    return float(pressure) / (
+        4.0 / 3.0 * GW["effective_modulus"] * math.sqrt(GW["radius"]) * GW["density"] * GW["std"] ** 1.5
+    )
 
 
 def test_the_integral_of_greenwood_and_williamson() -> None:
@@ -31,7 +33,7 @@ def test_the_integral_of_greenwood_and_williamson() -> None:
 def scaled(variable: str, h: float) -> float:
     """F_n of Greenwood and Williamson for a standard normal, from each of the variables."""
     units = {
-        "pressure": 4.0 / 3.0 * GW["modulus"] * math.sqrt(GW["radius"]) * GW["std"] ** 1.5,
+        "pressure": 4.0 / 3.0 * GW["effective_modulus"] * math.sqrt(GW["radius"]) * GW["std"] ** 1.5,
         "contact_fraction": math.pi * GW["radius"] * GW["std"],
         "contact_density": 1.0,
     }
@@ -48,17 +50,19 @@ def test_the_integrals_are_parabolic_cylinder_functions(variable: str, n: float,
 
 def fuller_tabor_by_mpmath(h: float, lowest: float, work: float) -> float:
     """The same integral over the contact radius, where the JKR force is a polynomial in sqrt(a)."""
-    modulus, radius, std, density = (mp.mpf(GW[key]) for key in ("modulus", "radius", "std", "density"))
-    fold = mp.cbrt(mp.pi * work * radius**2 / (8 * modulus))
+    effective_modulus, radius, std, density = (
+        mp.mpf(GW[key]) for key in ("effective_modulus", "radius", "std", "density")
+    )
+    fold = mp.cbrt(mp.pi * work * radius**2 / (8 * effective_modulus))
 
     def stretch(a: mp.mpf) -> mp.mpf:
-        return mp.sqrt(2 * mp.pi * a * work / modulus)
+        return mp.sqrt(2 * mp.pi * a * work / effective_modulus)
 
     def delta(a: mp.mpf) -> mp.mpf:
         return a * a / radius - stretch(a)
 
     def integrand(a: mp.mpf) -> mp.mpf:
-        force = 2 * modulus * a * (2 * a * a / (3 * radius) - stretch(a))
+        force = 2 * effective_modulus * a * (2 * a * a / (3 * radius) - stretch(a))
         return force * mp.npdf(h + delta(a), 0, std) * (2 * a / radius - stretch(a) / (2 * a))
 
     first = (
@@ -109,7 +113,7 @@ def test_sampled_ensembles_agree_within_three_standard_errors(work: float) -> No
     forces = []
     for realization in range(64):
         data = rm.generate(section, seed=3, realization=realization)
-        forces.append(rm.load_separation(data, separation=h, modulus=4e6, work=work, unload=True).force)
+        forces.append(rm.load_separation(data, separation=h, effective_modulus=4e6, work=work, unload=True).force)
     pressure = np.array(forces) / 1e-6
     mean, error = pressure.mean(axis=0), pressure.std(axis=0, ddof=1) / math.sqrt(64)
     if work:
@@ -126,7 +130,9 @@ def test_sampled_ensembles_agree_within_three_standard_errors(work: float) -> No
 def test_the_area_and_the_number_of_fuller_and_tabor() -> None:
     """All summits in contact, equally deep: those of one contact, times their number."""
     h, narrow = -2e-6, {**GW, "std": 1e-12}
-    one = rm.indent(rm.Paraboloid(radius=GW["radius"]), modulus=GW["modulus"], work=0.05, indentation=-h)
+    one = rm.indent(
+        rm.Paraboloid(radius=GW["radius"]), effective_modulus=GW["effective_modulus"], work=0.05, indentation=-h
+    )
     for variable, each in (("pressure", one.force), ("contact_fraction", one.contact_area), ("contact_density", 1.0)):
         law = rm.theory.fuller_tabor(separation=h, work=0.05, variable=variable, **narrow)
         assert float(law) == pytest.approx(GW["density"] * float(each), rel=1e-9)
@@ -153,7 +159,7 @@ def test_maugis_is_hertz_less_the_pull_of_every_contact(h: float, work: float) -
 def test_the_laws_hold_at_every_size(h: float, size: float, stiffer: float) -> None:
     """Lengths times ``size``, stresses times ``stiffer``: work by both, pressure by one."""
     other = {
-        "modulus": GW["modulus"] * stiffer,
+        "effective_modulus": GW["effective_modulus"] * stiffer,
         "radius": GW["radius"] * size,
         "std": GW["std"] * size,
         "density": GW["density"] / size**2,

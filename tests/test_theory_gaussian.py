@@ -16,7 +16,7 @@ from roughmdr.numerics.quadrature import panels
 from roughmdr.theory.ellipse import Ellipses
 
 LAWS = {"elliptic": rm.theory.bush_gibson_thomas, "circular": rm.theory.greenwood_elliptic}
-SURFACE = {"modulus": 2e9, "m0": 1e-14, "m2": 1e-3, "m4": 2.5e8}
+SURFACE = {"effective_modulus": 2e9, "m0": 1e-14, "m2": 1e-3, "m4": 2.5e8}
 """alpha is 2.5."""
 ALPHA = 2.5
 
@@ -80,7 +80,7 @@ def by_mpmath(contacts: str, variable: str, h: float, alpha: float) -> float:
 
 def scaled(contacts: str, variable: str, h: float, alpha: float) -> float:
     """The law at m0 = m2 = 1, less the scales."""
-    value = LAWS[contacts](separation=h, modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable=variable)
+    value = LAWS[contacts](separation=h, effective_modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable=variable)
     curvature = math.sqrt(2.0 * alpha / 3.0)
     unit = {"pressure": 4.0 / (3.0 * math.sqrt(curvature)), "contact_fraction": math.pi / curvature}.get(variable, 1.0)
     return float(value) / (unit * alpha / (6.0 * math.pi * math.sqrt(3.0)))
@@ -125,7 +125,7 @@ def test_drawn_summits_carry_what_the_laws_say(alpha: float) -> None:
             [4.0 / 3.0 * depth**1.5 / np.sqrt(curvature), np.pi * depth / curvature, depth > 0.0], dtype=float
         )
         for variable, values in zip(("pressure", "contact_fraction", "contact_density"), drawn, strict=True):
-            law = LAWS["circular"](separation=h, modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable=variable)
+            law = LAWS["circular"](separation=h, effective_modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable=variable)
             assert abs(values.mean() - float(law)) < 3.0 * values.std() / math.sqrt(values.size)
 
 
@@ -134,7 +134,7 @@ def test_the_moments_of_the_heights_of_summits(alpha: float) -> None:
     """Nayak's: as integrals over the number of summits above a height."""
     h, share = (part.ravel() for part in panels(np.linspace(-9.0, 12.0, 43)))
     above = rm.theory.bush_gibson_thomas(
-        separation=h, modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable="contact_density"
+        separation=h, effective_modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable="contact_density"
     ) / (alpha / (6.0 * math.pi * math.sqrt(3.0)))
     mean = float(above @ share) - 9.0
     square = float(2.0 * (above * (h + 9.0)) @ share) - 18.0 * mean - 81.0
@@ -145,11 +145,11 @@ def test_the_moments_of_the_heights_of_summits(alpha: float) -> None:
 @pytest.mark.parametrize("alpha", [1.6, 2.5])
 def test_far_away_the_area_grows_with_the_pressure(alpha: float) -> None:
     """As the asymptote, which is approached as 1/h^2."""
-    surface = {"separation": np.array([8.0, 16.0, 32.0]), "modulus": 3.0, "m0": 1.0, "m2": 1.0, "m4": alpha}
+    surface = {"separation": np.array([8.0, 16.0, 32.0]), "effective_modulus": 3.0, "m0": 1.0, "m2": 1.0, "m4": alpha}
     pressure = rm.theory.bush_gibson_thomas(**surface)
     area = rm.theory.bush_gibson_thomas(variable="contact_fraction", **surface)
     short = 1.0 - area / rm.theory.bush_gibson_thomas_asymptote(
-        pressure=pressure, modulus=3.0, rms_slope=math.sqrt(2.0)
+        pressure=pressure, effective_modulus=3.0, rms_slope=math.sqrt(2.0)
     )
     assert 0.0 < short[2] < 1e-3
     assert short[:2] / short[1:] == pytest.approx([4.0, 4.0], abs=0.3)
@@ -171,7 +171,7 @@ def test_circles_in_place_of_ellipses_cost_a_few_per_cent() -> None:
 def test_the_laws_hold_at_every_size(h: float, size: float, steeper: float) -> None:
     """Heights times size times steeper, widths times size: pressures times steeper."""
     other = {
-        "modulus": SURFACE["modulus"],
+        "effective_modulus": SURFACE["effective_modulus"],
         "m0": SURFACE["m0"] * (size * steeper) ** 2,
         "m2": SURFACE["m2"] * steeper**2,
         "m4": SURFACE["m4"] * (steeper / size) ** 2,
@@ -184,7 +184,7 @@ def test_the_laws_hold_at_every_size(h: float, size: float, steeper: float) -> N
 @given(h=st.floats(-1e3, 1e3), excess=st.floats(1e-12, 1e12))
 @settings(deadline=None, max_examples=30)
 def test_numbers_are_finite_and_fall_with_separation(h: float, excess: float) -> None:
-    surface = {"modulus": 1.0, "m0": 1.0, "m2": 1.0, "m4": 1.5 + excess}
+    surface = {"effective_modulus": 1.0, "m0": 1.0, "m2": 1.0, "m4": 1.5 + excess}
     for variable in ("pressure", "contact_fraction", "contact_density"):
         near, far = LAWS["elliptic"](separation=[h, h + 0.1], variable=variable, **surface)
         assert np.isfinite(near)
@@ -194,7 +194,7 @@ def test_numbers_are_finite_and_fall_with_separation(h: float, excess: float) ->
 @pytest.mark.parametrize("law", LAWS.values())
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("modulus", 0.0), ("m0", -1.0), ("m2", math.nan), ("m4", math.inf), ("separation", "near"), ("m4", 1e8)],
+    [("effective_modulus", 0.0), ("m0", -1.0), ("m2", math.nan), ("m4", math.inf), ("separation", "near"), ("m4", 1e8)],
 )
 def test_wrong_arguments_are_refused(law: object, name: str, value: object) -> None:
     with pytest.raises(rm.OutOfRange, match="alpha" if value == 1e8 else name):
@@ -209,6 +209,6 @@ def test_shapes_are_kept() -> None:
         law(separation=0.0, variable="area", **SURFACE)
     with pytest.raises(rm.OutOfRange, match="representable"):
         law(separation=-1e308, **SURFACE)
-    assert rm.theory.bush_gibson_thomas_asymptote(pressure=0.0, modulus=1.0, rms_slope=1.0) == 0.0
+    assert rm.theory.bush_gibson_thomas_asymptote(pressure=0.0, effective_modulus=1.0, rms_slope=1.0) == 0.0
     with pytest.raises(rm.OutOfRange, match="pressure"):
-        rm.theory.bush_gibson_thomas_asymptote(pressure=-1.0, modulus=1.0, rms_slope=1.0)
+        rm.theory.bush_gibson_thomas_asymptote(pressure=-1.0, effective_modulus=1.0, rms_slope=1.0)

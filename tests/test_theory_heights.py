@@ -10,7 +10,7 @@ import scipy.stats as st
 import roughmdr as rm
 from roughmdr.numerics.quadrature import integrate
 
-ONE = {"modulus": 0.75, "radius": 1.0, "density": 1.0}
+ONE = {"effective_modulus": 0.75, "radius": 1.0, "density": 1.0}
 """With these the pressure is the integral F_3/2."""
 
 
@@ -20,7 +20,7 @@ def f_3_2(h: float, heights: object) -> float:
 
 def test_exponential_heights_give_force_in_proportion_to_area() -> None:
     """Greenwood and Williamson: F_n(h) = n! scale^n exp(-h/scale) above 0."""
-    surface = {"modulus": 4e6, "radius": 5e-5, "density": 2e9, "heights": st.expon(scale=1e-6)}
+    surface = {"effective_modulus": 4e6, "radius": 5e-5, "density": 2e9, "heights": st.expon(scale=1e-6)}
     h = np.linspace(0.0, 30e-6, 60)
     force, area, number = (
         rm.theory.greenwood_williamson(separation=h, variable=variable, **surface)
@@ -57,7 +57,7 @@ def test_heights_of_beta_with_two_infinite_ends() -> None:
     "heights", [st.gumbel_r(), st.gumbel_l(), st.skewnorm(30.0), st.skewnorm(-30.0), st.exponnorm(9.0)]
 )
 def test_all_heights_count_however_thin_a_tail_is(heights: st.distributions.rv_frozen) -> None:
-    given = {"heights": heights, "modulus": 1.0, "radius": 1.0 / math.pi, "density": 1.0}
+    given = {"heights": heights, "effective_modulus": 1.0, "radius": 1.0 / math.pi, "density": 1.0}
     h = np.append(heights.ppf([1e-9, 1e-3, 0.5, 0.999]), heights.mean() - 50.0)
     number = rm.theory.greenwood_williamson(separation=h, variable="contact_density", **given)
     np.testing.assert_allclose(number, heights.sf(h), rtol=1e-10)
@@ -78,7 +78,14 @@ def test_heavy_tails() -> None:
 @pytest.mark.parametrize("variable", ["pressure", "contact_fraction", "contact_density"])
 @pytest.mark.parametrize("turning", [None, -1e-6])
 def test_normal_heights_are_those_of_a_std(variable: str, turning: float | None) -> None:
-    surface = {"modulus": 4e6, "radius": 5e-5, "density": 2e9, "work": 0.05, "turning": turning, "variable": variable}
+    surface = {
+        "effective_modulus": 4e6,
+        "radius": 5e-5,
+        "density": 2e9,
+        "work": 0.05,
+        "turning": turning,
+        "variable": variable,
+    }
     h = np.linspace(-1e-6, 5e-6, 7)
     given = rm.theory.fuller_tabor(separation=h, heights=st.norm(scale=1e-6), **surface)
     np.testing.assert_allclose(given, rm.theory.fuller_tabor(separation=h, std=1e-6, **surface), rtol=1e-11)

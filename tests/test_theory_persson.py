@@ -34,7 +34,9 @@ class RolledOff:
 
 def gap(pressure: float, **others: object) -> float:
     return float(
-        rm.theory.persson_separation(**{"pressure": pressure, "modulus": MODULUS, "spectrum": WAVES, **others})
+        rm.theory.persson_separation(
+            **{"pressure": pressure, "effective_modulus": MODULUS, "spectrum": WAVES, **others}
+        )
     )
 
 
@@ -106,7 +108,7 @@ def test_small_pressures_close_the_gap_by_their_logarithm() -> None:
 def test_large_pressures_leave_no_gap() -> None:
     full = MODULUS * WAVES.rms_slope
     gaps = rm.theory.persson_separation(
-        pressure=full * np.array([0.1, 1.0, 3.0, 10.0, 1e200]), modulus=MODULUS, spectrum=WAVES
+        pressure=full * np.array([0.1, 1.0, 3.0, 10.0, 1e200]), effective_modulus=MODULUS, spectrum=WAVES
     )
     assert (np.diff(gaps[:4]) < 0.0).all()
     assert gaps[3] < 1e-80
@@ -122,14 +124,14 @@ def test_the_laws_hold_at_every_size(load: float, size: float, hurst: float, oct
     )
     pressure = load * 0.1 * MODULUS
     assert gap(pressure, spectrum=other) == pytest.approx(size * gap(pressure, spectrum=one), rel=1e-10)
-    assert gap(8.0 * pressure, modulus=8.0 * MODULUS, spectrum=one) == pytest.approx(
+    assert gap(8.0 * pressure, effective_modulus=8.0 * MODULUS, spectrum=one) == pytest.approx(
         gap(pressure, spectrum=one), rel=1e-13
     )
 
 
 def test_the_area_of_contact() -> None:
     """Small pressures: p/(E* h') times sqrt(8/pi), which is 2/pi of the asymptote of Bush, Gibson and Thomas."""
-    ask = {"modulus": MODULUS, "rms_slope": 0.2}
+    ask = {"effective_modulus": MODULUS, "rms_slope": 0.2}
     small = 1e-7 * MODULUS
     area = float(rm.theory.persson_contact_fraction(pressure=small, **ask))
     assert area == pytest.approx(math.sqrt(8.0 / math.pi) * 5e-7, rel=1e-12)
@@ -146,7 +148,7 @@ def test_the_area_of_contact() -> None:
         ("pressure", 0.0, "pressure"),
         ("pressure", [1.0, -1.0], "pressure"),
         ("pressure", math.nan, "pressure"),
-        ("modulus", 0.0, "modulus"),
+        ("effective_modulus", 0.0, "effective_modulus"),
         ("gamma", -0.1, "gamma"),
         ("gamma", 1.1, "gamma"),
         ("spectrum", 3.0, "spectrum"),

@@ -40,10 +40,10 @@ def test_every_spring_counts() -> None:
     h = np.append(np.linspace(z.max(), z.min(), 50), [z.min() - 1e-6, 1.0])
     spring = 2e9 * 1e-3 / 4096
     deep = np.maximum(z - h[:, None], 0.0)
-    line = rm.theory.rough_line(separation=h, modulus=2e9, **LINE)
+    line = rm.theory.rough_line(separation=h, effective_modulus=2e9, **LINE)
     np.testing.assert_allclose(line.force, spring * deep.sum(axis=1), rtol=1e-11)
     np.testing.assert_allclose(line.stiffness, spring * (deep > 0.0).sum(axis=1), rtol=1e-14)
-    assert rm.theory.rough_line(separation=0.0, modulus=2e9, **LINE).force.shape == ()
+    assert rm.theory.rough_line(separation=0.0, effective_modulus=2e9, **LINE).force.shape == ()
 
 
 @pytest.mark.parametrize("hurst", [0.3, 0.5, 0.7, 0.9])
@@ -53,7 +53,12 @@ def test_stiffness_grows_as_a_power_of_force(hurst: float) -> None:
     slopes = []
     for seed in range(40):
         line = rm.theory.rough_line(
-            separation=np.linspace(4e-6, 0.0, 400), modulus=1e9, spectrum=waves, length=1e-3, points=16384, seed=seed
+            separation=np.linspace(4e-6, 0.0, 400),
+            effective_modulus=1e9,
+            spectrum=waves,
+            length=1e-3,
+            points=16384,
+            seed=seed,
         )
         mid = (line.stiffness > 3e3) & (line.stiffness < 3e5)
         slopes.append(np.polyfit(np.log(line.force[mid]), np.log(line.stiffness[mid]), 1)[0])
@@ -68,11 +73,11 @@ def test_stiffness_grows_as_a_power_of_force(hurst: float) -> None:
         ("seed", -1),
         ("length", 0.5e-4),
         ("length", math.inf),
-        ("modulus", 0.0),
+        ("effective_modulus", 0.0),
         ("separation", [[1.0]]),
         ("spectrum", None),
     ],
 )
 def test_wrong_arguments_are_refused(name: str, value: object) -> None:
     with pytest.raises(rm.RoughmdrError, match=name):
-        rm.theory.rough_line(**{"separation": 0.0, "modulus": 1e9, **LINE, name: value})
+        rm.theory.rough_line(**{"separation": 0.0, "effective_modulus": 1e9, **LINE, name: value})

@@ -83,7 +83,7 @@ class LoadSeparation(NamedTuple):
 
 
 def compute(
-    ensemble: Ensemble, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    ensemble: Ensemble, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
     """The law of ``ensemble`` along a route; E* [Pa].
 
@@ -96,14 +96,14 @@ def compute(
     columns = ensemble.columns()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
-    reach = range_of(ensemble.shape, spread, columns, modulus, adhesion)
+    reach = range_of(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.settled(reach.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
     total, reached, visits = loop.add_asperities(
         law,
         ensemble.height,
         columns,
-        modulus,
+        effective_modulus,
         adhesion,
         route.separation,
         route.memory,
@@ -132,7 +132,7 @@ def load_separation(
     ensemble: "xr.Dataset",
     *,
     separation: ArrayLike,
-    modulus: float,
+    effective_modulus: float,
     work: float = 0.0,
     adhesion: Model = "jkr",
     strength: float | None = None,
@@ -142,10 +142,10 @@ def load_separation(
     """The load-separation law of an ensemble pressed by a rigid flat, in this process.
 
     ensemble is a Dataset over ``asperity`` as ``generate`` returns it; separation [m] the path of the flat, coming from
-    infinity; with ``unload`` the same separations follow reversed, the turning point repeated. modulus is E* [Pa], work
-    the work of adhesion [J/m^2], 0 for none. Adhesion "dugdale" has a range and needs the stress ``strength`` [Pa] of
-    the attraction; "jkr" with a strength warns where it is not right. The result lies over ``step`` with the
-    coordinates separation [m] and branch; every variable in SI, ``numerical_error`` beside them.
+    infinity; with ``unload`` the same separations follow reversed, the turning point repeated. effective_modulus is E*
+    [Pa], work the work of adhesion [J/m^2], 0 for none. Adhesion "dugdale" has a range and needs the stress
+    ``strength`` [Pa] of the attraction; "jkr" with a strength warns where it is not right. The result lies over
+    ``step`` with the coordinates separation [m] and branch; every variable in SI, ``numerical_error`` beside them.
 
     SceneError where the ensemble or a name is wrong, OutOfRange where a number is.
     """
@@ -153,7 +153,7 @@ def load_separation(
 
     if not isinstance(ensemble, xr.Dataset):
         raise SceneError(f"ensemble is a {type(ensemble).__name__}; it must be a Dataset as generate returns it")
-    modulus = check_number("modulus", modulus, "Pa")
+    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
     try:
         asked = Adhesion.checked(adhesion, work, strength)
     except RoughmdrError as error:
@@ -166,7 +166,9 @@ def load_separation(
         if name not in LAW:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(LAW)}")
     route = Route.along(path, unload=unload, adhesive=asked.work > 0.0)
-    result = compute(Ensemble.from_dataset(ensemble), route, modulus=modulus, adhesion=asked, variables=names)
+    result = compute(
+        Ensemble.from_dataset(ensemble), route, effective_modulus=effective_modulus, adhesion=asked, variables=names
+    )
     data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)

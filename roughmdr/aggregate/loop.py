@@ -78,7 +78,7 @@ def _loop(
     width: Floats,
     rise: Floats,
     form: Floats,
-    modulus: float,
+    effective_modulus: float,
     work: float,
     strength: float,
     reach: float,
@@ -108,8 +108,8 @@ def _loop(
         z = height[block]
         if _within_reach(z, closest) == 0:
             break
-        n = _prepare(modulus, work, strength, width, rise, form, start, start + z.size, 0.0)
-        if not measure(width[block], rise[block], n, modulus, work, energetic, scales, greatest, terms):
+        n = _prepare(effective_modulus, work, strength, width, rise, form, start, start + z.size, 0.0)
+        if not measure(width[block], rise[block], n, effective_modulus, work, energetic, scales, greatest, terms):
             return _NOT_REPRESENTABLE
         count_before = 0
         held[:] = 0.0
@@ -171,7 +171,7 @@ def add_asperities(
     law: Law,
     height: Floats,
     columns: tuple[Floats, Floats, Floats],
-    modulus: float,
+    effective_modulus: float,
     adhesion: Adhesion,
     separation: Floats,
     memory: Staircase,
@@ -187,12 +187,13 @@ def add_asperities(
     wanted[list(rows)] = True
     total, carried = np.zeros((ROWS, separation.size)), np.zeros((ROWS, separation.size))
     reached = np.zeros_like(height)
-    how = modulus, adhesion.work, adhesion.strength, adhesion.reach
+    how = effective_modulus, adhesion.work, adhesion.strength, adhesion.reach
     way = separation, memory.first, memory.bottom - adhesion.reach, memory.top
     visits = _compiled(law)(height, *columns, *how, *way, wanted, total, carried, reached)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(total).all():
         raise OutOfRange(
-            f"the contact of an asperity is not representable: {law.name} with modulus {modulus:g} Pa, "
+            f"the contact of an asperity is not representable: {law.name} with "
+            f"effective modulus {effective_modulus:g} Pa, "
             f"{adhesion}, separation down to {separation.min():g} m"
         )
     return total, reached, visits

@@ -22,7 +22,7 @@ def measure(
     width: Floats,
     rise: Floats,
     forms: Floats,
-    modulus: float,
+    effective_modulus: float,
     work: float,
     energetic: bool,
     scales: Floats,
@@ -34,7 +34,7 @@ def measure(
     That of the energy is 1 unless it is ``energetic``: unless an energy is wanted.
     """
     for i in range(width.size):  # nothing but this, so that it becomes vector code
-        (depth, _), size, load, rigidity = _natural(modulus, work, width[i], rise[i], _own(forms, i))
+        (depth, _), size, load, rigidity = _natural(effective_modulus, work, width[i], rise[i], _own(forms, i))
         scales[DEPTH, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
         scales[SIZE, i] = size

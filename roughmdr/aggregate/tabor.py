@@ -36,7 +36,7 @@ class Range(NamedTuple):
     """About by how much the force of JKR is off, over the largest force."""
 
 
-def _extremes(width: Floats, rise: Floats, form: Floats, modulus: float, work: float) -> tuple[float, float]:
+def _extremes(width: Floats, rise: Floats, form: Floats, effective_modulus: float, work: float) -> tuple[float, float]:
     """The least radius [m] and the greatest depth [m] of contacts where they let go under fixed grips in JKR.
 
     The radius is not above 0 where a contact is not representable.
@@ -44,10 +44,10 @@ def _extremes(width: Floats, rise: Floats, form: Floats, modulus: float, work: f
     least, deepest = math.inf, 0.0
     for start in range(0, width.size, BLOCK):
         stop = min(start + BLOCK, width.size)
-        forms = _prepare(modulus, work, math.inf, width, rise, form, start, stop, 0.0)
+        forms = _prepare(effective_modulus, work, math.inf, width, rise, form, start, stop, 0.0)
         for i in range(stop - start):
             n = _own(forms, i)
-            (depth, _), size, _, _ = _natural(modulus, work, width[start + i], rise[start + i], n)
+            (depth, _), size, _, _ = _natural(effective_modulus, work, width[start + i], rise[start + i], n)
             least = min(least, size * _radius(_state(0.0, n), n) if depth > 0.0 else 0.0)
             deepest = max(deepest, depth)
     return least, deepest
@@ -59,7 +59,7 @@ def _compiled(law: Law) -> Callable[..., tuple[float, float]]:
 
 
 def range_of(
-    shape: str, spread: float, columns: tuple[Floats, Floats, Floats], modulus: float, adhesion: Adhesion
+    shape: str, spread: float, columns: tuple[Floats, Floats, Floats], effective_modulus: float, adhesion: Adhesion
 ) -> Range:
     """Whether the range of adhesion matters; its Tabor number is 0 where a contact is not representable in JKR.
 
@@ -68,10 +68,10 @@ def range_of(
     if not adhesion.known:
         return Range()
     law = choose(shape, Adhesion(adhesion.work), columns[2])
-    radius, depth = _compiled(law)(*columns, modulus, adhesion.work)
+    radius, depth = _compiled(law)(*columns, effective_modulus, adhesion.work)
     if not 0.0 < radius < math.inf:
         return Range(0.0, math.inf)
-    tabor = tabor_number(radius, modulus, adhesion.work, adhesion.strength)
+    tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
     kind = SHAPES[shape]
     sharp = issubclass(kind, Curved) and kind.profile.flat and kind.profile.corner
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf

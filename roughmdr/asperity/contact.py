@@ -24,7 +24,7 @@ class Contact(NamedTuple):
 
     law: Law
     shape: Shape
-    modulus: float
+    effective_modulus: float
     adhesion: Adhesion
     form: Any
     depth: tuple[float, float]
@@ -33,15 +33,15 @@ class Contact(NamedTuple):
     stiffness: float
 
     @classmethod
-    def of(cls, shape: Shape, modulus: float, adhesion: Adhesion) -> "Contact":
+    def of(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
         """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
-        modulus = check_number("modulus", modulus, "Pa")
+        effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
         width, rise, form = shape.stretched()
         law = choose(shape.name, adhesion, np.array([form]))
         with np.errstate(all="ignore"):  # what overflows is refused below
-            form = _prepared(law, shape, modulus, adhesion, _FIXED_GRIPS)
+            form = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
             if isinstance(shape, Curved) and shape.profile.end * width < adhesion.reach and form[COUNT] == 0.0:
                 raise OutOfRange(
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, reaches beyond the end of "
@@ -52,8 +52,8 @@ class Contact(NamedTuple):
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, is so long that a contact "
                     f"of {shape} is lost in its roundings; it must be larger"
                 )
-            scales = law.natural(modulus, adhesion.work, width, rise, form)
-            contact = cls(law, shape, modulus, adhesion, form, *scales)
+            scales = law.natural(effective_modulus, adhesion.work, width, rise, form)
+            contact = cls(law, shape, effective_modulus, adhesion, form, *scales)
         contact._check(
             indentation=contact.depth[0],
             contact_radius=contact.radius,
@@ -66,8 +66,8 @@ class Contact(NamedTuple):
         """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
         width, rise, _ = self.shape.stretched()
         with np.errstate(all="ignore"):
-            form = _prepared(self.law, self.shape, self.modulus, self.adhesion, _DEAD_LOAD)
-            force, radius = self.law.natural_force(self.modulus, self.adhesion.work, width, rise, form)
+            form = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
+            force, radius = self.law.natural_force(self.effective_modulus, self.adhesion.work, width, rise, form)
         self._check(force=force[0], contact_radius=radius)
         return self._exact(force, form), radius, form
 
@@ -75,14 +75,14 @@ class Contact(NamedTuple):
         """A natural depth with the digits that the fold needs."""
         if not (self.law.adhesive and self.law.curved) or self.adhesion.cohesive:
             return depth
-        return exact_depth(cast(Curved, self.shape), self.modulus, self.adhesion.work, form)
+        return exact_depth(cast(Curved, self.shape), self.effective_modulus, self.adhesion.work, form)
 
     def _check(self, **scales: float) -> None:
         for quantity, scale in scales.items():
             if not np.finfo(float).tiny <= scale < math.inf:
                 raise OutOfRange(
                     f"the natural {quantity} is not representable (2e-308 to 2e308 in SI): "
-                    f"modulus {self.modulus:g} Pa, {self.adhesion}, {self.shape}"
+                    f"effective modulus {self.effective_modulus:g} Pa, {self.adhesion}, {self.shape}"
                 )
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
@@ -198,6 +198,8 @@ class Contact(NamedTuple):
         return self.depth[0] * (distance - 1.0) - self.depth[1]
 
 
-def _prepared(law: Law, shape: Shape, modulus: float, adhesion: Adhesion, control: float) -> Any:
+def _prepared(law: Law, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
     width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.stretched())
-    return law.own(law.prepare(modulus, adhesion.work, adhesion.strength, width, rise, form, 0, 1, control), 0)
+    return law.own(
+        law.prepare(effective_modulus, adhesion.work, adhesion.strength, width, rise, form, 0, 1, control), 0
+    )

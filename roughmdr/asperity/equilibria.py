@@ -22,20 +22,20 @@ _NAMES = ("contact_radius", "force", "contact_area", "stiffness")
 _LEAST = 1e-150  # of the radius of the first fold, where the search for a small contact begins
 
 
-def equilibria(shape: Shape, *, modulus: float, work: float, indentation: float) -> "xr.Dataset":
+def equilibria(shape: Shape, *, effective_modulus: float, work: float, indentation: float) -> "xr.Dataset":
     """All contact radii in equilibrium at an indentation [m] (H 40-41, 44), from the smallest to the largest.
 
-    modulus is E* [Pa], work the work of adhesion [J/m^2]. The result is a Dataset over ``equilibrium``: contact_radius
-    [m], force [N], contact_area [m2], stiffness [N/m], ``stable_displacement`` and ``stable_force``, whether it is
-    stable under fixed grips and under dead load; its size is 0 where there is no contact. ``indent`` gives the largest
-    of those that are stable under fixed grips. Raises OutOfRange and ShapeError as ``indent``.
+    effective_modulus is E* [Pa], work the work of adhesion [J/m^2]. The result is a Dataset over ``equilibrium``:
+    contact_radius [m], force [N], contact_area [m2], stiffness [N/m], ``stable_displacement`` and ``stable_force``,
+    whether it is stable under fixed grips and under dead load; its size is 0 where there is no contact. ``indent``
+    gives the largest of those that are stable under fixed grips. Raises OutOfRange and ShapeError as ``indent``.
     """
     import xarray as xr
 
     delta = check_values("indentation", indentation)
     if delta.ndim != 0:
         raise OutOfRange(f"indentation has {delta.ndim} dimensions; equilibria takes one number")
-    contact = Contact.of(shape, modulus, Adhesion.checked("jkr", work, None))
+    contact = Contact.of(shape, effective_modulus, Adhesion.checked("jkr", work, None))
     with np.errstate(all="ignore"):  # what overflows is refused below
         found = [*_stable(contact, float(delta)), *_unstable(contact, float(delta))]
     columns = np.array(sorted(found), dtype=np.float64).reshape(-1, 3).T
@@ -45,7 +45,7 @@ def equilibria(shape: Shape, *, modulus: float, work: float, indentation: float)
         if not np.isfinite(values).all():
             raise OutOfRange(f"{name} at indentation = {float(delta):g} m is not representable")
     # k/(2 E* a) is at most 1 where fixed grips hold the contact, and at least 3 where they do not.
-    held = stiffness <= 4.0 * modulus * a
+    held = stiffness <= 4.0 * effective_modulus * a
     data = {name: ("equilibrium", values, ASPERITY[name].attrs) for name, values in results.items()}
     return xr.Dataset(
         {
@@ -85,11 +85,11 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
 
     if not contact.law.adhesive:
         return
-    shape, modulus = contact.shape, contact.modulus
+    shape, effective_modulus = contact.shape, contact.effective_modulus
     edge = contact.radius if isinstance(shape, FlatPunch) or (isinstance(shape, Curved) and shape.profile.flat) else 0.0
 
     def stretch(a: float) -> float:
-        return stretch_at(a, modulus, contact.adhesion.work)
+        return stretch_at(a, effective_modulus, contact.adhesion.work)
 
     def excess(log_a: float, most: float) -> float:
         a = min(math.exp(log_a), most)
@@ -102,7 +102,7 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
             continue
         a = math.exp(float(brentq(excess, *ends, (high,), xtol=1e-15, rtol=1e-15)))
         if a < edge:
-            yield a, -2.0 * modulus * a * stretch(a), 6.0 * modulus * a
+            yield a, -2.0 * effective_modulus * a * stretch(a), 6.0 * effective_modulus * a
         else:
             results = contact.at_radius(np.array([a]))
             yield a, float(results["force"][0]), float(results["stiffness"][0])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def indent(
     shape: Shape | Callable[[Floats], Floats],
     *,
-    modulus: float,
+    effective_modulus: float,
     work: float = 0.0,
     indentation: ArrayLike | None = None,
     force: ArrayLike | None = None,
@@ -49,11 +49,11 @@ def indent(
     contact_radius : [m]
         The equilibrium with that radius, stable or not. OutOfRange below 0; with "dugdale" ShapeError for 0.
 
-    modulus is E* [Pa], work the work of adhesion [J/m^2]; 0 means none. The result is a Dataset over the control
-    (same order; a number gives a 0-d Dataset): force [N], indentation [m], contact_radius [m], contact_area [m2],
-    stiffness [N/m], and with "dugdale" cohesive_radius [m], up to which the surfaces attract each other. At the fold
-    the stiffness is its finite value one rounding step above. With "jkr" a ``strength`` makes for a warning where the
-    Tabor number is small.
+    effective_modulus is E* [Pa], work the work of adhesion [J/m^2]; 0 means none. The result is a Dataset over the
+    control (same order; a number gives a 0-d Dataset): force [N], indentation [m], contact_radius [m], contact_area
+    [m2], stiffness [N/m], and with "dugdale" cohesive_radius [m], up to which the surfaces attract each other. At the
+    fold the stiffness is its finite value one rounding step above. With "jkr" a ``strength`` makes for a warning where
+    the Tabor number is small.
 
     With method="springs" a row of ``springs`` springs takes the place of the closed forms (``roughmdr.springs``); the
     shape may then be a function f(r) [m] of an array of radii [m] too.
@@ -69,7 +69,7 @@ def indent(
         raise RoughmdrError(f"got {names}; indent takes exactly one of indentation, force, contact_radius")
     ((control, raw),) = given.items()
     values = check_values(control, raw)
-    contact = _contact(shape, modulus, Adhesion.checked(adhesion, work, strength), method, springs)
+    contact = _contact(shape, effective_modulus, Adhesion.checked(adhesion, work, strength), method, springs)
     solve = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
     with np.errstate(all="ignore"):  # what overflows is refused below
         results = {**solve[control](np.atleast_1d(values)), control: np.atleast_1d(values)}
@@ -83,12 +83,16 @@ def indent(
     if isinstance(shape, Shape):
         radius = results["contact_radius"]
         extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
-    doubts = [*extremes.warnings, *_short_range(shape, modulus, work, adhesion, strength)]
+    doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, doubts)
 
 
 def _contact(
-    shape: Shape | Callable[[Floats], Floats], modulus: float, adhesion: Adhesion, method: str, springs: int | None
+    shape: Shape | Callable[[Floats], Floats],
+    effective_modulus: float,
+    adhesion: Adhesion,
+    method: str,
+    springs: int | None,
 ) -> "Contact | Springs":
     """The contact by its closed forms, or as a row of springs."""
     if method not in ("exact", "springs"):
@@ -96,18 +100,18 @@ def _contact(
     if method == "springs":
         from roughmdr.springs import Springs
 
-        return Springs.of(shape, modulus, adhesion.work, springs)
+        return Springs.of(shape, effective_modulus, adhesion.work, springs)
     if springs is not None:
         raise RoughmdrError(f"springs is {springs!r}; it goes with method='springs' only")
     if not isinstance(shape, Shape) and callable(shape):
         raise ShapeError(f"shape is {shape!r}; a function f(r) goes with method='springs' only")
-    return Contact.of(shape, modulus, adhesion)
+    return Contact.of(shape, effective_modulus, adhesion)
 
 
 def pull_off(
     shape: Shape,
     *,
-    modulus: float,
+    effective_modulus: float,
     work: float,
     control: Literal["displacement", "force"] = "displacement",
     adhesion: Model = "jkr",
@@ -115,13 +119,13 @@ def pull_off(
 ) -> "xr.Dataset":
     """Where a slow retraction lets go: under fixed grips ("displacement") or dead load ("force").
 
-    The global minimum of delta(a), or of P(a). modulus is E* [Pa], work [J/m^2]. Returns a Dataset of
+    The global minimum of delta(a), or of P(a). effective_modulus is E* [Pa], work [J/m^2]. Returns a Dataset of
     scalars: force [N], indentation [m], contact_radius [m], with "dugdale" cohesive_radius [m]; all 0 without adhesion.
     Raises OutOfRange as ``indent``.
     """
     if control not in ("displacement", "force"):
         raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
-    contact = Contact.of(shape, modulus, Adhesion.checked(adhesion, work, strength))
+    contact = Contact.of(shape, effective_modulus, Adhesion.checked(adhesion, work, strength))
     names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if adhesion == "dugdale" else [])]
     if not contact.law.adhesive:
         return _dataset({name: np.zeros(()) for name in names}, None, [])
@@ -131,18 +135,21 @@ def pull_off(
     for name in names:
         if not np.isfinite(results[name]).all() or (adhesion == "jkr" and (radius == 0.0).any()):
             raise OutOfRange(
-                f"{name} at pull-off is not representable: modulus {modulus:g} Pa, work {work:g} J/m^2, {shape}"
+                f"{name} at pull-off is not representable: "
+                f"effective modulus {effective_modulus:g} Pa, work {work:g} J/m^2, {shape}"
             )
     extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
-    doubts = [*extremes.warnings, *_short_range(shape, modulus, work, adhesion, strength)]
+    doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
     return _dataset({name: results[name].reshape(()) for name in names}, None, doubts)
 
 
-def _short_range(shape: object, modulus: float, work: float, adhesion: str, strength: float | None) -> list[str]:
+def _short_range(
+    shape: object, effective_modulus: float, work: float, adhesion: str, strength: float | None
+) -> list[str]:
     """What to say of JKR where a strength is given with it."""
     if adhesion != "jkr" or strength is None or work == 0.0 or not isinstance(shape, Shape):
         return []
-    return validity.short_range(tabor(shape, modulus=modulus, work=work, strength=strength))
+    return validity.short_range(tabor(shape, effective_modulus=effective_modulus, work=work, strength=strength))
 
 
 def _dataset(results: dict[str, Floats], control: str | None, doubts: list[str]) -> "xr.Dataset":
@@ -162,14 +169,14 @@ def _dataset(results: dict[str, Floats], control: str | None, doubts: list[str])
     )
 
 
-def tabor(shape: Shape, *, modulus: float, work: float, strength: float) -> float:
+def tabor(shape: Shape, *, effective_modulus: float, work: float, strength: float) -> float:
     """The Tabor number [1] of an asperity: dl(a) strength/(pi^(2/3) work) with a where JKR lets go under fixed grips.
 
     Large: JKR; small: the attraction reaches far beyond the contact (DMT). For the paraboloid it is
-    (R work^2/E*^2)^(1/3) strength/work (D. Tabor, J. Colloid Interface Sci. 58 (1977) 2). modulus is E* [Pa], work
-    [J/m^2], strength [Pa], all > 0. Raises OutOfRange as ``indent``.
+    (R work^2/E*^2)^(1/3) strength/work (D. Tabor, J. Colloid Interface Sci. 58 (1977) 2). effective_modulus is E* [Pa],
+    work [J/m^2], strength [Pa], all > 0. Raises OutOfRange as ``indent``.
     """
     strength, work = check_number("strength", strength, "Pa"), check_number("work", work, "J/m^2")
-    contact = Contact.of(shape, modulus, Adhesion(work))
+    contact = Contact.of(shape, effective_modulus, Adhesion(work))
     radius = float(contact.pull_off("displacement")["contact_radius"][0])
-    return tabor_number(radius, contact.modulus, work, strength)
+    return tabor_number(radius, contact.effective_modulus, work, strength)

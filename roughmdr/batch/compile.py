@@ -31,4 +31,6 @@ def _prepare_expected(cell: Cell, variables: list[str]) -> None:
     scene = cell.scene
     one = Route.along(cell.route.separation[:1], unload=False, adhesive=scene.work > 0.0)
     with suppress(RoughmdrError):  # that is said of the whole path
-        expected.prepare(scene.asperities, one, modulus=scene.modulus, adhesion=scene.law, variables=variables)
+        expected.prepare(
+            scene.asperities, one, effective_modulus=scene.effective_modulus, adhesion=scene.law, variables=variables
+        )

@@ -122,7 +122,13 @@ def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
             return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
         made = time.perf_counter()
-        compute(ensemble, route, modulus=scene.modulus, adhesion=scene.law, variables=plan.scene.output.variables)
+        compute(
+            ensemble,
+            route,
+            effective_modulus=scene.effective_modulus,
+            adhesion=scene.law,
+            variables=plan.scene.output.variables,
+        )
         return made - started, time.perf_counter() - made
 
     tracemalloc.start()

@@ -100,13 +100,15 @@ def _cells(scene: Scene) -> Iterator[Cell]:
 
 def law_of(scene: Scene, route: Route, realization: int, variables: list[str], estimator: str) -> LoadSeparation:
     """The law of one realisation of a scene without a sweep, by an estimator."""
-    modulus, adhesion, section = scene.modulus, scene.law, scene.asperities
+    effective_modulus, adhesion, section = scene.effective_modulus, scene.law, scene.asperities
     if estimator == "expected":
         from roughmdr import expected
 
-        return expected.compute(section, route, modulus=modulus, adhesion=adhesion, variables=variables)
+        return expected.compute(
+            section, route, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables
+        )
     ensemble = section.ensemble(scene.seed, realization, stratified=estimator == "stratified")
-    return compute(ensemble, route, modulus=modulus, adhesion=adhesion, variables=variables)
+    return compute(ensemble, route, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
 
 
 def left_out(scene: Scene) -> list[str]:

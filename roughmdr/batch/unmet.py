@@ -74,6 +74,8 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
     scene, route = cell
     try:
-        return compute(alone, route, modulus=scene.modulus, adhesion=scene.law, variables=["force"]).variables["force"]
+        return compute(
+            alone, route, effective_modulus=scene.effective_modulus, adhesion=scene.law, variables=["force"]
+        ).variables["force"]
     except RoughmdrError:
         return np.zeros(route.separation.size)

@@ -29,7 +29,7 @@ _HEAVY = 0.05  # index of a tail: of lighter ones all is borne by their lowest h
 
 @np.errstate(all="ignore")  # what no float can hold is refused at the end
 def compute(
-    source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    source: Source, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
     """The expected law of the asperities of a source along a route; E* [Pa].
 
@@ -39,8 +39,8 @@ def compute(
     names, steps = list(variables), route.separation.size
     rows, dissipating = _rows(names), any(ROW[name] == DISSIPATED for name in names)
     coarse = _stand_ins(source, source.nodes(Rule.smooth(FIRST_ORDER)))
-    reach = range_of(source.shape_name, source.sigma, coarse.columns(), modulus, adhesion)
-    asked = Asked(source, route, modulus, adhesion.settled(reach.jkr_error), rows)
+    reach = range_of(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
+    asked = Asked(source, route, effective_modulus, adhesion.settled(reach.jkr_error), rows)
     parted = Parted.of(asked)
     rule, nodes, doubt, doubt_of_others = converge(asked, parted, dissipating=dissipating)
     total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
@@ -63,7 +63,8 @@ def compute(
         )
     if not np.isfinite(total).all():
         raise OutOfRange(
-            f"the contact of an asperity is not representable: {asked.law.name} with modulus {modulus:g} Pa, "
+            f"the contact of an asperity is not representable: {asked.law.name} with "
+            f"effective modulus {effective_modulus:g} Pa, "
             f"{asked.adhesion}, separation down to {closest:g} m"
         )
     extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, closest, count))
@@ -72,11 +73,13 @@ def compute(
 
 
 @np.errstate(all="ignore")  # nothing is made of its numbers
-def prepare(source: Source, route: Route, *, modulus: float, adhesion: Adhesion, variables: Iterable[str]) -> None:
+def prepare(
+    source: Source, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+) -> None:
     """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
     rows = _rows(variables)
     for model in adhesion.candidates:
-        asked = Asked(source, route, modulus, adhesion._replace(model=model), rows)
+        asked = Asked(source, route, effective_modulus, adhesion._replace(model=model), rows)
         totals_of(set_up(asked, Rule.smooth(1)), route.separation, rows, [0])
 
 

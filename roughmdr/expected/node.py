@@ -24,7 +24,7 @@ class Asked(NamedTuple):
 
     source: Source
     route: Route
-    modulus: float
+    effective_modulus: float
     adhesion: Adhesion
     rows: tuple[int, ...]
     """As in ``totals``; the first is FORCE."""
@@ -61,7 +61,7 @@ def contacts_of(asked: Asked, nodes: Nodes) -> list[Contact]:
         asked.source.fixed or shape(**{name: column[number] for name, column in columns.items()})
         for number in range(nodes.share.size)
     ]
-    return [Contact.of(one, asked.modulus, asked.adhesion) for one in shapes]
+    return [Contact.of(one, asked.effective_modulus, asked.adhesion) for one in shapes]
 
 
 def set_up(asked: Asked, rule: Rule) -> list[Node]:

@@ -25,27 +25,27 @@ def pressure(
     r: ArrayLike,
     contact_radius: float | None = None,
     indentation: float | None = None,
-    modulus: float,
+    effective_modulus: float,
     work: float = 0.0,
 ) -> "xr.DataArray":
     """The normal pressure p(r) [Pa] on the surface, compression > 0 (H 42); 0 outside the contact.
 
     r [m] is a number or a one-dimensional array, from 0 on. The state is told by one number: ``contact_radius`` [m],
     the equilibrium with that radius (ShapeError for a flat punch), or ``indentation`` [m], the contact as on
-    retraction, where out of contact p is 0. modulus is E* [Pa], work the work of adhesion [J/m^2].
+    retraction, where out of contact p is 0. effective_modulus is E* [Pa], work the work of adhesion [J/m^2].
 
     p = (E*/pi) ∫_r^a g'(x)/sqrt(x^2 - r^2) dx - E* dl(a)/(pi sqrt(a^2 - r^2)), for a flat punch
     (E*/pi) delta/sqrt(b^2 - r^2). OutOfRange where p is infinite: at the edge of the contact with adhesion and of a
     flat punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
     """
-    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
     values = radii("r", check_values("r", r))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
     found = np.zeros_like(at)
     inside = at < state.radius
     with np.errstate(all="ignore"):
-        found[inside] = state.modulus / math.pi * state.total(PRESSURE, at[inside])
+        found[inside] = state.effective_modulus / math.pi * state.total(PRESSURE, at[inside])
     return _array("pressure", found, values, _attributed(state))
 
 
@@ -55,7 +55,7 @@ def surface_displacement(
     r: ArrayLike,
     contact_radius: float | None = None,
     indentation: float | None = None,
-    modulus: float,
+    effective_modulus: float,
     work: float = 0.0,
 ) -> "xr.DataArray":
     """The normal displacement u(r) [m] of the surface, positive into the half-space.
@@ -63,7 +63,7 @@ def surface_displacement(
     Arguments and errors as ``pressure``, but for its infinities: u is finite everywhere. Inside the contact
     u = delta - f(r), outside (2/pi) ∫_0^a (delta - g(x))/sqrt(r^2 - x^2) dx, far away P/(pi E* r).
     """
-    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
     values = radii("r", check_values("r", r))
     at = np.atleast_1d(values)
     found = np.zeros_like(at)
@@ -81,7 +81,7 @@ def axis_stress(
     z: ArrayLike,
     contact_radius: float | None = None,
     indentation: float | None = None,
-    modulus: float,
+    effective_modulus: float,
     work: float = 0.0,
     poisson: float,
 ) -> "xr.Dataset":
@@ -95,13 +95,13 @@ def axis_stress(
     refused where the pressure is infinite at r = 0. From flat punches of radius x under dg (K. L. Johnson, Contact
     Mechanics, 1985, section 3.4).
     """
-    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
     if not -1.0 < one_number("poisson", poisson) <= 0.5:
         raise OutOfRange(f"poisson is {poisson:g}; it must be above -1 and at most 0.5")
     values = radii("z", check_values("z", z))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)
-    stress = state.modulus / math.pi
+    stress = state.effective_modulus / math.pi
     mixed = 0.5 - poisson, 3.5 - poisson
     with np.errstate(all="ignore"):
         steep, deep = state.below(STEEP, at), state.below(DEEP, at)

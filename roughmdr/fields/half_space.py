@@ -37,7 +37,7 @@ class HalfSpace(NamedTuple):
     """The half-space under one contact."""
 
     shape: Shape
-    modulus: float
+    effective_modulus: float
     indentation: float
     radius: float
     stretch: float
@@ -50,7 +50,12 @@ class HalfSpace(NamedTuple):
 
     @classmethod
     def of(
-        cls, shape: Shape, modulus: float, work: float, contact_radius: float | None, indentation: float | None
+        cls,
+        shape: Shape,
+        effective_modulus: float,
+        work: float,
+        contact_radius: float | None,
+        indentation: float | None,
     ) -> "HalfSpace":
         """The state under the one control that is given; RoughmdrError, OutOfRange and ShapeError as in ``indent``."""
         controls = {"contact_radius": contact_radius, "indentation": indentation}
@@ -61,7 +66,7 @@ class HalfSpace(NamedTuple):
         ((control, raw),) = given.items()
         value = one_number(control, raw)
         adhesion, wanted = Adhesion.checked("jkr", work, None), np.array([value])
-        contact = Contact.of(shape, modulus, adhesion)
+        contact = Contact.of(shape, effective_modulus, adhesion)
         law = contact.law
         with np.errstate(all="ignore"):
             if control == "contact_radius":
@@ -80,9 +85,9 @@ class HalfSpace(NamedTuple):
             stretch = delta
         else:
             profile_of(type(shape)).ready(row)
-            stretch = -stretch_at(a, contact.modulus, adhesion.work)
+            stretch = -stretch_at(a, contact.effective_modulus, adhesion.work)
         state = float(t[0]) if isinstance(shape, Curved) else a / width
-        return cls(shape, contact.modulus, delta, a, stretch, state, width, rise, row)
+        return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, row)
 
     @property
     def sharp(self) -> bool:

@@ -64,11 +64,11 @@ class Adhesion(NamedTuple):
         return cls(work, model, math.inf if strength is None else check_number("strength", strength, "Pa"))
 
 
-def stretch_at(radius: float, modulus: float, work: float) -> float:
+def stretch_at(radius: float, effective_modulus: float, work: float) -> float:
     """dl [m]: how far the edge of a contact of this radius [m] is stretched in JKR, sqrt(2 pi a w/E*) (H 44)."""
-    return math.sqrt(2.0 * math.pi * radius) * math.sqrt(work) / math.sqrt(modulus)
+    return math.sqrt(2.0 * math.pi * radius) * math.sqrt(work) / math.sqrt(effective_modulus)
 
 
-def tabor_number(radius: float, modulus: float, work: float, strength: float) -> float:
+def tabor_number(radius: float, effective_modulus: float, work: float, strength: float) -> float:
     """The Tabor number [1] of a contact that lets go at this radius [m] in JKR: dl(radius) strength/(pi^(2/3) work)."""
-    return float(stretch_at(radius, modulus, work) / work * strength / math.pi ** (2.0 / 3.0))
+    return float(stretch_at(radius, effective_modulus, work) / work * strength / math.pi ** (2.0 / 3.0))

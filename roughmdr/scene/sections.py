@@ -186,7 +186,7 @@ class Scene(Section):
         if self.counter is not None and self.material.effective_modulus is not None:
             raise _misfit("counter", "does not go with material.effective_modulus, which holds both bodies already")
         try:
-            _ = self.modulus
+            _ = self.effective_modulus
         except OutOfRange as error:
             raise _misfit("material.modulus", str(error)) from None
         if not self.asperities.drawn and self.batch.realizations > 1:
@@ -243,7 +243,7 @@ class Scene(Section):
         return (drawn,) if self.asperities.unfit_for("expected") else (drawn, "expected")
 
     @property
-    def modulus(self) -> float:
+    def effective_modulus(self) -> float:
         """E* [Pa] (H 43)."""
         material = self.material
         if material.effective_modulus is not None:

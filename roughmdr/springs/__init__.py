@@ -33,10 +33,12 @@ class Springs(NamedTuple):
     """A contact whose state is that of a row of springs, which ends a little beyond the contact."""
 
     rows: Rows
-    modulus: float
+    effective_modulus: float
 
     @classmethod
-    def of(cls, shape: Shape | Callable[[Floats], Floats], modulus: float, work: float, count: int | None) -> "Springs":
+    def of(
+        cls, shape: Shape | Callable[[Floats], Floats], effective_modulus: float, work: float, count: int | None
+    ) -> "Springs":
         """``count`` springs below a shape, or a profile f(r) [m] of an array of radii [m]; errors as ``indent``."""
         if isinstance(shape, type) or not (isinstance(shape, Shape) or callable(shape)):
             raise ShapeError(
@@ -47,12 +49,12 @@ class Springs(NamedTuple):
         if count is None or not whole or not FEWEST <= index(count) <= most:
             allowed = f"a whole number from {FEWEST} to {most}{'' if most == MOST else ' for a function f(r)'}"
             raise RoughmdrError(f"springs is {count!r}; with method='springs' it must be {allowed}")
-        modulus = check_number("modulus", modulus, "Pa")
+        effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
         work = check_number("work", work, "J/m^2", zero=True)
         profile = OfShape(shape) if isinstance(shape, Shape) else OfFunction(shape)
         if work > 0.0 and not profile.least_exponent > 0.5:
             raise OutOfRange(f"exponent is {profile.least_exponent:g}; with adhesion (work > 0) it must be above 1/2")
-        return cls(Rows(profile, work / modulus, index(count)), modulus)
+        return cls(Rows(profile, work / effective_modulus, index(count)), effective_modulus)
 
     def at_indentation(self, delta: Floats) -> Results:
         """As on retraction: all springs up to the last that holds; zeros where none does."""
@@ -67,7 +69,7 @@ class Springs(NamedTuple):
         """The same under dead load; OutOfRange where none holds."""
         results = _zeros(force, "indentation", "contact_radius", "stiffness")
         touching = np.flatnonzero((force > 0.0) | (self.rows.tenacity > 0.0))
-        loads = 0.5 * force[touching] / self.modulus
+        loads = 0.5 * force[touching] / self.effective_modulus
         for row, some, held in self.rows.fitted(loads, loaded=True):
             delta = (loads[some] / row.spacing + row.area[held] / row.spacing) / np.maximum(held, 1)
             state = {**self._state(row, held, delta), "indentation": delta}
@@ -129,8 +131,8 @@ class Springs(NamedTuple):
         released = self.rows.stretch(a) / slope if self.rows.tenacity > 0.0 else 0.0
         results = {
             "contact_radius": a,
-            "force": 2.0 * self.modulus * (a * delta - row.area[held]),
-            "stiffness": 2.0 * self.modulus * (a - released),
+            "force": 2.0 * self.effective_modulus * (a * delta - row.area[held]),
+            "stiffness": 2.0 * self.effective_modulus * (a - released),
         }
         return {name: np.where(held > 0, numbers, 0.0) for name, numbers in results.items()}
 
@@ -139,7 +141,7 @@ class Springs(NamedTuple):
         if not self.rows.tenacity > 0.0:
             return 0.0
         row, _, _ = next(self.rows.fitted(np.zeros(1), loaded=True))
-        return 2.0 * self.modulus * float(row.load[:-1].min())
+        return 2.0 * self.effective_modulus * float(row.load[:-1].min())
 
 
 def _zeros(like: Floats, *names: str) -> Results:

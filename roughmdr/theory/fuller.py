@@ -15,7 +15,7 @@ from roughmdr.theory.heights import Distribution, Heights
 def fuller_tabor(
     *,
     separation: ArrayLike,
-    modulus: float,
+    effective_modulus: float,
     radius: float,
     density: float,
     work: float,
@@ -31,7 +31,7 @@ def fuller_tabor(
     reached and have not let go, z >= max(turning, h + delta_c). work [J/m^2]; the others, the variables and the errors
     as for ``greenwood_williamson``. OutOfRange as well where a separation lies below ``turning``.
     """
-    contact = Contact.of(Paraboloid(radius), modulus, Adhesion(check_number("work", work, "J/m^2")))
+    contact = Contact.of(Paraboloid(radius), effective_modulus, Adhesion(check_number("work", work, "J/m^2")))
     summits = Summits(contact, Heights.of(std, heights), density)
     if turning is None:
         return summits.over(variable, separation, lambda h: h)

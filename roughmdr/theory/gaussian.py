@@ -34,15 +34,15 @@ _LARGEST = 64.0  # S; heights up to 39 and 9 deviations beyond
 
 
 def mean_over_summits(
-    contacts: Contacts, separation: ArrayLike, modulus: float, moments: Moments, variable: Variable
+    contacts: Contacts, separation: ArrayLike, effective_modulus: float, moments: Moments, variable: Variable
 ) -> Floats:
     """``variable`` at separations [m] from the mean plane of the surface."""
-    modulus = check_number("modulus", modulus, "Pa")
+    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
     given = check_values("separation", separation)
     power, _ = _POWERS[check_variable(variable)]
     deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
     unit = {
-        "pressure": 4.0 / 3.0 * modulus * deviation * math.sqrt(deviation / curvature),
+        "pressure": 4.0 / 3.0 * effective_modulus * deviation * math.sqrt(deviation / curvature),
         "contact_fraction": math.pi * deviation / curvature,
         "contact_density": 1.0,
     }[variable]

@@ -24,7 +24,7 @@ class RoughLine(NamedTuple):
 
 
 def rough_line(
-    *, separation: ArrayLike, modulus: float, spectrum: Spectrum, length: float, points: int, seed: int
+    *, separation: ArrayLike, effective_modulus: float, spectrum: Spectrum, length: float, points: int, seed: int
 ) -> RoughLine:
     """Force [N] and stiffness [N/m] of a rough line on springs, under a rigid flat at separations [m] from its mean.
 
@@ -40,11 +40,11 @@ def rough_line(
     force that boundary elements find, and the length that touches is no area (I. A. Lyashenko, L. Pastewka, B. N. J.
     Persson, Tribol. Lett. 52 (2013) 223).
 
-    modulus E* [Pa]; the others and the errors as for ``line_heights``. The shapes are that of separation, a number or
-    one-dimensional. OutOfRange where an argument is.
+    effective_modulus E* [Pa]; the others and the errors as for ``line_heights``. The shapes are that of separation, a
+    number or one-dimensional. OutOfRange where an argument is.
     """
     z = line_heights(spectrum=spectrum, length=length, points=points, seed=seed)
-    spring = check_number("modulus", modulus, "Pa") * (length / len(z))
+    spring = check_number("effective_modulus", effective_modulus, "Pa") * (length / len(z))
     given = check_values("separation", separation)
     # Depths below the highest point: their sums do not cancel at the first touches.
     top = float(z.max())

@@ -15,7 +15,7 @@ from roughmdr.theory.heights import Distribution, Heights
 def dmt_maugis(
     *,
     separation: ArrayLike,
-    modulus: float,
+    effective_modulus: float,
     radius: float,
     density: float,
     work: float,
@@ -35,6 +35,6 @@ def dmt_maugis(
     are those of Greenwood and Williamson.
     work [J/m^2]; the others, the variables and the errors as for ``greenwood_williamson``.
     """
-    contact = Contact.of(Paraboloid(radius), modulus, Adhesion())
+    contact = Contact.of(Paraboloid(radius), effective_modulus, Adhesion())
     pull = 2.0 * math.pi * check_number("work", work, "J/m^2") * radius
     return Summits(contact, Heights.of(std, heights), density, pull).over(variable, separation, lambda h: h)

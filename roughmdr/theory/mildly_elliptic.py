@@ -9,7 +9,7 @@ from roughmdr.theory.gaussian import mean_over_summits
 
 
 def greenwood_elliptic(
-    *, separation: ArrayLike, modulus: float, m0: float, m2: float, m4: float, variable: Variable = "pressure"
+    *, separation: ArrayLike, effective_modulus: float, m0: float, m2: float, m4: float, variable: Variable = "pressure"
 ) -> Floats:
     """Pressure [Pa] of the summits of an isotropic Gaussian surface at separations [m], or area or number of contacts.
 
@@ -19,4 +19,4 @@ def greenwood_elliptic(
     accuracy as for ``bush_gibson_thomas``: at a given separation it has up to 3 % less force and 2 % more area, at a
     given force up to 5 % more area.
     """
-    return mean_over_summits("circular", separation, modulus, Moments.checked(m0, m2, m4), variable)
+    return mean_over_summits("circular", separation, effective_modulus, Moments.checked(m0, m2, m4), variable)

@@ -17,7 +17,9 @@ _TOWARDS_LONGEST = 45
 _VANISHED = 30.0  # exp(-x^2) is 0 beyond
 
 
-def persson_separation(*, pressure: ArrayLike, modulus: float, spectrum: Spectrum, gamma: float = 0.45) -> Floats:
+def persson_separation(
+    *, pressure: ArrayLike, effective_modulus: float, spectrum: Spectrum, gamma: float = 0.45
+) -> Floats:
     """Mean gap [m] between a rigid rough surface and an elastic half-space at pressures [Pa], without adhesion.
 
     u(p) = sqrt(pi) ∫ dq q^2 C(q) w(q) ∫_p^∞ dp'/p' [gamma + 3 (1 - gamma) P^2] exp(-(w p'/E*)^2) over all waves, with
@@ -26,20 +28,20 @@ def persson_separation(*, pressure: ArrayLike, modulus: float, spectrum: Spectru
     the elastic energy U = pi/2 E* ∫ dq q^2 C P [gamma + (1 - gamma) P^2] of a unit area.
     At small pressures u falls by log(p) times gamma sqrt(pi) ∫ dq q^2 C w; at full contact it is 0.
 
-    modulus E* [Pa]; spectrum C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave`` [m];
-    gamma from 0 to 1, 0.4 to 0.5 in the literature. The shape is that of pressure, a number or one-dimensional.
+    effective_modulus E* [Pa]; spectrum C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave``
+    [m]; gamma from 0 to 1, 0.4 to 0.5 in the literature. The shape is that of pressure, a number or one-dimensional.
     OutOfRange where an argument is not above 0 (without pressure there is no finite gap), RoughmdrError where spectrum
     is none. Accurate to about 1e-12 of itself.
     """
     given = check_values("pressure", pressure)
     if (given <= 0.0).any():
         raise OutOfRange(f"pressure is {np.min(given):g} Pa; it must be above 0")
-    modulus = check_number("modulus", modulus, "Pa")
+    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
     if not (gamma := check_number("gamma", gamma, "1", zero=True)) <= 1.0:
         raise OutOfRange(f"gamma is {gamma:g}; it must be from 0 to 1")
     with np.errstate(all="ignore"):  # refused below
         q, squared_slope, change = _slopes(spectrum)
-        x = given.reshape(-1, 1) / modulus / np.sqrt(squared_slope)
+        x = given.reshape(-1, 1) / effective_modulus / np.sqrt(squared_slope)
         gaps = _over_pressure(x, gamma) @ (change / q / np.sqrt(math.pi * squared_slope))
     return representable("mean gap", gaps, given)
 

@@ -14,22 +14,22 @@ from roughmdr.theory.persson_gap import persson_separation
 _LEAST, _MOST = -350.0, math.log(25.0)
 
 
-def persson_pressure(*, separation: ArrayLike, modulus: float, spectrum: SelfAffine) -> Floats:
+def persson_pressure(*, separation: ArrayLike, effective_modulus: float, spectrum: SelfAffine) -> Floats:
     """Pressure [Pa] at mean gaps separation [m], to about 1e-12 of itself: the inverse of ``persson_separation``.
 
-    modulus E* [Pa]. The shape is that of separation. OutOfRange where a separation is not above 0, or is one whose
-    pressure over the modulus no float holds, and where another argument is.
+    effective_modulus E* [Pa]. The shape is that of separation. OutOfRange where a separation is not above 0, or is one
+    whose pressure over the modulus no float holds, and where another argument is.
     """
     from scipy.optimize.elementwise import find_root
 
     given = check_values("separation", separation)
     if not isinstance(spectrum, SelfAffine):
         raise RoughmdrError(f"spectrum is {spectrum!r}; it must be a SelfAffine")
-    unit = check_number("modulus", modulus, "Pa") * spectrum.rms_slope
+    unit = check_number("effective_modulus", effective_modulus, "Pa") * spectrum.rms_slope
 
     def gap(logarithm: Floats) -> Floats:
         pressure = unit * np.exp(logarithm)
-        return persson_separation(pressure=pressure, modulus=modulus, spectrum=spectrum)
+        return persson_separation(pressure=pressure, effective_modulus=effective_modulus, spectrum=spectrum)
 
     def too_wide(logarithm: Floats, h: Floats) -> Floats:
         return gap(logarithm) - h

@@ -17,7 +17,7 @@ VALUES = 6
 
 class Case(NamedTuple):
     shape: PowerShape
-    modulus: float
+    effective_modulus: float
     work: float
 
     @property
@@ -68,7 +68,9 @@ def test_every_output_is_as_accurate_as_promised(kind: str, adhesive: bool, cont
             answers = [twin.radius(control, value) for value in exact_values]
         values = [float(value) for value in exact_values]
         try:
-            contact = rm.indent(case.shape, modulus=case.modulus, work=case.work, **{control: values})
+            contact = rm.indent(
+                case.shape, effective_modulus=case.effective_modulus, work=case.work, **{control: values}
+            )
         except rm.OutOfRange:
             needed = [*natural_scales(twin), *(number for a in answers for number in answers_at(twin, a))]
             assert not representable(needed), case

@@ -39,7 +39,7 @@ controls = st.builds(lambda size, sign: sign * size, st.one_of(st.just(0.0), siz
 @pytest.mark.parametrize("kind", KINDS)
 @given(
     parameters=st.tuples(sizes, sizes, sizes),
-    modulus=sizes,
+    effective_modulus=sizes,
     work=works,
     values=st.lists(controls, max_size=3),
 )
@@ -48,13 +48,15 @@ def test_indent(
     kind: str,
     control: str,
     parameters: tuple[float, float, float],
-    modulus: float,
+    effective_modulus: float,
     work: float,
     values: list[float],
 ) -> None:
     try:
         with np.errstate(all="ignore"):
-            contact = rm.indent(KINDS[kind](parameters), modulus=modulus, work=work, **{control: values})
+            contact = rm.indent(
+                KINDS[kind](parameters), effective_modulus=effective_modulus, work=work, **{control: values}
+            )
     except rm.RoughmdrError:
         return
     for name in contact.variables:
@@ -65,12 +67,14 @@ def test_indent(
 @compiled
 @pytest.mark.parametrize("control", ["displacement", "force"])
 @pytest.mark.parametrize("kind", KINDS)
-@given(parameters=st.tuples(sizes, sizes, sizes), modulus=sizes, work=works)
+@given(parameters=st.tuples(sizes, sizes, sizes), effective_modulus=sizes, work=works)
 @settings(deadline=None, max_examples=60)
-def test_pull_off(kind: str, control: str, parameters: tuple[float, float, float], modulus: float, work: float) -> None:
+def test_pull_off(
+    kind: str, control: str, parameters: tuple[float, float, float], effective_modulus: float, work: float
+) -> None:
     try:
         with np.errstate(all="ignore"):
-            off = rm.pull_off(KINDS[kind](parameters), modulus=modulus, work=work, control=control)
+            off = rm.pull_off(KINDS[kind](parameters), effective_modulus=effective_modulus, work=work, control=control)
     except rm.RoughmdrError:
         return
     for name in ("force", "indentation", "contact_radius"):
@@ -83,8 +87,8 @@ def test_pull_off(kind: str, control: str, parameters: tuple[float, float, float
 @settings(deadline=None, max_examples=100)
 def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> None:
     shape = KINDS[kind]((1.5, 1.6, 0.2))
-    off = rm.pull_off(shape, modulus=1e6, work=0.05)
-    contact = rm.indent(shape, modulus=1e6, work=0.05, indentation=np.array(values) * -float(off.indentation))
+    off = rm.pull_off(shape, effective_modulus=1e6, work=0.05)
+    contact = rm.indent(shape, effective_modulus=1e6, work=0.05, indentation=np.array(values) * -float(off.indentation))
     assert ((contact.contact_radius > 0.0) == (np.array(values) >= -1.0)).all()
 
 
@@ -102,14 +106,14 @@ def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> N
 @pytest.mark.parametrize("kind", ["paraboloid", "cone", "coefficient", "rise"])
 def test_an_overflow_is_refused_without_a_warning(kind: str, given: dict[str, float]) -> None:
     with pytest.raises(rm.OutOfRange, match="representable"):
-        rm.indent(KINDS[kind]((1.5, 1.6, 1e-6)), modulus=1e13, **given)
+        rm.indent(KINDS[kind]((1.5, 1.6, 1e-6)), effective_modulus=1e13, **given)
 
 
 def test_a_fold_that_is_no_float_is_refused() -> None:
     with pytest.raises(rm.OutOfRange, match="representable"):
-        rm.indent(rm.PowerLaw(exponent=1.5, width=1e-200, rise=1e45), modulus=1e6, work=1.0, indentation=0.0)
+        rm.indent(rm.PowerLaw(exponent=1.5, width=1e-200, rise=1e45), effective_modulus=1e6, work=1.0, indentation=0.0)
 
 
 def test_a_contact_has_an_area() -> None:
     with pytest.raises(rm.OutOfRange, match=r"contact_area .* is not representable"):
-        rm.indent(rm.Cone(slope=1.0), modulus=1e6, contact_radius=1e-163)
+        rm.indent(rm.Cone(slope=1.0), effective_modulus=1e6, contact_radius=1e-163)

@@ -31,13 +31,13 @@ every_work = pytest.mark.parametrize("work", [0.0, W], ids=["elastic", "jkr"])
 
 
 def indent(shape: rm.PowerLaw, work: float, **control: object) -> xr.Dataset:
-    return rm.indent(shape, modulus=E, work=work, **control)
+    return rm.indent(shape, effective_modulus=E, work=work, **control)
 
 
 def onset(shape: rm.PowerLaw, control: str) -> float:
     """The control's value at pull-off, negative."""
     kind = "force" if control == "force" else "displacement"
-    return float(rm.pull_off(shape, modulus=E, work=W, control=kind)[control])
+    return float(rm.pull_off(shape, effective_modulus=E, work=W, control=kind)[control])
 
 
 @every_shape
@@ -69,7 +69,7 @@ def test_stiffness_is_the_slope_of_the_force(shape: rm.PowerLaw, work: float) ->
 
 @every_shape
 def test_the_fold_itself_is_finite_with_a_steep_fall(shape: rm.PowerLaw) -> None:
-    off = rm.pull_off(shape, modulus=E, work=W)
+    off = rm.pull_off(shape, effective_modulus=E, work=W)
     at_fold = indent(shape, W, indentation=float(off.indentation))
     assert all(np.isfinite(at_fold[name]) for name in at_fold.variables)
     assert float(at_fold.force) == pytest.approx(float(off.force), rel=1e-12)
@@ -108,14 +108,16 @@ def test_no_contact_holds_a_stronger_pull(shape: rm.PowerLaw, work: float) -> No
 
 
 @every_shape
-@pytest.mark.parametrize("modulus", [1e3, 3.3e4, 7.1e6, 1.9e9, 5.7e12])
-def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(shape: rm.PowerLaw, modulus: float) -> None:
-    off = rm.pull_off(shape, modulus=modulus, work=W, control="force")
-    at_fold = rm.indent(shape, modulus=modulus, work=W, force=float(off.force))
+@pytest.mark.parametrize("effective_modulus", [1e3, 3.3e4, 7.1e6, 1.9e9, 5.7e12])
+def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(
+    shape: rm.PowerLaw, effective_modulus: float
+) -> None:
+    off = rm.pull_off(shape, effective_modulus=effective_modulus, work=W, control="force")
+    at_fold = rm.indent(shape, effective_modulus=effective_modulus, work=W, force=float(off.force))
     assert float(at_fold.contact_radius) == pytest.approx(float(off.contact_radius), rel=1e-6)
     assert all(np.isfinite(at_fold[name]) for name in at_fold.variables)
     with pytest.raises(rm.OutOfRange, match="force is"):
-        rm.indent(shape, modulus=modulus, work=W, force=math.nextafter(float(off.force), -math.inf))
+        rm.indent(shape, effective_modulus=effective_modulus, work=W, force=math.nextafter(float(off.force), -math.inf))
 
 
 @every_shape
@@ -132,14 +134,14 @@ def test_more_load_more_contact(shape: rm.PowerLaw, work: float, control: str) -
     assert (grows >= 0.0).all() if cornered else (grows > 0.0).all()
     other = "force" if control == "indentation" else "indentation"
     stable_under_both = contact.contact_radius.values >= float(
-        rm.pull_off(shape, modulus=E, work=work, control="force").contact_radius
+        rm.pull_off(shape, effective_modulus=E, work=work, control="force").contact_radius
     )
     assert (np.diff(contact[other].values[stable_under_both]) > 0.0).all()
 
 
 @pytest.mark.parametrize("shape", [shape for shape in SHAPES if not getattr(shape, "flat_radius", 0.0)], ids=str)
 def test_a_given_radius_below_the_fold_is_the_unstable_equilibrium(shape: rm.PowerLaw) -> None:
-    fold = rm.pull_off(shape, modulus=E, work=W)
+    fold = rm.pull_off(shape, effective_modulus=E, work=W)
     inner = indent(shape, W, contact_radius=np.array([0.2, 0.9]) * float(fold.contact_radius))
     outer = indent(shape, W, indentation=inner.indentation.values)
     assert (inner.indentation > float(fold.indentation)).all()

@@ -24,14 +24,14 @@ CONE = rm.Cone(slope=0.2)
 ROUNDED = rm.RoundedCone(slope=0.25, blend_radius=4e-8)
 
 
-def strength_of(shape: Shape, tabor: float, modulus: float = E, work: float = W) -> float:
+def strength_of(shape: Shape, tabor: float, effective_modulus: float = E, work: float = W) -> float:
     """The strength [Pa] of a Tabor number, which is proportional to it."""
-    return tabor / float(rm.tabor(shape, modulus=modulus, work=work, strength=1.0))
+    return tabor / float(rm.tabor(shape, effective_modulus=effective_modulus, work=work, strength=1.0))
 
 
-def law(shape: Shape, tabor: float, modulus: float = E, work: float = W) -> dict[str, Any]:
-    strength = strength_of(shape, tabor, modulus, work)
-    return {"modulus": modulus, "work": work, "strength": strength, "adhesion": "dugdale"}
+def law(shape: Shape, tabor: float, effective_modulus: float = E, work: float = W) -> dict[str, Any]:
+    strength = strength_of(shape, tabor, effective_modulus, work)
+    return {"effective_modulus": effective_modulus, "work": work, "strength": strength, "adhesion": "dugdale"}
 
 
 def rate(x: np.ndarray, error: np.ndarray) -> float:
@@ -49,7 +49,9 @@ def test_tabor_numbers() -> None:
         stretch = math.sqrt(2.0 * math.pi * radius * W / E)
         for strength in (1e4, 1e11):
             expected = stretch * strength / (math.pi ** (2 / 3) * W)
-            assert float(rm.tabor(shape, modulus=E, work=W, strength=strength)) == pytest.approx(expected, rel=1e-13)
+            assert float(rm.tabor(shape, effective_modulus=E, work=W, strength=strength)) == pytest.approx(
+                expected, rel=1e-13
+            )
 
 
 @pytest.mark.parametrize("control", ["displacement", "force"])
@@ -57,7 +59,7 @@ def test_tabor_numbers() -> None:
 def test_jkr_is_the_limit_of_great_strength(shape: Shape, control: Literal["displacement", "force"]) -> None:
     """The error of pull-off goes with the strength to the power -2."""
     tabor = np.geomspace(30.0, 300.0, 4)
-    jkr = rm.pull_off(shape, modulus=E, work=W, control=control)
+    jkr = rm.pull_off(shape, effective_modulus=E, work=W, control=control)
     off = [rm.pull_off(shape, **law(shape, each), control=control) for each in tabor]
     for quantity in ("force", "indentation"):
         error = np.array([abs(float(each[quantity] / jkr[quantity]) - 1.0) for each in off])
@@ -110,7 +112,7 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
     for part in (0.3, 0.9, 1.0 - 1e-6):
         strength = part * border
         beta = 2.0 * strength / E
-        off = rm.pull_off(SPHERE, modulus=E, work=W, strength=strength, adhesion="dugdale")
+        off = rm.pull_off(SPHERE, effective_modulus=E, work=W, strength=strength, adhesion="dugdale")
         c = 2.0 * beta * R / math.pi
         assert float(off.contact_radius) == 0.0
         assert float(off.cohesive_radius) == pytest.approx(c, rel=1e-12)
@@ -118,7 +120,7 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
         assert float(off.indentation) == pytest.approx(-(c**2) / (2.0 * R) - W / strength, rel=1e-12)
     radii = []
     for part in (1.0 + 1e-6, 1.01, 1.1, 2.0):
-        off = rm.pull_off(SPHERE, modulus=E, work=W, strength=part * border, adhesion="dugdale")
+        off = rm.pull_off(SPHERE, effective_modulus=E, work=W, strength=part * border, adhesion="dugdale")
         radii.append(float(off.contact_radius / off.cohesive_radius))
     assert 0.0 < radii[0] < 1e-4
     assert (np.diff(radii) > 0.0).all()
@@ -131,7 +133,7 @@ def test_other_units_give_the_same_contact(length: float, pressure: float, tabor
     there_shape = rm.RoundedCone(slope=0.25, blend_radius=4e-8 * length)
     here = law(ROUNDED, tabor)
     there = here | {
-        "modulus": E * pressure,
+        "effective_modulus": E * pressure,
         "strength": here["strength"] * pressure,
         "work": W * pressure * length,
     }
@@ -176,7 +178,7 @@ def decades(least: float, most: float) -> st.SearchStrategy[float]:
 @st.composite
 def asperities(draw: st.DrawFn) -> tuple[Shape, float, float]:
     """A shape, a modulus [Pa] and a work [J/m2]."""
-    width, aspect, modulus = draw(decades(1e-9, 1e-3)), draw(decades(1e-2, 1.0)), draw(decades(1e4, 1e12))
+    width, aspect, effective_modulus = draw(decades(1e-9, 1e-3)), draw(decades(1e-2, 1.0)), draw(decades(1e4, 1e12))
     rise = width * aspect
     shape = draw(
         st.sampled_from(
@@ -188,8 +190,8 @@ def asperities(draw: st.DrawFn) -> tuple[Shape, float, float]:
         )
         | st.floats(1.0, 6.0).map(lambda n: rm.PowerLaw(exponent=n, width=width, rise=rise))
     )
-    work = (draw(decades(0.1, 10.0)) * rise) ** 2 * modulus / (2.0 * math.pi * width)
-    return shape, modulus, work
+    work = (draw(decades(0.1, 10.0)) * rise) ** 2 * effective_modulus / (2.0 * math.pi * width)
+    return shape, effective_modulus, work
 
 
 @settings(deadline=None, max_examples=40)
@@ -197,9 +199,9 @@ def asperities(draw: st.DrawFn) -> tuple[Shape, float, float]:
 @example((rm.Cone(slope=0.9999997255105045), 1e4, 1.591548557191873), 0.1, 0.5)  # no stiffness at its pull-off
 @example((rm.RoundedCone(slope=1.0, blend_radius=1e-3), 1e4, 0.03480678267614496), 10.0**0.625, 10.0**1.5078125)
 def test_the_equations_hold(asperity: tuple[Shape, float, float], tabor: float, distance: float) -> None:
-    shape, modulus, work = asperity
-    mine = law(shape, tabor, modulus, work)
-    strength, beta = mine["strength"], 2.0 * mine["strength"] / modulus
+    shape, effective_modulus, work = asperity
+    mine = law(shape, tabor, effective_modulus, work)
+    strength, beta = mine["strength"], 2.0 * mine["strength"] / effective_modulus
     depth = -float(rm.pull_off(shape, **mine).indentation)
     delta = depth * (distance - 1.0)
     contact = rm.indent(shape, **mine, indentation=delta)
@@ -215,11 +217,11 @@ def test_the_equations_hold(asperity: tuple[Shape, float, float], tabor: float, 
     force, gap = springs(shape, beta, a, c, delta)
     assert abs(gap - work / strength) <= 1e-9 * max(work / strength, float(shape.f(c)), abs(delta))
     scale = max(a * height, c * spread, abs(force))
-    assert abs(float(contact.force) / (2.0 * modulus) - force) <= 1e-9 * scale
+    assert abs(float(contact.force) / (2.0 * effective_modulus) - force) <= 1e-9 * scale
 
 
 def test_an_attraction_that_reaches_around_a_sphere_is_refused() -> None:
     with pytest.raises(
         rm.OutOfRange, match=r"strength is 1000 Pa: its range, 7e-05 m, reaches beyond the end of Sphere"
     ):
-        rm.pull_off(rm.Sphere(radius=R), modulus=E, work=W, adhesion="dugdale", strength=1e3)
+        rm.pull_off(rm.Sphere(radius=R), effective_modulus=E, work=W, adhesion="dugdale", strength=1e3)

@@ -30,7 +30,7 @@ class Case(NamedTuple):
 
     name: str
     shape: Shape
-    modulus: float
+    effective_modulus: float
     work: float
     strength: float
     pull_off: dict[str, Row]
@@ -40,7 +40,12 @@ class Case(NamedTuple):
 
     @property
     def law(self) -> dict[str, Any]:
-        return {"modulus": self.modulus, "work": self.work, "strength": self.strength, "adhesion": "dugdale"}
+        return {
+            "effective_modulus": self.effective_modulus,
+            "work": self.work,
+            "strength": self.strength,
+            "adhesion": "dugdale",
+        }
 
     def unit(self, quantity: str) -> float:
         powers = {"contact_radius": (1, 0), "cohesive_radius": (1, 0), "indentation": (1, 0)}
@@ -99,7 +104,7 @@ def bounds(case: Case, row: Row, X: float, sought: bool, slack: float = 0.0) -> 
     forward = 1e-12 + (1e-15 / math.sqrt(X) if sought else 0.0)
     exact = {name: abs(float(case.exact(row, name))) for name in ("contact_radius", "cohesive_radius", "stiffness")}
     radius = forward * exact["cohesive_radius"] + slack
-    rigid = 2.0 * case.modulus  # stiffness per contact radius
+    rigid = 2.0 * case.effective_modulus  # stiffness per contact radius
     stiffness = (1e-11 + 1e-14 / X) * max(exact["stiffness"], rigid * exact["contact_radius"])
     return {
         "contact_radius": radius,

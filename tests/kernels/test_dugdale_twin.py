@@ -16,8 +16,8 @@ E, W = 2e9, 0.07
 
 def asked(exponent: float, tabor: float) -> tuple[rm.PowerLaw, dict[str, float]]:
     shape = rm.PowerLaw(exponent=exponent, width=3e-6, rise=4e-7)
-    strength = tabor / rm.tabor(shape, modulus=E, work=W, strength=1.0)
-    return shape, {"modulus": E, "work": W, "strength": strength}
+    strength = tabor / rm.tabor(shape, effective_modulus=E, work=W, strength=1.0)
+    return shape, {"effective_modulus": E, "work": W, "strength": strength}
 
 
 @pytest.mark.parametrize("tabor", [3e-3, 0.2, 1.4, 300.0])
@@ -56,7 +56,7 @@ def test_the_twin_fulfils_the_definitions(exponent: float) -> None:
     places = [0, mp.asin(a / c), mp.pi / 2] if a > 0 else [0, mp.pi / 2]
     with mp.workdps(25):
         opened = unit * mp.quad(u1, places)
-        force = 2 * plain.modulus * unit * c * mp.quad(lambda phi: u1(phi) * mp.cos(phi), places)
+        force = 2 * plain.effective_modulus * unit * c * mp.quad(lambda phi: u1(phi) * mp.cos(phi), places)
         gap = plain.g(c) / plain.kappa - state.indentation + 2 / mp.pi * opened
     if a > 0:
         assert abs(force / state.force - 1) < 1e-15
@@ -70,5 +70,5 @@ def test_a_contact_so_small_that_its_square_is_no_float_is_refused() -> None:
     shape = rm.PowerLaw(exponent=0.5107, width=0.08, rise=3.2e-5)
     with pytest.raises(rm.OutOfRange, match="representable"):
         rm.indent(
-            shape, modulus=4.76e9, work=0.003745, adhesion="dugdale", strength=2.7e89, indentation=1e-91,
+            shape, effective_modulus=4.76e9, work=0.003745, adhesion="dugdale", strength=2.7e89, indentation=1e-91,
         )  # fmt: skip

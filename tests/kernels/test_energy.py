@@ -25,7 +25,7 @@ def springs(twin: Twin, a: Real) -> tuple[Real, Real]:
     """E* ∫_0^a (delta - g)^2 dx, by the expanded square, and pi w a^2."""
     delta, g = twin.indentation(a), twin.g(a)
     square = delta**2 - 2 * delta * g / (twin.n + 1) + g**2 / (2 * twin.n + 1)
-    return twin.modulus * a * square, mp.pi * twin.work * a**2
+    return twin.effective_modulus * a * square, mp.pi * twin.work * a**2
 
 
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
@@ -36,7 +36,7 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
     while compared < 60:
         case = draw(rng, kind, adhesive)
         try:
-            contact = Contact.of(case.shape, case.modulus, Adhesion(case.work))
+            contact = Contact.of(case.shape, case.effective_modulus, Adhesion(case.work))
         except rm.OutOfRange:
             continue
         distance = 10.0 ** rng.uniform(-12.0, 3.0)
@@ -71,7 +71,7 @@ def test_it_grows_by_the_work_of_the_force(shape: rm.Paraboloid, work: float) ->
     ends = np.array([0.3, 2.0]) * contact.depth[0]
     x, weights = np.polynomial.legendre.leggauss(40)
     delta = ends[0] + (ends[1] - ends[0]) * (x + 1.0) / 2.0
-    force = rm.indent(shape, modulus=E, work=work, indentation=delta).force.to_numpy()
+    force = rm.indent(shape, effective_modulus=E, work=work, indentation=delta).force.to_numpy()
     states = apply(contact.law.state, contact.reduced(ends, contact.depth), contact.form)
     gained = energy(contact, states[1]) - energy(contact, states[0])
     assert gained == pytest.approx(float(np.sum(weights * force)) * (ends[1] - ends[0]) / 2.0, rel=1e-12)

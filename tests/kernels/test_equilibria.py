@@ -42,19 +42,19 @@ def test_two_branches(case: str) -> None:
     work = work_for(shape, tension)
     inner, top, outer = turns(shape, work)
     both = max(inner, outer) + 0.4 * (top - max(inner, outer))
-    found = rm.equilibria(shape, modulus=E, work=work, indentation=both)
+    found = rm.equilibria(shape, effective_modulus=E, work=work, indentation=both)
     assert found.stable_displacement.values.tolist() == [False, True, False, True]
     assert (np.diff(found.contact_radius) > 0.0).all()
     a = found.contact_radius.to_numpy()
     np.testing.assert_allclose(shape.g(a) - np.sqrt(2.0 * math.pi * a * work / E), both, rtol=1e-11)
-    retracted = rm.indent(shape, modulus=E, work=work, indentation=both)
+    retracted = rm.indent(shape, effective_modulus=E, work=work, indentation=both)
     assert float(retracted.contact_radius) == pytest.approx(a[-1], rel=1e-13)
     one = min(inner, outer) + 0.5 * (max(inner, outer) - min(inner, outer))
-    left = rm.equilibria(shape, modulus=E, work=work, indentation=one)
+    left = rm.equilibria(shape, effective_modulus=E, work=work, indentation=one)
     assert left.stable_displacement.values.sum() == 1
-    off = rm.pull_off(shape, modulus=E, work=work)
+    off = rm.pull_off(shape, effective_modulus=E, work=work)
     assert float(off.indentation) == pytest.approx(min(inner, outer), rel=1e-6)
-    still = rm.indent(shape, modulus=E, work=work, indentation=one)
+    still = rm.indent(shape, effective_modulus=E, work=work, indentation=one)
     assert float(still.contact_radius) == pytest.approx(left.contact_radius[left.stable_displacement].item(), rel=1e-13)
 
 
@@ -72,37 +72,37 @@ ONE_BRANCH = [
 @pytest.mark.parametrize("shape", [*ONE_BRANCH, rm.FlatPunch(b)], ids=str)
 def test_between_pull_off_and_touch_there_are_two(shape: rm.Paraboloid) -> None:
     work = 1e-3
-    off = rm.pull_off(shape, modulus=E, work=work)
-    dead = rm.pull_off(shape, modulus=E, work=work, control="force")
+    off = rm.pull_off(shape, effective_modulus=E, work=work)
+    dead = rm.pull_off(shape, effective_modulus=E, work=work, control="force")
     for part in (0.999, 0.7, 0.01):
-        found = rm.equilibria(shape, modulus=E, work=work, indentation=part * float(off.indentation))
+        found = rm.equilibria(shape, effective_modulus=E, work=work, indentation=part * float(off.indentation))
         assert found.stable_displacement.values.tolist() == [False, True]
         assert found.stable_force.values.tolist()[0] is False
         holds = float(found.contact_radius[1]) >= float(dead.contact_radius)
         assert bool(found.stable_force[1]) == holds
-        same = rm.indent(shape, modulus=E, work=work, indentation=part * float(off.indentation))
+        same = rm.indent(shape, effective_modulus=E, work=work, indentation=part * float(off.indentation))
         for name in ("contact_radius", "force", "stiffness"):
             assert float(found[name][1]) == float(same[name])
         if not (isinstance(shape, rm.FlatPunch | rm.TruncatedCone | rm.RoundedPunch)):
             a = float(found.contact_radius[0])
-            inner = rm.indent(shape, modulus=E, work=work, contact_radius=a)
+            inner = rm.indent(shape, effective_modulus=E, work=work, contact_radius=a)
             assert float(inner.indentation) == pytest.approx(part * float(off.indentation), rel=1e-11)
 
 
 def test_beyond_pull_off_there_is_none_and_pressed_there_is_one() -> None:
     for shape in (*ONE_BRANCH, rm.FlatPunch(b)):
-        off = rm.pull_off(shape, modulus=E, work=1e-3)
-        assert rm.equilibria(shape, modulus=E, work=1e-3, indentation=1.001 * float(off.indentation)).sizes == {
-            "equilibrium": 0
-        }
-        assert rm.equilibria(shape, modulus=E, work=1e-3, indentation=1e-7).sizes == {"equilibrium": 1}
-        assert rm.equilibria(shape, modulus=E, work=0.0, indentation=1e-7).sizes == {"equilibrium": 1}
-        assert rm.equilibria(shape, modulus=E, work=0.0, indentation=-1e-7).sizes == {"equilibrium": 0}
+        off = rm.pull_off(shape, effective_modulus=E, work=1e-3)
+        assert rm.equilibria(
+            shape, effective_modulus=E, work=1e-3, indentation=1.001 * float(off.indentation)
+        ).sizes == {"equilibrium": 0}
+        assert rm.equilibria(shape, effective_modulus=E, work=1e-3, indentation=1e-7).sizes == {"equilibrium": 1}
+        assert rm.equilibria(shape, effective_modulus=E, work=0.0, indentation=1e-7).sizes == {"equilibrium": 1}
+        assert rm.equilibria(shape, effective_modulus=E, work=0.0, indentation=-1e-7).sizes == {"equilibrium": 0}
 
 
 def test_it_takes_one_number() -> None:
     with pytest.raises(rm.OutOfRange, match="indentation has 1 dimensions"):
-        rm.equilibria(rm.Cone(0.1), modulus=E, work=1e-3, indentation=[0.0])
+        rm.equilibria(rm.Cone(0.1), effective_modulus=E, work=1e-3, indentation=[0.0])
 
 
 def steps_of_table(rng: np.random.Generator) -> rm.Tabulated:
@@ -118,8 +118,10 @@ def test_a_table_of_any_convex_form_has_its_equilibria_in_turn(seed: int, tensio
     shape = steps_of_table(np.random.default_rng(seed))
     width, rise, _ = shape.stretched()
     work = (10.0**tension * rise) ** 2 * E / (2.0 * math.pi * width)
-    off = rm.pull_off(shape, modulus=E, work=work)
-    found: xr.Dataset = rm.equilibria(shape, modulus=E, work=work, indentation=(1.0 - place) * float(off.indentation))
+    off = rm.pull_off(shape, effective_modulus=E, work=work)
+    found: xr.Dataset = rm.equilibria(
+        shape, effective_modulus=E, work=work, indentation=(1.0 - place) * float(off.indentation)
+    )
     held = found.stable_displacement.to_numpy()
     if place < 1.0:
         assert (held == (np.arange(held.size) % 2 == 1)).all()

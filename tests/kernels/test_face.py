@@ -28,7 +28,7 @@ every_control = pytest.mark.parametrize("control", VALUES)
 @every_work
 @every_control
 def test_the_control_is_the_dimension_in_the_order_given(shape: rm.PowerLaw, work: float, control: str) -> None:
-    contact = rm.indent(shape, modulus=1e9, work=work, **{control: VALUES[control]})
+    contact = rm.indent(shape, effective_modulus=1e9, work=work, **{control: VALUES[control]})
     assert set(contact.variables) == set(UNITS)
     assert set(contact.coords) == {control}
     for name, unit in UNITS.items():
@@ -39,7 +39,7 @@ def test_the_control_is_the_dimension_in_the_order_given(shape: rm.PowerLaw, wor
     np.testing.assert_array_equal(contact[control], VALUES[control])
     np.testing.assert_allclose(contact.contact_area, np.pi * contact.contact_radius.values**2, rtol=1e-15)
     for i, value in enumerate(VALUES[control]):
-        one = rm.indent(shape, modulus=1e9, work=work, **{control: value})
+        one = rm.indent(shape, effective_modulus=1e9, work=work, **{control: value})
         for name in UNITS:
             assert one[name].dims == ()
             assert float(one[name]) == float(contact[name][i])
@@ -47,7 +47,7 @@ def test_the_control_is_the_dimension_in_the_order_given(shape: rm.PowerLaw, wor
 
 @every_control
 def test_no_values_give_no_results(control: str) -> None:
-    contact = rm.indent(SHAPES[0], modulus=1e9, work=0.05, **{control: []})
+    contact = rm.indent(SHAPES[0], effective_modulus=1e9, work=0.05, **{control: []})
     assert contact.sizes == {control: 0}
     assert set(contact.variables) == set(UNITS)
 
@@ -55,19 +55,19 @@ def test_no_values_give_no_results(control: str) -> None:
 @every_shape
 @pytest.mark.parametrize("control", ["displacement", "force"])
 def test_pull_off_gives_scalars(shape: rm.PowerLaw, control: str) -> None:
-    off = rm.pull_off(shape, modulus=1e9, work=0.05, control=control)
+    off = rm.pull_off(shape, effective_modulus=1e9, work=0.05, control=control)
     assert set(off.variables) == {"force", "indentation", "contact_radius"}
     for name in off.variables:
         assert off[name].dims == ()
         assert off[name].attrs["units"] == UNITS[name]
-    without = rm.pull_off(shape, modulus=1e9, work=0.0, control=control)
+    without = rm.pull_off(shape, effective_modulus=1e9, work=0.0, control=control)
     assert all(float(without[name]) == 0.0 for name in without.variables)
 
 
 def test_pull_off_is_under_fixed_grips_unless_told() -> None:
-    off = rm.pull_off(SHAPES[0], modulus=1e9, work=0.05)
-    assert off.identical(rm.pull_off(SHAPES[0], modulus=1e9, work=0.05, control="displacement"))
-    assert not off.equals(rm.pull_off(SHAPES[0], modulus=1e9, work=0.05, control="force"))
+    off = rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05)
+    assert off.identical(rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="displacement"))
+    assert not off.equals(rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="force"))
 
 
 @pytest.mark.parametrize(
@@ -81,11 +81,11 @@ def test_pull_off_is_under_fixed_grips_unless_told() -> None:
         ({"force": float("inf")}, "force is inf"),
         ({"indentation": "deep"}, "indentation is 'deep'"),
         ({"contact_radius": [1e-7, -3e-8]}, "contact_radius is -3e-08"),
-        ({"indentation": 0.0, "modulus": 0.0}, "modulus is 0"),
-        ({"indentation": 0.0, "modulus": -2.0}, "modulus is -2"),
-        ({"indentation": 0.0, "modulus": float("nan")}, "modulus is nan"),
-        ({"indentation": 0.0, "modulus": "soft"}, "modulus is 'soft'"),
-        ({"indentation": 0.0, "modulus": [1e9, 2e9]}, "modulus is"),
+        ({"indentation": 0.0, "effective_modulus": 0.0}, "modulus is 0"),
+        ({"indentation": 0.0, "effective_modulus": -2.0}, "modulus is -2"),
+        ({"indentation": 0.0, "effective_modulus": float("nan")}, "modulus is nan"),
+        ({"indentation": 0.0, "effective_modulus": "soft"}, "modulus is 'soft'"),
+        ({"indentation": 0.0, "effective_modulus": [1e9, 2e9]}, "modulus is"),
         ({"indentation": 0.0, "work": -0.05}, "work is -0.05"),
         ({"indentation": 0.0, "work": float("inf")}, "work is inf"),
         ({"indentation": 0.0, "work": "sticky"}, "work is 'sticky'"),
@@ -95,17 +95,17 @@ def test_pull_off_is_under_fixed_grips_unless_told() -> None:
 )
 def test_a_bad_argument_is_refused_by_name_and_value(given: dict[str, object], message: str) -> None:
     with pytest.raises(rm.RoughmdrError, match=message):
-        rm.indent(SHAPES[0], **{"modulus": 1e9, **given})
+        rm.indent(SHAPES[0], **{"effective_modulus": 1e9, **given})
 
 
 @pytest.mark.parametrize("exponent", [0.1, 0.5])
 def test_adhesion_below_the_least_exponent_is_refused(exponent: float) -> None:
     shape = rm.PowerLaw(exponent=exponent, width=1e-6, rise=1e-7)
     with pytest.raises(rm.OutOfRange, match=f"exponent is {exponent:g}"):
-        rm.indent(shape, modulus=1e9, work=0.05, indentation=0.0)
-    assert float(rm.indent(shape, modulus=1e9, indentation=1e-8).force) > 0.0
+        rm.indent(shape, effective_modulus=1e9, work=0.05, indentation=0.0)
+    assert float(rm.indent(shape, effective_modulus=1e9, indentation=1e-8).force) > 0.0
 
 
 def test_pull_off_refuses_another_control() -> None:
     with pytest.raises(rm.RoughmdrError, match="control is 'speed'"):
-        rm.pull_off(SHAPES[0], modulus=1e9, work=0.05, control="speed")
+        rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="speed")

@@ -17,15 +17,15 @@ def close(got: xr.DataArray, expected: float, rel: float = 1e-14) -> bool:
 
 
 def test_a_sphere_close_to_pull_off() -> None:
-    contact = rm.indent(SPHERE, modulus=E, work=W, indentation=-1.0917197969310225e-9)
+    contact = rm.indent(SPHERE, effective_modulus=E, work=W, indentation=-1.0917197969310225e-9)
     assert close(contact.contact_radius, 5.554976330387043e-8)
     assert close(contact.force, -2.355656444218766e-7)
 
 
 @pytest.mark.parametrize("radius", [1e-9, 1e-6, 1.0])
 def test_pull_off_of_a_sphere(radius: float) -> None:
-    held = rm.pull_off(rm.Paraboloid(radius=radius), modulus=E, work=W, control="displacement")
-    dead = rm.pull_off(rm.Paraboloid(radius=radius), modulus=E, work=W, control="force")
+    held = rm.pull_off(rm.Paraboloid(radius=radius), effective_modulus=E, work=W, control="displacement")
+    dead = rm.pull_off(rm.Paraboloid(radius=radius), effective_modulus=E, work=W, control="force")
     assert close(held.force, -5 / 6 * math.pi * W * radius)
     assert close(dead.force, -1.5 * math.pi * W * radius)
     assert close(held.indentation, -0.75 * (math.pi**2 * W**2 * radius / E**2) ** (1 / 3))
@@ -33,20 +33,20 @@ def test_pull_off_of_a_sphere(radius: float) -> None:
 
 
 def test_a_sphere_at_first_touch() -> None:
-    contact = rm.indent(SPHERE, modulus=E, work=W, indentation=0.0)
+    contact = rm.indent(SPHERE, effective_modulus=E, work=W, indentation=0.0)
     assert close(contact.force, -4 / 3 * math.pi * W * 1e-6)
     assert close(contact.contact_radius, (2 * math.pi * W * 1e-12 / E) ** (1 / 3))
 
 
 def test_a_sphere_without_load() -> None:
-    contact = rm.indent(SPHERE, modulus=E, work=W, force=0.0)
+    contact = rm.indent(SPHERE, effective_modulus=E, work=W, force=0.0)
     assert close(contact.contact_radius, (4.5 * math.pi * W * 1e-12 / E) ** (1 / 3))
 
 
 @pytest.mark.parametrize("slope", [1e-3, 0.7, 50.0])
 def test_pull_off_of_a_cone(slope: float) -> None:
-    held = rm.pull_off(rm.Cone(slope=slope), modulus=E, work=W, control="displacement")
-    dead = rm.pull_off(rm.Cone(slope=slope), modulus=E, work=W, control="force")
+    held = rm.pull_off(rm.Cone(slope=slope), effective_modulus=E, work=W, control="displacement")
+    dead = rm.pull_off(rm.Cone(slope=slope), effective_modulus=E, work=W, control="force")
     assert close(dead.force, -54 * W**2 / (math.pi * slope**3 * E))
     assert close(held.indentation, -W / (slope * E))
     assert close(held.contact_radius, 2 * W / (math.pi * slope**2 * E))
@@ -72,12 +72,12 @@ def rescaled(shape: rm.PowerLaw | rm.Paraboloid | rm.Cone, length: float) -> rm.
     ids=str,
 )
 def test_other_units_give_the_same_contact(shape: rm.PowerLaw, length: float, newton: float) -> None:
-    onset = float(rm.pull_off(shape, modulus=E, work=W).indentation)
+    onset = float(rm.pull_off(shape, effective_modulus=E, work=W).indentation)
     delta = np.array([0.9, 0.3, -0.4, -50.0]) * onset
-    here = rm.indent(shape, modulus=E, work=W, indentation=delta)
+    here = rm.indent(shape, effective_modulus=E, work=W, indentation=delta)
     there = rm.indent(
         rescaled(shape, length),
-        modulus=E * newton / length**2,
+        effective_modulus=E * newton / length**2,
         work=W * newton / length,
         indentation=delta * length,
     )
@@ -102,15 +102,17 @@ def test_other_units_give_the_same_contact(shape: rm.PowerLaw, length: float, ne
     ids=["coefficient", "rise", "cone"],
 )
 def test_a_power_law_is_the_shape_it_describes(power: rm.PowerLaw, named: rm.Cone, work: float) -> None:
-    onset = float(rm.pull_off(named, modulus=E, work=W).indentation)
+    onset = float(rm.pull_off(named, effective_modulus=E, work=W).indentation)
     for control in ({"indentation": np.array([0.9, -0.5, -20.0]) * onset}, {"force": [0.0, 1e-8, 1e-3]}):
-        got = rm.indent(power, modulus=E, work=work, **control)
-        xr.testing.assert_allclose(got, rm.indent(named, modulus=E, work=work, **control), rtol=1e-13, atol=0.0)
+        got = rm.indent(power, effective_modulus=E, work=work, **control)
+        xr.testing.assert_allclose(
+            got, rm.indent(named, effective_modulus=E, work=work, **control), rtol=1e-13, atol=0.0
+        )
 
 
 def test_hertz() -> None:
     delta = np.array([1e-15, 1e-9, 1e-6])
-    contact = rm.indent(SPHERE, modulus=E, indentation=delta)
+    contact = rm.indent(SPHERE, effective_modulus=E, indentation=delta)
     np.testing.assert_allclose(contact.force, 4 / 3 * E * np.sqrt(1e-6) * delta**1.5, rtol=1e-14)
     np.testing.assert_allclose(contact.contact_radius, np.sqrt(1e-6 * delta), rtol=1e-14)
     np.testing.assert_allclose(contact.stiffness, 2 * E * np.sqrt(1e-6 * delta), rtol=1e-14)
@@ -119,11 +121,14 @@ def test_hertz() -> None:
 @pytest.mark.parametrize("shape", [SPHERE, rm.Cone(slope=0.3), rm.PowerLaw(exponent=3.3, coefficient=1e12)], ids=str)
 def test_weak_adhesion_tends_to_no_adhesion(shape: rm.PowerLaw) -> None:
     """At fixed indentation a grows by dl/g' ~ w^1/2; the force is stationary in a, so it falls by ~ w."""
-    elastic = rm.indent(shape, modulus=E, indentation=1e-8)
+    elastic = rm.indent(shape, effective_modulus=E, indentation=1e-8)
     works = W * 2.0 ** -np.arange(20.0, 28.0)
     order = {}
     for name in ("contact_radius", "force"):
-        gaps = [float(abs(rm.indent(shape, modulus=E, work=w, indentation=1e-8)[name] - elastic[name])) for w in works]
+        gaps = [
+            float(abs(rm.indent(shape, effective_modulus=E, work=w, indentation=1e-8)[name] - elastic[name]))
+            for w in works
+        ]
         order[name] = np.polyfit(np.log(works), np.log(gaps), 1)[0]
     assert order["contact_radius"] == pytest.approx(0.5, abs=0.01)
     assert order["force"] == pytest.approx(1.0, abs=0.01)
@@ -132,11 +137,17 @@ def test_weak_adhesion_tends_to_no_adhesion(shape: rm.PowerLaw) -> None:
 @pytest.mark.parametrize("slope", [0.02, 0.05, 0.3])
 @pytest.mark.parametrize("unit", [1e-9, 1e-7, 1e-2])
 def test_a_truncated_cone_lets_go_at_its_corner_as_a_flat_punch_does(slope: float, unit: float) -> None:
-    modulus, work = 1e9, 0.05 * unit / 1e-7 * (slope / 0.05) ** 2
+    effective_modulus, work = 1e9, 0.05 * unit / 1e-7 * (slope / 0.05) ** 2
     off, punch = (
-        rm.pull_off(shape, modulus=modulus, work=work) for shape in (rm.TruncatedCone(slope, unit), rm.FlatPunch(unit))
+        rm.pull_off(shape, effective_modulus=effective_modulus, work=work)
+        for shape in (rm.TruncatedCone(slope, unit), rm.FlatPunch(unit))
     )
     assert float(off.contact_radius) == unit
     assert float(off.force) == pytest.approx(float(punch.force), rel=1e-14)
-    last = rm.indent(rm.TruncatedCone(slope, unit), modulus=modulus, work=work, indentation=float(off.indentation))
-    assert float(last.stiffness) == pytest.approx(2.0 * modulus * unit, rel=1e-12)
+    last = rm.indent(
+        rm.TruncatedCone(slope, unit),
+        effective_modulus=effective_modulus,
+        work=work,
+        indentation=float(off.indentation),
+    )
+    assert float(last.stiffness) == pytest.approx(2.0 * effective_modulus * unit, rel=1e-12)

@@ -83,7 +83,7 @@ def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any
     for control in ("indentation", "force"):
         rows = [row for row in case["rows"] if row["control"] == control and above_its_rounding(case, row)]
         values = [row["value"] for row in rows]
-        got = rm.indent(shape, modulus=case["modulus"], work=case["work"], **{control: values})
+        got = rm.indent(shape, effective_modulus=case["modulus"], work=case["work"], **{control: values})
         for i, row in enumerate(rows):
             for quantity, bound in bounds(case, row).items():
                 error = abs(mp.mpf(float(got[quantity][i])) - mp.mpf(row[quantity]))
@@ -96,7 +96,7 @@ def test_pull_off(name: str, case: dict[str, Any]) -> None:
         return
     shape = shape_of(name, case)
     for control, exact in case["pull_off"].items():
-        off = rm.pull_off(shape, modulus=case["modulus"], work=case["work"], control=control)
+        off = rm.pull_off(shape, effective_modulus=case["modulus"], work=case["work"], control=control)
         own = "indentation" if control == "displacement" else "force"
         assert abs(float(off[own]) / mp.mpf(exact[own]) - 1) <= 3 * ULP
         assert float(off.contact_radius) == pytest.approx(float(mp.mpf(exact["contact_radius"])), rel=1e-7)

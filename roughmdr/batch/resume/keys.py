@@ -44,7 +44,7 @@ def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
     if id(scene.asperities) not in known:
         known[id(scene.asperities)] = _asperities(scene.asperities)
     parts = (
-        scene.modulus,
+        scene.effective_modulus,
         tuple(scene.law),
         known[id(scene.asperities)],
         _path(route.separation.tobytes()),

@@ -14,17 +14,19 @@ _KERNEL_ERROR = 1e-14
 
 
 @njit
-def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where no float can hold the stretch."""
     depth = (width, 0.0)
     if work > 0.0:
         square = extended.divide(
-            extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (modulus, 0.0)
+            extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (effective_modulus, 0.0)
         )
         if not 1e-280 < square[0] < 1e290:
             return (0.0, 0.0), 0.0, 0.0, 0.0
         depth = extended.sqrt(square)
-    return depth, width, 2.0 * modulus * width * depth[0], 2.0 * modulus * width
+    return depth, width, 2.0 * effective_modulus * width * depth[0], 2.0 * effective_modulus * width
 
 
 @njit
@@ -34,10 +36,10 @@ def errors(n: float) -> tuple[float, float]:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at the depth, and b [m]."""
-    depth = natural(modulus, work, width, rise, n)[0]
-    return extended.multiply(extended.two_product(2.0 * modulus, width), depth), width
+    depth = natural(effective_modulus, work, width, rise, n)[0]
+    return extended.multiply(extended.two_product(2.0 * effective_modulus, width), depth), width
 
 
 @njit

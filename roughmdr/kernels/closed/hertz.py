@@ -14,27 +14,31 @@ _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
 @njit
-def _natural(modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
+def _natural(effective_modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
     """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured."""
-    return (depth, 0.0), width, 2.0 * modulus * width * depth, 2.0 * modulus * width
+    return (depth, 0.0), width, 2.0 * effective_modulus * width * depth, 2.0 * effective_modulus * width
 
 
 @njit
 def natural_paraboloid(
-    modulus: float, work: float, width: float, rise: float, n: float
+    effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """The natural scales with kappa(2) = 2."""
-    return _natural(modulus, width, 2.0 * rise)
+    return _natural(effective_modulus, width, 2.0 * rise)
 
 
 @njit
-def natural_cone(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural_cone(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """The natural scales with kappa(1) = pi/2."""
-    return _natural(modulus, width, 0.5 * math.pi * rise)
+    return _natural(effective_modulus, width, 0.5 * math.pi * rise)
 
 
 @njit
-def natural_power(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural_power(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """The natural scales with any kappa(n).
 
     Where f = c r^n is so steep that t^n of a common radius is no normal float, they are those of a width midway (in
@@ -46,7 +50,7 @@ def natural_power(modulus: float, work: float, width: float, rise: float, n: flo
     power, rest = two_product(k, n)
     whole = math.floor(power)
     lifted = math.ldexp(rise * math.pow(2.0, (power - whole) + rest), int(whole))
-    return _natural(modulus, math.ldexp(width, int(k)), kappa(n) * lifted)
+    return _natural(effective_modulus, math.ldexp(width, int(k)), kappa(n) * lifted)
 
 
 @njit
@@ -138,9 +142,9 @@ def errors(n: float) -> tuple[float, float]:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at t = 1, and the radius [m] there."""
-    _, size, force, _ = natural_power(modulus, work, width, rise, n)
+    _, size, force, _ = natural_power(effective_modulus, work, width, rise, n)
     return (force * (n / (n + 1.0)), 0.0), size
 
 

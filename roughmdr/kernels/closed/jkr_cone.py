@@ -25,25 +25,27 @@ __all__ = [
 
 
 @njit
-def _fold(modulus: float, work: float, width: float, rise: float) -> tuple[Pair, Pair]:
+def _fold(effective_modulus: float, work: float, width: float, rise: float) -> tuple[Pair, Pair]:
     """|delta_c| = w/(S E*) and a_c = 2 w/(pi S^2 E*) [m]."""
     slope = extended.divide((rise, 0.0), (width, 0.0))
-    depth = extended.divide((work, 0.0), extended.multiply(slope, (modulus, 0.0)))
+    depth = extended.divide((work, 0.0), extended.multiply(slope, (effective_modulus, 0.0)))
     return depth, extended.divide(extended.multiply((2.0, 0.0), depth), extended.multiply(extended.PI, slope))
 
 
 @njit
-def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; dl(a_c) = 2 |delta_c|."""
-    depth, a_c = _fold(modulus, work, width, rise)
-    return depth, a_c[0], 4.0 * modulus * a_c[0] * depth[0], 2.0 * modulus * a_c[0]
+    depth, a_c = _fold(effective_modulus, work, width, rise)
+    return depth, a_c[0], 4.0 * effective_modulus * a_c[0] * depth[0], 2.0 * effective_modulus * a_c[0]
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 54 w^2/(pi S^3 E*) [N] under dead load, and a_P = 9 a_c [m]."""
-    depth, a_c = _fold(modulus, work, width, rise)
-    return extended.multiply(extended.multiply(extended.two_product(27.0, modulus), a_c), depth), 9.0 * a_c[0]
+    depth, a_c = _fold(effective_modulus, work, width, rise)
+    return extended.multiply(extended.multiply(extended.two_product(27.0, effective_modulus), a_c), depth), 9.0 * a_c[0]
 
 
 @njit

@@ -29,27 +29,29 @@ def _curvature_radius(width: float, rise: float) -> float:
 
 
 @njit
-def _reduced_work(modulus: float, work: float, radius: float) -> Pair:
+def _reduced_work(effective_modulus: float, work: float, radius: float) -> Pair:
     """pi w/(E* R), the part without R first: a loop over asperities computes it once."""
-    length = extended.divide(extended.multiply(extended.PI, (work, 0.0)), (modulus, 0.0))
+    length = extended.divide(extended.multiply(extended.PI, (work, 0.0)), (effective_modulus, 0.0))
     return extended.divide(length, (radius, 0.0))
 
 
 @partial(njit, inline=True)
-def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """|delta_c| = 3/4 (pi^2 w^2 R/E*^2)^(1/3) [m], a_c = (pi w R^2/(8 E*))^(1/3) [m], pi w R [N], 2 E* a_c [N/m].
 
     All NaN where pi w/(E* R) lies so far from 1 that its cube root cannot be corrected in pairs.
     """
     curvature_radius = _curvature_radius(width, rise)
-    reduced = _reduced_work(modulus, work, curvature_radius)
+    reduced = _reduced_work(effective_modulus, work, curvature_radius)
     root = float(np.cbrt(reduced[0] if _SMALLEST < reduced[0] < 1.0 / _SMALLEST else math.nan))
     cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
     rest = extended.add(reduced, (-cube[0], -cube[1]))
     root_exact = extended.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
     depth = extended.multiply(extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius))
     a_c = 0.5 * curvature_radius * root_exact[0]
-    return depth, a_c, math.pi * work * curvature_radius, 2.0 * modulus * a_c
+    return depth, a_c, math.pi * work * curvature_radius, 2.0 * effective_modulus * a_c
 
 
 @njit
@@ -59,11 +61,11 @@ def errors(n: float) -> tuple[float, float]:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
     curvature_radius = _curvature_radius(width, rise)
     force = extended.multiply(extended.PI, extended.multiply(extended.two_product(1.5, work), (curvature_radius, 0.0)))
-    reduced = _reduced_work(modulus, work, curvature_radius)[0]
+    reduced = _reduced_work(effective_modulus, work, curvature_radius)[0]
     return force, 0.5 * curvature_radius * float(np.cbrt(9.0 * reduced))
 
 

@@ -28,16 +28,16 @@ _vector = partial(njit, small=True)
 
 
 @njit
-def _length(modulus: float, work: float) -> tuple[Pair, int]:
+def _length(effective_modulus: float, work: float) -> tuple[Pair, int]:
     """2 pi w/E* [m], and the power of two that goes with it, for range."""
-    (w, w_power), (stiff, stiff_power) = math.frexp(work), math.frexp(modulus)
+    (w, w_power), (stiff, stiff_power) = math.frexp(work), math.frexp(effective_modulus)
     return extended.divide(extended.multiply(extended.PI, (w, 0.0)), (stiff, 0.0)), 1 + w_power - stiff_power
 
 
 @njit
-def _log_growth(modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
+def _log_growth(effective_modulus: float, work: float, width: float, rise: float, n: float) -> Pair:
     """ln(a_c/width): (a_c/width)^e = 2 pi w width/(E* (2 n kappa rise)^2), powers of two apart."""
-    length, length_power = _length(modulus, work)
+    length, length_power = _length(effective_modulus, work)
     (size, size_power), (high, high_power), (half, n_power) = math.frexp(width), math.frexp(rise), math.frexp(n)
     steepness = extended.multiply(precise_kappa(n), extended.two_product(half, high))
     ratio = extended.divide(extended.multiply(length, (size, 0.0)), extended.multiply(steepness, steepness))
@@ -47,22 +47,24 @@ def _log_growth(modulus: float, work: float, width: float, rise: float, n: float
 
 
 @njit
-def natural(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float, float, float]:
+def natural(
+    effective_modulus: float, work: float, width: float, rise: float, n: float
+) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
-    growth = _log_growth(modulus, work, width, rise, n)
+    growth = _log_growth(effective_modulus, work, width, rise, n)
     if not (abs(growth[0]) < _LOG_LARGEST and abs(growth[0] + math.log(width)) < _LOG_LARGEST):
         return (0.0, 0.0), 0.0, 0.0, 0.0
     size, size_power = math.frexp(width)
     a_c = extended.multiply((size, 0.0), extended.exp(growth))
     a_c = math.ldexp(a_c[0], size_power), math.ldexp(a_c[1], size_power)
-    length, power = _length(modulus, work)
+    length, power = _length(effective_modulus, work)
     if power % 2 != 0:
         length, power = (2.0 * length[0], 2.0 * length[1]), power - 1
     root = extended.sqrt(extended.multiply(length, a_c))
     stretch = math.ldexp(root[0], power // 2), math.ldexp(root[1], power // 2)
     e = extended.two_sum(2.0 * n, -1.0)
     depth = extended.multiply(stretch, extended.divide(e, (2.0 * n, 0.0)))
-    return depth, a_c[0], 2.0 * modulus * a_c[0] * stretch[0], 2.0 * modulus * a_c[0]
+    return depth, a_c[0], 2.0 * effective_modulus * a_c[0] * stretch[0], 2.0 * effective_modulus * a_c[0]
 
 
 @njit
@@ -189,18 +191,18 @@ def energy(l: float, n: float) -> float:
 
 
 @njit
-def natural_force(modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable.
 
     All in logarithms: near n = 1/2 these can be ordinary where a_c is not.
     """
     e = extended.two_sum(2.0 * n, -1.0)
-    length, power = _length(modulus, work)
+    length, power = _length(effective_modulus, work)
     log_length = extended.add(extended.log(length), extended.multiply((float(power), 0.0), extended.LOG_2))
-    log_radius = extended.add(extended.log((width, 0.0)), _log_growth(modulus, work, width, rise, n))
+    log_radius = extended.add(extended.log((width, 0.0)), _log_growth(effective_modulus, work, width, rise, n))
     log_stretch = extended.multiply((0.5, 0.0), extended.add(log_length, log_radius))
     log_tau = extended.divide(extended.LOG_3, e)
-    log_force = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * modulus, 0.0)))
+    log_force = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * effective_modulus, 0.0)))
     log_force = extended.add(log_force, extended.multiply((3.0, 0.0), log_tau))
     log_force = extended.add(log_force, extended.log(extended.divide(e, extended.two_sum(2.0 * n, 2.0))))
     log_radius = extended.add(log_radius, extended.multiply((2.0, 0.0), log_tau))

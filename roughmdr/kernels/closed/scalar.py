@@ -8,7 +8,7 @@ from roughmdr.numerics.jit import njit
 
 @njit
 def prepare(
-    modulus: float,
+    effective_modulus: float,
     work: float,
     strength: float,
     width: Floats,

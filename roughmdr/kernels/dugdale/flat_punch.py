@@ -44,7 +44,7 @@ def _opening(s: float, row: Floats) -> tuple[float, float, float]:
 
 @njit
 def prepare(
-    modulus: float,
+    effective_modulus: float,
     work: float,
     strength: float,
     width: Floats,
@@ -60,7 +60,7 @@ def prepare(
     rows = np.zeros((stop - start, -UNIT))
     for i in range(stop - start):
         row, b = rows[i], width[start + i]
-        beta, reach = 2.0 * strength / modulus, work / strength / b
+        beta, reach = 2.0 * strength / effective_modulus, work / strength / b
         row[STRENGTH], row[RANGE], row[CONTROL] = beta, reach, control
         if reach > (1.0 - 2.0 / math.pi) * beta:
             depth, angle = reach + 2.0 / math.pi * beta, 0.5 * math.pi

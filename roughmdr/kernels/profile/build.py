@@ -35,17 +35,19 @@ find_branches: Callable[..., None]
 find_starts: Callable[..., None]
 
 
-def fill(modulus: float, work: float, strength: float, width: float, rise: float, control: float, row: Floats) -> None:
+def fill(
+    effective_modulus: float, work: float, strength: float, width: float, rise: float, control: float, row: Floats
+) -> None:
     """The row of one asperity, whose numbers of the shape stand in it already."""
-    row[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
+    row[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(effective_modulus) * math.sqrt(width) / rise
     row[CONTROL] = control
-    row[STRENGTH], row[RANGE] = 2.0 * strength / modulus * width / rise, work / strength / rise
+    row[STRENGTH], row[RANGE] = 2.0 * strength / effective_modulus * width / rise, work / strength / rise
     _ready(row)
     find_branches(row)
 
 
 def prepare(
-    modulus: float,
+    effective_modulus: float,
     work: float,
     strength: float,
     width: Floats,
@@ -59,13 +61,13 @@ def prepare(
     rows = np.zeros((stop - start, 2 - NODE))
     for i in range(stop - start):
         rows[i, 0] = form[start + i]
-        fill(modulus, work, strength, width[start + i], rise[start + i], control, rows[i])
+        fill(effective_modulus, work, strength, width[start + i], rise[start + i], control, rows[i])
     find_starts(rows)
     return rows
 
 
 def prepare_common(
-    modulus: float,
+    effective_modulus: float,
     work: float,
     strength: float,
     width: Floats,
@@ -78,7 +80,7 @@ def prepare_common(
     """The one row of asperities that are all alike."""
     rows = np.zeros((1, form.shape[1] - NODE))
     rows[0, : form.shape[1]] = form[0]
-    fill(modulus, work, strength, width[0], rise[0], control, rows[0])
+    fill(effective_modulus, work, strength, width[0], rise[0], control, rows[0])
     find_starts(rows)
     return rows
 
@@ -93,15 +95,17 @@ def common(rows: Floats, i: int) -> Floats:
     return rows[0]
 
 
-def natural(modulus: float, work: float, width: float, rise: float, row: Floats) -> tuple[Pair, float, float, float]:
+def natural(
+    effective_modulus: float, work: float, width: float, rise: float, row: Floats
+) -> tuple[Pair, float, float, float]:
     """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured; 0 where there is none."""
     depth = rise * row[DEPTH] if row[COUNT] > 0.0 else 0.0
-    return (depth, 0.0), width, 2.0 * modulus * width * rise, 2.0 * modulus * width
+    return (depth, 0.0), width, 2.0 * effective_modulus * width * rise, 2.0 * effective_modulus * width
 
 
-def natural_force(modulus: float, work: float, width: float, rise: float, row: Floats) -> tuple[Pair, float]:
+def natural_force(effective_modulus: float, work: float, width: float, rise: float, row: Floats) -> tuple[Pair, float]:
     """The depth of a row under dead load [N], and the width [m]."""
-    return ((2.0 * modulus * width * rise * row[DEPTH] if row[COUNT] > 0.0 else 0.0), 0.0), width
+    return ((2.0 * effective_modulus * width * rise * row[DEPTH] if row[COUNT] > 0.0 else 0.0), 0.0), width
 
 
 def state_of_radius(radius: float, width: float, row: Floats) -> float:

@@ -9,7 +9,7 @@ from roughmdr.numerics.double_double import Pair
 from roughmdr.shapes import Curved
 
 
-def exact_depth(shape: Curved, modulus: float, work: float, row: Floats) -> Pair:
+def exact_depth(shape: Curved, effective_modulus: float, work: float, row: Floats) -> Pair:
     """-delta [m] or -P [N] at the lowest foot of a row (H 40-41, 44), as two floats.
 
     The quantity is stationary there, so that the rounding of t does not matter.
@@ -18,6 +18,6 @@ def exact_depth(shape: Curved, modulus: float, work: float, row: Floats) -> Pair
 
     a, g, push = shape.precisely(float(row[FOLD]))
     with mp.workdps(40):
-        stretch = mp.sqrt(2 * mp.pi * a * mp.mpf(work) / mp.mpf(modulus))
-        depth = stretch - g if row[CONTROL] == 0.0 else 2 * mp.mpf(modulus) * (a * stretch - push)
+        stretch = mp.sqrt(2 * mp.pi * a * mp.mpf(work) / mp.mpf(effective_modulus))
+        depth = stretch - g if row[CONTROL] == 0.0 else 2 * mp.mpf(effective_modulus) * (a * stretch - push)
         return float(depth), float(depth - mp.mpf(float(depth)))

@@ -27,7 +27,7 @@ class _OfSummits(Protocol):
     """A law of all summits of a surface."""
 
     def __call__(
-        self, *, separation: ArrayLike, modulus: float, m0: float, m2: float, m4: float, variable: Variable
+        self, *, separation: ArrayLike, effective_modulus: float, m0: float, m2: float, m4: float, variable: Variable
     ) -> Floats: ...
 
 
@@ -42,26 +42,30 @@ def _surface(cell: Cell) -> NayakAsperities:
 
 def _of_summits(law: _OfSummits, cell: Cell, variable: Variable) -> Floats:
     m0, m2, m4 = _surface(cell).law.moments
-    separation, modulus = cell.route.separation, cell.scene.modulus
-    return law(separation=separation, modulus=modulus, m0=m0, m2=m2, m4=m4, variable=variable)
+    separation, effective_modulus = cell.route.separation, cell.scene.effective_modulus
+    return law(separation=separation, effective_modulus=effective_modulus, m0=m0, m2=m2, m4=m4, variable=variable)
 
 
 def _asymptote(cell: Cell, variable: Variable) -> Floats:
     pressure = _of_summits(bush_gibson_thomas, cell, "pressure")
     slope = math.sqrt(2.0 * _surface(cell).law.moments.m2)
-    return bush_gibson_thomas_asymptote(pressure=pressure, modulus=cell.scene.modulus, rms_slope=slope)
+    return bush_gibson_thomas_asymptote(
+        pressure=pressure, effective_modulus=cell.scene.effective_modulus, rms_slope=slope
+    )
 
 
 def _persson(cell: Cell, variable: Variable) -> Floats:
-    spectrum, modulus = _surface(cell).spectrum, cell.scene.modulus
+    spectrum, effective_modulus = _surface(cell).spectrum, cell.scene.effective_modulus
     if spectrum is None:
         raise RoughmdrError("it needs a self-affine spectrum, the scene gives m0, m2 and m4")
     h = cell.route.separation
     values = np.full_like(h, math.nan)
     open_ = h > 0.0  # a surface in full contact has the mean gap 0
-    pressure = persson_pressure(separation=h[open_], modulus=modulus, spectrum=spectrum)
+    pressure = persson_pressure(separation=h[open_], effective_modulus=effective_modulus, spectrum=spectrum)
     if variable == "contact_fraction":
-        values[open_] = persson_contact_fraction(pressure=pressure, modulus=modulus, rms_slope=spectrum.rms_slope)
+        values[open_] = persson_contact_fraction(
+            pressure=pressure, effective_modulus=effective_modulus, rms_slope=spectrum.rms_slope
+        )
     else:
         values[open_] = pressure
     return values

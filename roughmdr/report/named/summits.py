@@ -51,7 +51,12 @@ def _equal_summits(scene: Scene) -> dict[str, Any]:
     if section.height.constant is not None:
         raise RoughmdrError("all heights are the same")
     density = section.expected_count / section.nominal_area
-    return {"modulus": scene.modulus, "radius": radius, "density": density, "heights": _Heights(section.height)}
+    return {
+        "effective_modulus": scene.effective_modulus,
+        "radius": radius,
+        "density": density,
+        "heights": _Heights(section.height),
+    }
 
 
 def _range(scene: Scene, radius: float) -> Range:
@@ -59,7 +64,7 @@ def _range(scene: Scene, radius: float) -> Range:
     if scene.work == 0.0:
         raise RoughmdrError("the scene has no adhesion")
     one = Ensemble("paraboloid", np.zeros(1), {"radius": np.array([radius])})
-    return range_of(one.shape, scene.asperities.sigma, one.columns(), scene.modulus, scene.law)
+    return range_of(one.shape, scene.asperities.sigma, one.columns(), scene.effective_modulus, scene.law)
 
 
 def _greenwood_williamson(cell: Cell, variable: Variable) -> Floats:
