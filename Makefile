@@ -15,7 +15,8 @@ demo: setup
 
 test: setup lint
 	$(BIN)/python -m pytest -n auto --dist loadfile
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/kernels tests/test_sum.py
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/numerics tests/shapes tests/kernels tests/asperity tests/fields \
+	  tests/aggregate/test_sum.py
 
 # The long forms of the random searches too.
 test-all: test

@@ -20,7 +20,7 @@ import xarray as xr
 from accuracy_picture import draw
 
 import roughmdr as rm
-from roughmdr.batch.moments import Tallies
+from roughmdr.batch.moments import MomentTree
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
@@ -82,7 +82,7 @@ class Law(NamedTuple):
 
     def taken(self, draws: np.ndarray, error: float) -> int:
         """How many of these draws a batch makes until it has come to an error."""
-        asked, tallies, count, now = Accuracy(relative=error, max_realizations=len(draws)), Tallies(), 0, FIRST
+        asked, tallies, count, now = Accuracy(relative=error, max_realizations=len(draws)), MomentTree(), 0, FIRST
         while count < now:
             tallies.add_all(count, self.force[draws[count:now]])
             whole = tallies.total(now)

@@ -14,7 +14,7 @@ from typing import Any
 from peak import peak
 
 from roughmdr.batch.compile import prepare_all
-from roughmdr.batch.plan import Plan, law_of, make_plan
+from roughmdr.batch.plan import Plan, make_plan, simulate_realization
 from roughmdr.batch.resume.keys import keys_of
 from roughmdr.batch.rounds import Rounds
 from roughmdr.runner.run import execute
@@ -112,12 +112,12 @@ def ensemble(count: int, _: Path) -> dict[str, float]:
     """Seconds of making and of visiting one ensemble, 200 steps in and out, and the bytes that they take."""
     plan = make_plan(tiny(count=count, steps=200))
     (scene, route), names = plan.cells[0], list(plan.scene.output.variables)
-    law_of(make_plan(tiny()).cells[0].scene, route, 0, names, "sampled")
+    simulate_realization(make_plan(tiny()).cells[0].scene, route, 0, names, "sampled")
     before = peak()
     started = time.perf_counter()
     scene.asperities.ensemble(scene.seed, 0)
     made = time.perf_counter()
-    law_of(scene, route, 0, names, "sampled")
+    simulate_realization(scene, route, 0, names, "sampled")
     both = time.perf_counter() - made
     making = made - started
     return {"making": making, "visiting": both - making, "size": peak() - before}

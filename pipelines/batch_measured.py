@@ -20,8 +20,8 @@ from batch_child import tiny
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import Shard
-from roughmdr.batch.tasks import Part, Stretch, Task, cut
+from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.tasks import RunRange, Task, TaskPart, split_into_tasks
 from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.cluster import connected
 from roughmdr.runner.local import Pool, Processes, Threads
@@ -68,16 +68,16 @@ class Batch(NamedTuple):
 def batch(plan: Plan, pool: Pool, scheduler: int | None = None) -> Batch:
     """Compute the tasks of a plan by a pool; ``scheduler`` is the process of a cluster's."""
     rounds, variables = Rounds(plan), tuple(plan.scene.output.variables)
-    groups = cut(plan, rounds.begin(), variables, pool.workers)
+    groups = split_into_tasks(plan, rounds.begin(), variables, pool.workers)
 
-    def task(group: list[Stretch]) -> Task:
-        parts = (Part(rounds.key(one), plan.cells[one.cell], *one[1:]) for one in group)
+    def task(group: list[RunRange]) -> Task:
+        parts = (TaskPart(rounds.key(one), plan.cells[one.cell], *one[1:]) for one in group)
         return Task(tuple(parts), variables, False, versions())
 
     rows: list[tuple[float, float, float, float]] = []
     started = time.perf_counter()
 
-    def sink(shard: Shard) -> None:
+    def sink(shard: TaskResult) -> None:
         own = math.nan if scheduler is None else _processor_seconds(scheduler)
         inside = float(shard.run_time.sum())
         rows.append((time.perf_counter() - started, inside, time.process_time(), own))

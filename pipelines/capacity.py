@@ -14,12 +14,12 @@ from statistics import median
 import numpy as np
 from batch_child import tiny
 
-from roughmdr.batch.moments import Tallies, Tally
+from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Plan, make_plan
-from roughmdr.batch.resume.store import locked_parts
+from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import Row, Shard, table_of
-from roughmdr.batch.tasks import cut
+from roughmdr.batch.task_result import RunDiagnostics, TaskResult, table_of
+from roughmdr.batch.tasks import split_into_tasks
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; threads of a cluster."""
@@ -93,10 +93,12 @@ def writing(rows: int) -> tuple[float, float]:
     """Seconds to keep a shard of tallies safely, and its bytes; by the thread that writes."""
     steps, variables = 400, ("force", "contact_area", "contact_count", "stiffness")
     values = np.random.default_rng(1).normal(size=(2, len(variables), steps))
-    tally = Tally.of(values[0]).joined(Tally.of(values[1]))
-    shard: Shard = table_of(["0" * 32], variables, [(0, 2 * row, tally, Row(1.0)) for row in range(rows)], steps)
+    tally = Moments.of(values[0]).joined(Moments.of(values[1]))
+    shard: TaskResult = table_of(
+        ["0" * 32], variables, [(0, 2 * row, tally, RunDiagnostics(1.0)) for row in range(rows)], steps
+    )
     times = []
-    with tempfile.TemporaryDirectory() as folder, locked_parts(Path(folder) / "result.nc") as parts:
+    with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as parts:
         parts.begin("", "", "")
         for _ in range(_REPEATS):
             started = time.perf_counter()
@@ -108,11 +110,11 @@ def writing(rows: int) -> tuple[float, float]:
 
 def gathering() -> float:
     """Seconds that the calling process takes to put one more tally to the others of its cell."""
-    tallies, values = Tallies(), np.ones((4, 400))
+    tallies, values = MomentTree(), np.ones((4, 400))
     count = 2048
     started = time.perf_counter()
     for first in range(count):
-        tallies.add(first, Tally.of(values))
+        tallies.add(first, Moments.of(values))
     return (time.perf_counter() - started) / count
 
 
@@ -123,9 +125,9 @@ def capacity(making: float, visiting: float, size: float, task: Mapping[str, flo
     """
     plan = large()
     variables = plan.scene.output.variables
-    groups = cut(plan, Rounds(plan).begin(), variables, WORKERS)
+    groups = split_into_tasks(plan, Rounds(plan).begin(), variables, WORKERS)
     runs = sum(last - first for group in groups for _, first, last, _ in group)
-    curve = 8.0 * len(variables) * plan.cells[0].route.separation.size
+    curve = 8.0 * len(variables) * plan.cells[0].path.separation.size
     return Capacity(
         runs=runs,
         tasks=len(groups),

@@ -45,7 +45,7 @@ def profile(shape: Shape) -> Profile:
             return _powers({n: c}, mp.mpf(1))
         case rm.PowerSeries():
             terms = {mp.mpf(n): mp.mpf(c) for n, c in shape.terms.items()}
-            return _powers(terms, mp.mpf(shape.stretched()[0]))
+            return _powers(terms, mp.mpf(shape.nondimensional()[0]))
         case rm.Sphere():
             return _sphere(given["radius"])
         case rm.TruncatedCone():

@@ -57,7 +57,7 @@ def fields(points: int = 480) -> xr.Dataset:
     for shape in SHAPES.values():
         states = []
         for work in ADHESION.values():
-            given: dict[str, Any] = {"modulus": MODULUS, "work": work}
+            given: dict[str, Any] = {"effective_modulus": MODULUS, "work": work}
             stretch = float(np.sqrt(2.0 * np.pi * RADIUS * work / MODULUS))  # by which the others are lifted too
             given |= {"indentation": DEPTH - stretch} if isinstance(shape, rm.FlatPunch) else {"contact_radius": RADIUS}
             contact = rm.indent(shape, **given)

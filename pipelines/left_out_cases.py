@@ -5,17 +5,17 @@ from pathlib import Path
 from typing import NamedTuple
 from zlib import crc32
 
-from roughmdr.aggregate import LoadSeparation, Route, compute
+from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.batch.plan import make_plan
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.closed import hertz as elastic
 from roughmdr.kernels.closed import jkr_paraboloid
-from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.interface import Kernels, choose
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.rebind import rebuilt
 from roughmdr.scene import Scene, read
-from roughmdr.variables import DEFAULT, LAW
+from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
 
 class Size(NamedTuple):
@@ -77,7 +77,7 @@ class Way(NamedTuple):
     """How a scene is computed; as it stands nothing is in it that the scene does not need."""
 
     scene: Scene
-    route: Route
+    path: LoadingPath
     adhesion: Adhesion
     variables: tuple[str, ...]
     placed: bool = False
@@ -86,14 +86,18 @@ class Way(NamedTuple):
     @classmethod
     def of(cls, scene: Scene) -> "Way":
         """As a run goes it."""
-        return cls(scene, make_plan(scene).cells[0].route, scene.law, tuple(scene.output.variables))
+        return cls(scene, make_plan(scene).cells[0].path, scene.adhesion_model, tuple(scene.output.variables))
 
     def laws(self) -> Iterator[LoadSeparation]:
         """Of each realisation."""
-        asked = {"modulus": self.scene.effective_modulus, "adhesion": self.adhesion, "variables": self.variables}
+        asked = {
+            "effective_modulus": self.scene.effective_modulus,
+            "adhesion": self.adhesion,
+            "variables": self.variables,
+        }
         for realization in range(self.scene.batch.realizations):
             ensemble = self.scene.asperities.ensemble(self.scene.seed, realization, placed=self.placed)
-            yield self.compute(ensemble, self.route, **asked)
+            yield self.compute(ensemble, self.path, **asked)
 
 
 @njit
@@ -114,12 +118,12 @@ def _state_jkr(x: float, n: float) -> float:
     return jkr_paraboloid.state(x if x > 0.0 else 1.0, n)
 
 
-class _Everywhere(Law):
+class _Everywhere(Kernels):
     """A law in whose sum all paraboloids are visited at all steps; those that touch nothing carry no force."""
 
     @property
     def kernels(self) -> dict[str, object]:
-        """As in ``Law``."""
+        """As in ``Kernels``."""
         return {**super().kernels, "_within_reach": _everyone, "_state": _state_jkr if self.adhesive else _state}
 
 
@@ -127,7 +131,7 @@ _EVERYWHERE = f"everywhere_{crc32(Path(__file__).read_bytes()):08x}"
 """What was compiled is found again by its name: that tells it from the sum itself, and from other kernels here."""
 
 
-def _choose(shape: str, adhesion: Adhesion, form: Floats) -> Law:
+def _choose(shape: str, adhesion: Adhesion, form: Floats) -> Kernels:
     """The law of a scene, everywhere."""
     law = choose(shape, adhesion, form)
     return _Everywhere(*law._replace(name=f"{law.name}_{_EVERYWHERE}"))
@@ -139,7 +143,7 @@ Forced = Callable[[Way], Way]
 _HERTZ: dict[str, Forced] = {
     "adhesion": lambda way: way._replace(
         adhesion=Adhesion(_SLIGHT),
-        route=Route.along(
+        path=LoadingPath.along(
             way.scene.path.separations(way.scene.asperities.sigma), unload=way.scene.path.unload, adhesive=True
         ),
     )
@@ -150,8 +154,8 @@ _JKR: dict[str, Forced] = {
 _BOTH: dict[str, Forced] = {
     "positions": lambda way: way._replace(placed=True),
     "asperities out of reach": lambda way: way._replace(compute=_compute_everywhere),
-    "the other default variables": lambda way: way._replace(variables=DEFAULT),
-    "all other variables": lambda way: way._replace(variables=tuple(LAW)),
+    "the other default variables": lambda way: way._replace(variables=DEFAULT_VARIABLES),
+    "all other variables": lambda way: way._replace(variables=tuple(CURVE_VARIABLES)),
 }
 
 

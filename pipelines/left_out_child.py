@@ -28,7 +28,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.run import execute
-from roughmdr.variables import DEFAULT
+from roughmdr.variables import DEFAULT_VARIABLES
 
 CURVES = "curves of the realisations"
 _LEAST = 2  # repeats
@@ -71,12 +71,12 @@ def along(way: Way) -> Done:
 
 def kept(size: Size, keep: str) -> Done:
     """All realisations as a batch, with their curves kept or their statistics."""
-    scene = scene_of(size, keep=keep, variables=list(DEFAULT))
+    scene = scene_of(size, keep=keep, variables=list(DEFAULT_VARIABLES))
     plan = make_plan(scene, chunk=size.realizations // 2)  # two tasks at least, so that they go the way of many
     prepare_all(plan, Rounds(plan).begin())
     result = execute(plan, None, workers=1, quiet=True).variables
     force = result["force"].values.mean(axis=0) if keep == "curves" else result["force_mean"].values
-    numbers = sum(array.values.size for name, array in result.items() if name.startswith(DEFAULT))
+    numbers = sum(array.values.size for name, array in result.items() if name.startswith(DEFAULT_VARIABLES))
     return Done(force, float(result["numerical_error"].values.max()), numbers)
 
 

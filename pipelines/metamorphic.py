@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.aggregate import Route, compute
+from roughmdr.aggregate import LoadingPath, compute
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
@@ -58,7 +58,7 @@ class Check(NamedTuple):
 
 def law_of(law: str, kind: str) -> dict[str, Any]:
     """The material."""
-    asked: dict[str, Any] = {"modulus": MODULUS, "work": 0.0 if law == "elastic" else WORK}
+    asked: dict[str, Any] = {"effective_modulus": MODULUS, "work": 0.0 if law == "elastic" else WORK}
     if law == "dugdale":
         strength = TABOR / rm.tabor(SHAPES[kind](**KINDS[kind]), effective_modulus=MODULUS, work=WORK, strength=1.0)
         asked |= {"adhesion": "dugdale", "strength": strength}
@@ -100,7 +100,7 @@ def in_other_units(data: xr.Dataset, asked: dict[str, Any], length: int, force: 
     scaled = data.assign(
         {name: np.ldexp(data[name], length * (units[name] == "m")) for name in map(str, data.data_vars)}
     )
-    powers = {"modulus": force - 2 * length, "strength": force - 2 * length, "work": force - length}
+    powers = {"effective_modulus": force - 2 * length, "strength": force - 2 * length, "work": force - length}
     there = {name: math.ldexp(value, powers[name]) if name in powers else value for name, value in asked.items()}
     found = answered(scaled, np.ldexp(path(asked), length), there)
     return {name: np.ldexp(found[name], -length * POWERS[name][0] - force * POWERS[name][1]) for name in VARIABLES}
@@ -109,9 +109,11 @@ def in_other_units(data: xr.Dataset, asked: dict[str, Any], length: int, force: 
 def visits(data: xr.Dataset, asked: dict[str, Any]) -> int:
     """How often an asperity is visited."""
     adhesion = Adhesion.checked(asked.get("adhesion", "jkr"), asked["work"], asked.get("strength"))
-    route = Route.along(path(asked), unload=True, adhesive=adhesion.work > 0.0)
+    route = LoadingPath.along(path(asked), unload=True, adhesive=adhesion.work > 0.0)
     own = Ensemble.from_dataset(data)
-    return compute(own, route, effective_modulus=asked["modulus"], adhesion=adhesion, variables=["force"]).visits
+    return compute(
+        own, route, effective_modulus=asked["effective_modulus"], adhesion=adhesion, variables=["force"]
+    ).visits
 
 
 def without_adhesion(shape: Shape, asked: dict[str, Any]) -> tuple[float, float]:

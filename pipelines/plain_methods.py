@@ -13,7 +13,7 @@ import roughmdr as rm
 from roughmdr.ensemble import Ensemble
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.shapes import SHAPES, Curved, PowerLaw, Shape
+from roughmdr.shapes import SHAPES, PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
 
@@ -114,11 +114,11 @@ def by_brentq(ensemble: Ensemble, path: Floats, effective_modulus: float, work: 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
     """g(a) of one shape, floats in, floats out: what a root finder calls fastest."""
-    width, rise, form = shape.stretched()
+    width, rise, form = shape.nondimensional()
     if isinstance(shape, PowerLaw):
         factor, n = kappa(form) * rise, form
         return lambda a: factor * (a / width) ** n
-    assert isinstance(shape, Curved)
+    assert isinstance(shape, ProfileShape)
     curve, place = compiled(shape.profile.curve), compiled(shape.profile.place)
     numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
     return lambda a: rise * curve(place(a, width, numbers), numbers)[2]

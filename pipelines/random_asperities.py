@@ -12,7 +12,7 @@ from twins import Real, mp
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.interface import Kernels, choose
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
@@ -126,7 +126,7 @@ def found(kind: str, adhesive: bool, seed: int) -> tuple[Asperity, Found]:
 def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperity, Found] | None:
     shape = DRAW[kind](rng)
     effective_modulus, work = _power(rng, 3.0, 13.0), _power(rng, -9.0, 1.0) if adhesive else 0.0
-    width, rise, form = shape.stretched()
+    width, rise, form = shape.nondimensional()
     columns = (np.array([width]), np.array([rise]), np.asarray(form, dtype=np.float64)[None])
     adhesion = Adhesion(work)
     law = choose(kind, adhesion, columns[2])
@@ -154,7 +154,7 @@ Ends = list[tuple[Real, Real, Real, Real]]
 """The t of the foot and of the top of each stable branch, and the indentations [m] there."""
 
 
-def _ends(law: Law, row: Floats, exact: Exact, natural: tuple[tuple[float, float], float, float, float]) -> Ends:
+def _ends(law: Kernels, row: Floats, exact: Exact, natural: tuple[tuple[float, float], float, float, float]) -> Ends:
     if not law.curved:
         foot = exact.fold()
         return [(foot, mp.inf, exact.indentation(foot), mp.inf)]
@@ -167,7 +167,7 @@ def _ends(law: Law, row: Floats, exact: Exact, natural: tuple[tuple[float, float
 
 def _indentation(
     rng: np.random.Generator,
-    law: Law,
+    law: Kernels,
     row: Floats,
     exact: Exact,
     natural: tuple[tuple[float, float], float, float, float],
@@ -186,7 +186,7 @@ def _indentation(
 
 def _compared(
     asperity: Asperity,
-    law: Law,
+    law: Kernels,
     row: Floats,
     columns: tuple[Floats, Floats, Floats],
     exact: Exact,

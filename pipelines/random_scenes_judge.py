@@ -218,7 +218,7 @@ def _hold_over_work(claims: Claims, scene: Scene, laws: list[Law]) -> None:
     for row in numbers.T:
         ordered = sorted((laws[number] for number in row), key=lambda law: law.scene.work)
         for weak, strong in pairwise(ordered):
-            if strong.scene.law.model == "auto" or len(weak.error) != len(strong.error):
+            if strong.scene.adhesion_model.model == "auto" or len(weak.error) != len(strong.error):
                 continue
             for name in (*_GROWING, *PUSHING):
                 if name in weak.curves:

@@ -33,7 +33,7 @@ class Law(NamedTuple):
     @property
     def far_reaching(self) -> bool:
         """Whether there may be a force without a touch."""
-        return self.scene.work > 0.0 and "dugdale" in self.scene.law.candidates
+        return self.scene.work > 0.0 and "dugdale" in self.scene.adhesion_model.candidates
 
     def slack(self, name: str) -> Floats:
         """By how much values may be off: [row, 1]."""

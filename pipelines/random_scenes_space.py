@@ -13,7 +13,7 @@ from random_scenes_inputs import FILE_SIZE, Inputs
 from random_scenes_numbers import Draw, Table, distribution, entry, number, quantity, seldom
 
 from roughmdr.shapes import SHAPES
-from roughmdr.variables import LAW
+from roughmdr.variables import CURVE_VARIABLES
 
 # Powers of ten of shape parameters; of lengths over the size of all.
 FLANK, NARROW, WIDE, ROUND = (-4.0, 0.5), (-1.0, 2.0), (0.0, 3.0), (0.0, 4.0)
@@ -213,9 +213,9 @@ def path(draw: Draw, frame: Frame) -> Table:
 
 def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
     """[output], [batch] and [accuracy]."""
-    names = draw(st.lists(st.sampled_from(sorted(LAW)), min_size=1, max_size=9, unique=True))
+    names = draw(st.lists(st.sampled_from(sorted(CURVE_VARIABLES)), min_size=1, max_size=9, unique=True))
     keep = draw(st.sampled_from(("curves", "statistics")))
-    parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(LAW), "keep": keep}}
+    parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(CURVE_VARIABLES), "keep": keep}}
     if not drawn:
         return parts
     if frame.smooth and draw(st.booleans()):

@@ -60,7 +60,7 @@ def calls(kernel: str, work: Callable[[], object]) -> int:
 
 def counted(case: Case, law: str) -> list[int] | None:
     """Equilibria tried for the first asperity of a case: at its distance to the fold, and to set it up."""
-    shape, asked = case.shapes()[0], {"modulus": case.stiffness, "work": case.work}
+    shape, asked = case.shapes()[0], {"effective_modulus": case.stiffness, "work": case.work}
     try:
         strength = case.tabor / rm.tabor(shape, **asked, strength=1.0)
         adhesion = Adhesion.checked("dugdale" if law == "dugdale" else "jkr", case.work, strength)

@@ -44,7 +44,7 @@ class PlainReference:
     """Without adhesion, or with JKR's."""
 
     def __init__(self, shape: rm.PowerLaw, effective_modulus: float, work: float) -> None:
-        self.twin, self.width = Twin(shape, effective_modulus, work), shape.stretched()[0]
+        self.twin, self.width = Twin(shape, effective_modulus, work), shape.nondimensional()[0]
 
     def depth(self) -> Real:
         """How far it is pulled before it lets go [m], 0 without adhesion."""
@@ -154,7 +154,7 @@ def verdicts(case: Case, law: str) -> list[Verdict]:
 
 def _verdicts(case: Case, law: str) -> Iterator[Verdict]:
     shapes = case.shapes()[: 2 if law == "dugdale" else None]  # the slow reference
-    asked: dict[str, Any] = {"modulus": case.stiffness, "work": 0.0 if law == "elastic" else case.work}
+    asked: dict[str, Any] = {"effective_modulus": case.stiffness, "work": 0.0 if law == "elastic" else case.work}
     if law == "dugdale":
         try:
             strength = case.tabor / rm.tabor(shapes[0], **asked, strength=1.0)

@@ -59,7 +59,7 @@ class Cohesive(Follower):
         kind = CohesiveParaboloid if isinstance(shape, Paraboloid) else Cohesion
         law = profile_of(shape.name, dict(shape.parameters)), mp.mpf(effective_modulus), mp.mpf(work), mp.mpf(strength)
         self.exact, self.rough = kind(*law, DIGITS), kind(*law, 0)
-        self.curve = Curve(*law, float(shape.stretched()[0]), 1.0)
+        self.curve = Curve(*law, float(shape.nondimensional()[0]), 1.0)
         self.curve.exact, self.curve.rough = self.exact, self.rough
         self.touch = -self.exact.range
         reach = float(self.curve.touch)

@@ -13,7 +13,7 @@ from typing import Any
 from mpmath import mp
 from scipy.optimize import brentq
 
-from roughmdr.kernels.adhesion import stretch_at
+from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.shapes import Cone, Paraboloid, PowerLaw, PowerSeries, Shape, Sphere, Tabulated
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
@@ -125,7 +125,7 @@ class Touching(Follower):
     """Any other shape without adhesion or with JKR's."""
 
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
-        width, _, _ = shape.stretched()
+        width, _, _ = shape.nondimensional()
         self.shape, self.asperity = shape, Asperity(profile(shape), effective_modulus, work, width)
         self.arcs = self.asperity.branches("indentation")
         super().__init__([(arc.value, self._top(arc)) for arc in self.arcs])
@@ -169,6 +169,6 @@ class Touching(Follower):
 
         def above(y: float) -> float:
             a = radius(y)
-            return float(self.shape.g(a)) - stretch_at(a, effective_modulus, work) - delta
+            return float(self.shape.g(a)) - release_stretch(a, effective_modulus, work) - delta
 
         return mp.mpf(radius(brentq(above, -_FARTHEST, _FARTHEST, xtol=1e-15)))

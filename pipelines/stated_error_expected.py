@@ -19,14 +19,14 @@ from stated_error_contacts import profile, walk
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
-from roughmdr.ensemble.random.population import AsperityLaw, Population
+from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
-from roughmdr.kernels.adhesion import stretch_at
+from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.shapes import SHAPES, Curved, FlatPunch
+from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
 
 Array = NDArray[Any]
 
@@ -65,7 +65,7 @@ class Expected:
 
     def __init__(self, scene: Scene, separation: Floats) -> None:
         self.scene, self.separation = scene, separation
-        self.law: AsperityLaw | None = None
+        self.law: Populations | None = None
         if isinstance(scene.asperities, RandomAsperities):
             # Heights from where most of them are: far from there z - h would lose its digits.
             law = scene.asperities.law
@@ -143,7 +143,7 @@ class Tip:
         source, scene = of.scene.asperities, of.scene
         values = {name: float(column[number]) for name, column in nodes.parameters.items()}
         self.shape = source.fixed or SHAPES[source.shape_name](**values)
-        self.contact = Contact.of(self.shape, scene.effective_modulus, scene.law)
+        self.contact = Contact.of(self.shape, scene.effective_modulus, scene.adhesion_model)
         self.heights: Heights = nodes.heights[number]
         self.separation = of.separation
         self.feet, tops = branch_ends(self.contact)
@@ -152,7 +152,7 @@ class Tip:
             (x * self.contact.depth[0] - depth, top * self.contact.depth[0] - depth)
             for x, top in zip(self.feet, [*tops, math.inf], strict=True)
         ]
-        self.touch = -self.contact.adhesion.reach
+        self.touch = -self.contact.adhesion.range
         marks = [self.touch, *(end for arc in self.arcs for end in arc if end < math.inf)]
         low, high = self.heights.low, self.heights.high
         cuts: dict[float, object] = {low: "low", high: "high"}
@@ -212,10 +212,10 @@ class Tip:
         effective_modulus, adhesion = self.contact.effective_modulus, self.contact.adhesion
         if adhesion.cohesive:
             return np.array([-self._opening * 2.0 * adhesion.strength / effective_modulus])
-        if not isinstance(self.shape, Curved):
+        if not isinstance(self.shape, ProfileShape):
             return np.zeros(0)
         radii = [float(b) for b in profile(self.shape).kinks]
-        return np.array([float(self.shape.g(b)) - stretch_at(b, effective_modulus, adhesion.work) for b in radii])
+        return np.array([float(self.shape.g(b)) - release_stretch(b, effective_modulus, adhesion.work) for b in radii])
 
     @cached_property
     def _beside_leaps(self) -> Floats:
@@ -247,7 +247,7 @@ class Tip:
         pull = 2.0 * adhesion.strength / self.contact.effective_modulus * (1.0 - 2.0 / math.pi)
 
         def above(c: float) -> float:
-            return float(self.shape.f(c)) + pull * c - adhesion.reach
+            return float(self.shape.f(c)) + pull * c - adhesion.range
 
         while above(end) > 0.0:
             end *= 0.5

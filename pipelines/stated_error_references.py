@@ -48,7 +48,7 @@ def _columns(drawn: Ensemble) -> dict[str, Floats]:
 
 def follower(shape: Shape, scene: Scene, deepest: float) -> Follower:
     """One asperity of a scene, pressed no farther than ``deepest`` [m]."""
-    law = scene.law
+    law = scene.adhesion_model
     if isinstance(shape, FlatPunch):
         if law.cohesive:
             return CohesivePunch(shape.radius, scene.effective_modulus, law.work, law.strength)

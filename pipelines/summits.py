@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 from exact_summits import Series
 
-from roughmdr.ensemble.gaussian.summit_distribution import SummitLaw, Summits, product_density
+from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.streams import independent
@@ -52,11 +52,13 @@ STATISTICS = {
 FITTED = tuple(STATISTICS)[:5]  # what an ensemble of paraboloids tells
 
 
-def law_of_maps() -> SummitLaw:
+def law_of_maps() -> SummitDistribution:
     """The law with the moments that the maps have on average: sums over the waves of the grid, not integrals."""
     variances, q = wave_variances(SPECTRUM, MAP_POINTS, SIZE), wave_numbers(MAP_POINTS, SIZE)
     sums = (float(np.sum(variances * q**power)) for power in (0, 2, 4))
-    return SummitLaw(Moments.checked(*(part * total for part, total in zip((1.0, 0.5, 0.375), sums, strict=True))))
+    return SummitDistribution(
+        Moments.checked(*(part * total for part, total in zip((1.0, 0.5, 0.375), sums, strict=True)))
+    )
 
 
 def fitted(series: Series, points: int) -> Summits:

@@ -15,9 +15,9 @@ from work_precision_points import Curve, Method, Point, Reference, root_mean_squ
 from roughmdr.aggregate import LoadSeparation
 from roughmdr.aggregate.totals import AREA, FORCE
 from roughmdr.batch import tasks
-from roughmdr.batch.plan import Cell, law_of, make_plan
+from roughmdr.batch.plan import Cell, make_plan, simulate_realization
 from roughmdr.ensemble.nodes import Rule
-from roughmdr.expected.node import Asked, set_up, totals_of
+from roughmdr.expected.node import Problem, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -73,7 +73,7 @@ SURFACES = {
 
 def reference(surface: Surface, *, quick: bool) -> Reference:
     """By double integrals with ``DIGITS`` digits; the pull-off force at the step where the expected law has it."""
-    separation = surface.cell.route.separation
+    separation = surface.cell.path.separation
     lowest = int(np.argmin(law(surface, "expected").force))
     rough, turn = surface.rough, int(np.argmin(separation))
 
@@ -98,13 +98,13 @@ def _curve(force: Floats, area: Floats, evaluations: int, count: float = 1.0) ->
 
 def law(surface: Surface, estimator: str, realization: int = 0) -> Curve:
     """One realisation, or the expected law."""
-    return curve(law_of(*surface.cell, realization, ASKED, estimator))
+    return curve(simulate_realization(*surface.cell, realization, ASKED, estimator))
 
 
 def expected(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
     """The expected law, with as many nodes as it takes."""
     cell = surface.cell
-    found, seconds = timed(lambda: curve(law_of(*cell, 0, ASKED, "expected")), 1 if quick else 3)
+    found, seconds = timed(lambda: curve(simulate_realization(*cell, 0, ASKED, "expected")), 1 if quick else 3)
     yield Point(1.0, exact.errors(found), seconds, found.evaluations)
 
 
@@ -113,7 +113,7 @@ def expected_by_nodes(surface: Surface, exact: Reference, quick: bool) -> Iterat
     if not surface.rough.radius_std:
         return
     scene, route = surface.cell
-    asked = Asked(scene.asperities, route, scene.effective_modulus, scene.law, (FORCE, AREA))
+    asked = Problem(scene.asperities, route, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
     steps = list(range(route.separation.size))
 
     def found(order: int) -> Curve:
@@ -152,7 +152,7 @@ def _drawn(draw: Draw, most: int, few: int) -> Callable[[Surface, Reference, boo
 
 def _by_package(estimator: str) -> Draw:
     def draw(surface: Surface, number: int) -> Curve:
-        return curve(law_of(*_cell(surface), number, ASKED, estimator))
+        return curve(simulate_realization(*_cell(surface), number, ASKED, estimator))
 
     return draw
 
@@ -170,7 +170,7 @@ def _plainly(sum_up: Callable[..., Sums]) -> Draw:
         spread = math.sqrt(math.log1p((rough.radius_std / rough.radius) ** 2))
         radius = rough.radius * np.exp(spread * rng.standard_normal(COUNT) - 0.5 * spread**2)
         height = rough.std * rng.standard_normal(COUNT)
-        path = _cell(surface).route.separation
+        path = _cell(surface).path.separation
         found = sum_up(height, radius, path, rough.effective_modulus, rough.work)
         return _curve(found.force, found.area, found.visits)
 
@@ -199,7 +199,7 @@ def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Cur
     visits = list[int]()
 
     def counted(*args: Any) -> LoadSeparation:
-        found = law_of(*args)
+        found = simulate_realization(*args)
         visits.append(found.visits)
         return found
 

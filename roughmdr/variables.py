@@ -20,7 +20,7 @@ def _table(*rows: tuple[str, str, str]) -> dict[str, Variable]:
     return {row[0]: Variable(*row) for row in rows}
 
 
-LAW = _table(
+CURVE_VARIABLES = _table(
     ("force", "N", "normal force of all asperities, compression positive"),
     ("contact_area", "m2", "sum of the contact areas"),
     ("contact_count", "1", "number of asperities in contact"),
@@ -33,7 +33,7 @@ LAW = _table(
 )
 """Variables of a load-separation law that can be asked for."""
 
-DEFAULT = ("force", "contact_area", "contact_count", "stiffness")
+DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
 
 ASPERITY = _table(
     ("indentation", "m", "approach past first touch, positive pressed in"),
@@ -66,7 +66,7 @@ COORDINATES = _table(
     ("y", "m", "position of the summit"),
 )
 
-RUN = _table(
+RUN_VARIABLES = _table(
     ("run_time", "s", "time spent on the realization, or on all that a statistic is of"),
     ("realization_count", "1", "number of realizations that the statistics are of"),
     ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
@@ -89,5 +89,5 @@ STATUSES = ("done", "failed", "not_run")
 ADHESION_CODES = ("none", "jkr", "dugdale")
 """Adhesion models, each at its code in ``adhesion_law``."""
 
-BESIDE = ("separation", "branch", "cell_key", "remark")
+AUXILIARY_COORDINATES = ("separation", "branch", "cell_key", "remark")
 """Those of them that are coordinates of a result, beside its swept keys."""

@@ -20,8 +20,8 @@ from scenes import ASPERITIES, scene
 
 from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.store import parts_of
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.resume.store import store_folder
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.runner import local
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -58,7 +58,7 @@ def interrupted(
     """A batch in this process, of tasks of so many runs, ended by Ctrl-C when some of them are done."""
     left, compute, there = iter(range(after)), tasks.compute, out.exists()
 
-    def until(task: tasks.Task) -> Shard:
+    def until(task: tasks.Task) -> TaskResult:
         if next(left, None) is None:
             raise KeyboardInterrupt
         return compute(task)
@@ -68,7 +68,7 @@ def interrupted(
         with pytest.raises(KeyboardInterrupt):
             execute(make_plan(read(table), chunk), out, workers=1, resume=resume)
     assert out.exists() == there
-    assert parts_of(destination(out)).is_dir()
+    assert store_folder(destination(out)).is_dir()
 
 
 class Batch:

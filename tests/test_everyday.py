@@ -21,7 +21,7 @@ import roughmdr as rm
 from roughmdr.scene.sections import Scene
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.units import _BASES
-from roughmdr.variables import LAW
+from roughmdr.variables import CURVE_VARIABLES
 
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9}
 
@@ -45,7 +45,10 @@ def test_the_starter_scene_runs_and_shows_every_choice(tmp_path: Path) -> None:
     text = (tmp_path / "mine.toml").read_text()
     for key in keys_of(Scene):
         assert re.search(rf"\b{key}\b", text), f"{key} is not in the starter scene"
-    for name in (*LAW, *(base[0] for spellings in _BASES.values() for base in spellings if base[0] in ("m", "Pa"))):
+    for name in (
+        *CURVE_VARIABLES,
+        *(base[0] for spellings in _BASES.values() for base in spellings if base[0] in ("m", "Pa")),
+    ):
         assert name in text
     done = roughmdr("run", "mine.toml", "-o", "out.nc", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

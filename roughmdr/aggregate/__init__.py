@@ -1,6 +1,6 @@
 """The sum over asperities along the path of the flat."""
 
 from roughmdr.aggregate.load_separation import LoadSeparation, compute, load_separation, prepare
-from roughmdr.loading.path import Route
+from roughmdr.loading.path import LoadingPath
 
-__all__ = ["LoadSeparation", "Route", "compute", "load_separation", "prepare"]
+__all__ = ["LoadSeparation", "LoadingPath", "compute", "load_separation", "prepare"]

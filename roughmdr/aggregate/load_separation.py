@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.tabor import range_of
-from roughmdr.asperity.validity import Extremes
+from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import Adhesion, Model
 from roughmdr.kernels.interface import choose
-from roughmdr.loading.path import Route
+from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats, check_number, check_values
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import COORDINATES, DEFAULT, LAW, RUN
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ class LoadSeparation(NamedTuple):
     """Each over the steps, in SI."""
     numerical_error: float
     """Bound on the error of the force along the path, over the largest magnitude of the force."""
-    extremes: Extremes
+    extremes: ValidityLimits
     """The most that any contact comes to."""
     visits: int
     """How often an asperity was visited."""
@@ -64,7 +64,7 @@ class LoadSeparation(NamedTuple):
         total: Floats,
         names: list[str],
         nominal_area: float | None,
-        extremes: Extremes,
+        extremes: ValidityLimits,
         visits: int,
         tabor: float,
         model: str,
@@ -83,7 +83,7 @@ class LoadSeparation(NamedTuple):
 
 
 def compute(
-    ensemble: Ensemble, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    ensemble: Ensemble, route: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
     """The law of ``ensemble`` along a route; E* [Pa].
 
@@ -96,8 +96,8 @@ def compute(
     columns = ensemble.columns()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
-    reach = range_of(ensemble.shape, spread, columns, effective_modulus, adhesion)
-    adhesion = adhesion.settled(reach.jkr_error)
+    reach = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
+    adhesion = adhesion.resolved(reach.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
     total, reached, visits = loop.add_asperities(
         law,
@@ -118,14 +118,14 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
     """Compile the sum for a shape and a law of adhesion, once, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
-    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in example.stretched())
+    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
     columns = (width, rise, form)
     for model in adhesion.candidates:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, form)
         loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
-    if adhesion.known:
-        range_of(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
+    if adhesion.tabor_known:
+        jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
 
 def load_separation(
@@ -137,7 +137,7 @@ def load_separation(
     adhesion: Model = "jkr",
     strength: float | None = None,
     unload: bool = False,
-    variables: Iterable[str] = DEFAULT,
+    variables: Iterable[str] = DEFAULT_VARIABLES,
 ) -> "xr.Dataset":
     """The load-separation law of an ensemble pressed by a rigid flat, in this process.
 
@@ -163,14 +163,14 @@ def load_separation(
         raise OutOfRange("separation is empty; it must hold at least one number")
     names = [variables] if isinstance(variables, str) else list(variables)
     for name in names:
-        if name not in LAW:
-            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(LAW)}")
-    route = Route.along(path, unload=unload, adhesive=asked.work > 0.0)
+        if name not in CURVE_VARIABLES:
+            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
+    route = LoadingPath.along(path, unload=unload, adhesive=asked.work > 0.0)
     result = compute(
         Ensemble.from_dataset(ensemble), route, effective_modulus=effective_modulus, adhesion=asked, variables=names
     )
-    data = {name: Array(("step",), result.variables[name], LAW[name].attrs) for name in names}
-    data["numerical_error"] = Array((), np.array(result.numerical_error), RUN["numerical_error"].attrs)
+    data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
+    data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
     doubts = [*result.doubts, *result.extremes.warnings]
     attrs = {"warnings": "\n".join(doubts)} if doubts else {}

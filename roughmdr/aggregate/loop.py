@@ -33,7 +33,7 @@ from roughmdr.aggregate.scales import DEPTH, SCALES, SIZE, WORTH, measure
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, jumps, jumps_branched, tally
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Law
+from roughmdr.kernels.interface import Kernels
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, specialise
@@ -146,7 +146,7 @@ def _loop(
 
 
 @cache
-def _compiled(law: Law) -> Callable[..., int]:
+def _compiled(law: Kernels) -> Callable[..., int]:
     kernels, together = law.kernels, law.answer is not None
     parts = {
         "measure": measure,
@@ -168,7 +168,7 @@ def _compiled(law: Law) -> Callable[..., int]:
 
 
 def add_asperities(
-    law: Law,
+    law: Kernels,
     height: Floats,
     columns: tuple[Floats, Floats, Floats],
     effective_modulus: float,
@@ -187,8 +187,8 @@ def add_asperities(
     wanted[list(rows)] = True
     total, carried = np.zeros((ROWS, separation.size)), np.zeros((ROWS, separation.size))
     reached = np.zeros_like(height)
-    how = effective_modulus, adhesion.work, adhesion.strength, adhesion.reach
-    way = separation, memory.first, memory.bottom - adhesion.reach, memory.top
+    how = effective_modulus, adhesion.work, adhesion.strength, adhesion.range
+    way = separation, memory.first, memory.bottom - adhesion.range, memory.top
     visits = _compiled(law)(height, *columns, *how, *way, wanted, total, carried, reached)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(total).all():
         raise OutOfRange(

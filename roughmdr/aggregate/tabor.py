@@ -7,11 +7,11 @@ from types import FunctionType
 from typing import Any, NamedTuple, cast
 
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
-from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.interface import Kernels, choose
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import specialise
 from roughmdr.numerics.summation import BLOCK
-from roughmdr.shapes import SHAPES, Curved
+from roughmdr.shapes import SHAPES, ProfileShape
 
 # Names that ``specialise`` fills with the kernels of a law.
 _prepare: Callable[..., Floats]
@@ -27,7 +27,7 @@ Tabor number more. Measured with paraboloids of normal heights, |delta_c|/std fr
 100, the flat down to 2, 0 and -1 std (``pipelines/adhesion_range.py``): there at most 4.3."""
 
 
-class Range(NamedTuple):
+class JkrValidity(NamedTuple):
     """What tells whether the range of adhesion matters."""
 
     tabor: float = math.inf
@@ -54,25 +54,25 @@ def _extremes(width: Floats, rise: Floats, form: Floats, effective_modulus: floa
 
 
 @cache
-def _compiled(law: Law) -> Callable[..., tuple[float, float]]:
+def _compiled(law: Kernels) -> Callable[..., tuple[float, float]]:
     return specialise(cast(FunctionType, _extremes), law.name, law.kernels)
 
 
-def range_of(
+def jkr_validity(
     shape: str, spread: float, columns: tuple[Floats, Floats, Floats], effective_modulus: float, adhesion: Adhesion
-) -> Range:
+) -> JkrValidity:
     """Whether the range of adhesion matters; its Tabor number is 0 where a contact is not representable in JKR.
 
     ``spread`` is the standard deviation of the heights [m].
     """
-    if not adhesion.known:
-        return Range()
+    if not adhesion.tabor_known:
+        return JkrValidity()
     law = choose(shape, Adhesion(adhesion.work), columns[2])
     radius, depth = _compiled(law)(*columns, effective_modulus, adhesion.work)
     if not 0.0 < radius < math.inf:
-        return Range(0.0, math.inf)
+        return JkrValidity(0.0, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
     kind = SHAPES[shape]
-    sharp = issubclass(kind, Curved) and kind.profile.flat and kind.profile.corner
+    sharp = issubclass(kind, ProfileShape) and kind.profile.flat and kind.profile.corner
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
-    return Range(tabor, (shift + (_AT_A_CORNER if sharp else 0.0)) / tabor)
+    return JkrValidity(tabor, (shift + (_AT_A_CORNER if sharp else 0.0)) / tabor)

@@ -8,11 +8,11 @@ import numpy as np
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.elementwise import apply, apply_all
-from roughmdr.kernels.interface import Law, choose
+from roughmdr.kernels.interface import Kernels, choose
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.numerics.arguments import Floats, check_number
-from roughmdr.shapes import Curved, FlatPunch, Shape
+from roughmdr.shapes import FlatPunch, ProfileShape, Shape
 
 Results = dict[str, Floats]
 
@@ -22,7 +22,7 @@ _FIXED_GRIPS, _DEAD_LOAD = 0.0, 1.0
 class Contact(NamedTuple):
     """A law with the natural scales of one asperity."""
 
-    law: Law
+    law: Kernels
     shape: Shape
     effective_modulus: float
     adhesion: Adhesion
@@ -38,18 +38,18 @@ class Contact(NamedTuple):
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
-        width, rise, form = shape.stretched()
+        width, rise, form = shape.nondimensional()
         law = choose(shape.name, adhesion, np.array([form]))
         with np.errstate(all="ignore"):  # what overflows is refused below
             form = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
-            if isinstance(shape, Curved) and shape.profile.end * width < adhesion.reach and form[COUNT] == 0.0:
+            if isinstance(shape, ProfileShape) and shape.profile.end * width < adhesion.range and form[COUNT] == 0.0:
                 raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, reaches beyond the end of "
+                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, reaches beyond the end of "
                     f"{shape}; it must be larger"
                 )
             if isinstance(shape, FlatPunch) and adhesion.cohesive and form[COUNT] == 0.0:
                 raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.reach:g} m, is so long that a contact "
+                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
                     f"of {shape} is lost in its roundings; it must be larger"
                 )
             scales = law.natural(effective_modulus, adhesion.work, width, rise, form)
@@ -64,7 +64,7 @@ class Contact(NamedTuple):
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
         """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
-        width, rise, _ = self.shape.stretched()
+        width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
             form = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
             force, radius = self.law.natural_force(self.effective_modulus, self.adhesion.work, width, rise, form)
@@ -75,7 +75,7 @@ class Contact(NamedTuple):
         """A natural depth with the digits that the fold needs."""
         if not (self.law.adhesive and self.law.curved) or self.adhesion.cohesive:
             return depth
-        return exact_depth(cast(Curved, self.shape), self.effective_modulus, self.adhesion.work, form)
+        return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, form)
 
     def _check(self, **scales: float) -> None:
         for quantity, scale in scales.items():
@@ -148,7 +148,7 @@ class Contact(NamedTuple):
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
         if isinstance(shape, FlatPunch):
             raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {shape.radius:g} m")
-        if isinstance(shape, Curved) and shape.profile.flat:
+        if isinstance(shape, ProfileShape) and shape.profile.flat:
             on_the_flat = (radius > 0.0) & (radius < self.radius)
             if on_the_flat.any():
                 raise ShapeError(
@@ -198,8 +198,8 @@ class Contact(NamedTuple):
         return self.depth[0] * (distance - 1.0) - self.depth[1]
 
 
-def _prepared(law: Law, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
-    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.stretched())
+def _prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
+    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
     return law.own(
         law.prepare(effective_modulus, adhesion.work, adhesion.strength, width, rise, form, 0, 1, control), 0
     )

@@ -9,10 +9,10 @@ import numpy as np
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels.adhesion import Adhesion, stretch_at
+from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.numerics.arguments import Floats, check_values
-from roughmdr.shapes import Curved, FlatPunch, Shape
+from roughmdr.shapes import FlatPunch, ProfileShape, Shape
 from roughmdr.variables import ASPERITY
 
 if TYPE_CHECKING:
@@ -86,10 +86,14 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
     if not contact.law.adhesive:
         return
     shape, effective_modulus = contact.shape, contact.effective_modulus
-    edge = contact.radius if isinstance(shape, FlatPunch) or (isinstance(shape, Curved) and shape.profile.flat) else 0.0
+    edge = (
+        contact.radius
+        if isinstance(shape, FlatPunch) or (isinstance(shape, ProfileShape) and shape.profile.flat)
+        else 0.0
+    )
 
     def stretch(a: float) -> float:
-        return stretch_at(a, effective_modulus, contact.adhesion.work)
+        return release_stretch(a, effective_modulus, contact.adhesion.work)
 
     def excess(log_a: float, most: float) -> float:
         a = min(math.exp(log_a), most)

@@ -79,10 +79,10 @@ def indent(
         if lost.any():
             worst = np.atleast_1d(values)[lost][0]
             raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
-    extremes = validity.Extremes()
+    extremes = validity.ValidityLimits()
     if isinstance(shape, Shape):
         radius = results["contact_radius"]
-        extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
+        extremes = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
     doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, doubts)
 
@@ -138,7 +138,7 @@ def pull_off(
                 f"{name} at pull-off is not representable: "
                 f"effective modulus {effective_modulus:g} Pa, work {work:g} J/m^2, {shape}"
             )
-    extremes = validity.Extremes.of(radius, shape.df(radius), np.array(shape.end))
+    extremes = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
     doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
     return _dataset({name: results[name].reshape(()) for name in names}, None, doubts)
 

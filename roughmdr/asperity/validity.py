@@ -20,7 +20,7 @@ TABOR = 3.0
 _LARGEST = float(np.finfo(np.float64).max)  # stands for a flank that is upright
 
 
-class Extremes(NamedTuple):
+class ValidityLimits(NamedTuple):
     """The most that any contact comes to."""
 
     slope: float = 0.0
@@ -31,7 +31,7 @@ class Extremes(NamedTuple):
     """The least Tabor number of contacts that are taken for JKR's."""
 
     @classmethod
-    def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "Extremes":
+    def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "ValidityLimits":
         """Of contact radii [m], with the slopes there and the ends [m] of their profiles."""
         if not (radius > 0.0).any():
             return cls()
@@ -40,9 +40,11 @@ class Extremes(NamedTuple):
             farthest = np.where(np.isfinite(radius), radius / ends, 0.0)
         return cls(min(float(np.max(steepest)), _LARGEST), min(float(np.max(farthest)), _LARGEST))
 
-    def joined(self, other: "Extremes") -> "Extremes":
+    def joined(self, other: "ValidityLimits") -> "ValidityLimits":
         """The more extreme of both."""
-        return Extremes(max(self.slope, other.slope), max(self.extent, other.extent), min(self.tabor, other.tabor))
+        return ValidityLimits(
+            max(self.slope, other.slope), max(self.extent, other.extent), min(self.tabor, other.tabor)
+        )
 
     @property
     def warnings(self) -> list[str]:

@@ -17,8 +17,8 @@ _FIRST_RULE = 8
 
 def seconds(cell: Cell, estimator: str) -> float:
     """About what one run takes [s]."""
-    law, section = cell.scene.law, cell.scene.asperities
-    steps = cell.route.separation.size
+    law, section = cell.scene.adhesion_model, cell.scene.asperities
+    steps = cell.path.separation.size
     simple = section.shape_name == "paraboloid" or not law.work
     cohesive = "dugdale" in law.candidates
     if estimator == "expected":

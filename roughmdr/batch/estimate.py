@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 import tomli_w
 
-from roughmdr.aggregate import Route, compute
+from roughmdr.aggregate import LoadingPath, compute
 from roughmdr.batch.compile import prepare_all
-from roughmdr.batch.plan import Cell, Plan, law_of
+from roughmdr.batch.plan import Cell, Plan, simulate_realization
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.sizes import file_bytes, held_bytes
-from roughmdr.batch.tasks import TOGETHER, cut
+from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
 from roughmdr.errors import RoughmdrError
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.memory import room
@@ -70,13 +70,13 @@ def estimate(plan: Plan, workers: int) -> Estimate:
         raise RoughmdrError(f"a run of next to nothing cannot be timed here: {error.strerror}") from None
     chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
     costs, failures = _costs(plan, rounds, sorted(chosen.tolist()))
-    variables, steps = plan.scene.output.variables, plan.cells[0].route.separation.size
+    variables, steps = plan.scene.output.variables, plan.cells[0].path.separation.size
     runs = sum(stretch.last - stretch.first for stretch in first)
-    tasks = len(cut(plan, first, variables, workers))
+    tasks = len(split_into_tasks(plan, first, variables, workers))
     busy = min(workers, tasks, _cores())
     held, file = held_bytes(plan, runs), file_bytes(plan, runs)
     if plan.scene.output.keep == "statistics":
-        held += busy * min(TOGETHER, math.ceil(runs / tasks)) * _NUMBER * steps * len(variables)
+        held += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * steps * len(variables)
     return Estimate(
         runs=runs,
         tasks=tasks,
@@ -108,25 +108,25 @@ def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], l
 
 def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
     """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
-    scene, route = cell.scene, cell.route
+    scene, path = cell.scene, cell.path
     section = scene.asperities.sampled(_SAMPLE)
-    steps = route.separation.size
+    steps = path.separation.size
     if steps > _STEPS:
         some = np.linspace(0, steps - 1, _STEPS).astype(int)
-        route = Route.along(route.separation[some], unload=False, adhesive=scene.work > 0.0)
+        path = LoadingPath.along(path.separation[some], unload=False, adhesive=scene.work > 0.0)
 
     def run() -> tuple[float, float]:
         started = time.perf_counter()
         if estimator == "expected":
-            law_of(scene, route, 0, plan.scene.output.variables, "expected")
+            simulate_realization(scene, path, 0, plan.scene.output.variables, "expected")
             return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
         made = time.perf_counter()
         compute(
             ensemble,
-            route,
+            path,
             effective_modulus=scene.effective_modulus,
-            adhesion=scene.law,
+            adhesion=scene.adhesion_model,
             variables=plan.scene.output.variables,
         )
         return made - started, time.perf_counter() - made
@@ -137,7 +137,7 @@ def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
     tracemalloc.stop()
     making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
     part = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
-    return _Cost(part * (making + adding * steps / route.separation.size), part * memory)
+    return _Cost(part * (making + adding * steps / path.separation.size), part * memory)
 
 
 def _start_up(cell: Cell) -> float:
@@ -147,9 +147,9 @@ def _start_up(cell: Cell) -> float:
     smallest = {
         "material": {"effective_modulus": 1.0},
         "adhesion": {
-            "model": cell.scene.law.model,
+            "model": cell.scene.adhesion_model.model,
             "work": cell.scene.work and 1.0,
-            **({"strength": 1.0} if cell.scene.law.strength < math.inf else {}),
+            **({"strength": 1.0} if cell.scene.adhesion_model.strength < math.inf else {}),
         },
         "asperities": {**asperities, **shape.example()},
         "path": {"separation": [0.0]},

@@ -13,7 +13,7 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 
 
-class Tally(NamedTuple):
+class Moments(NamedTuple):
     """How many, mean, standard deviation (of these, not of all that could be drawn), least and greatest."""
 
     size: int
@@ -23,11 +23,11 @@ class Tally(NamedTuple):
     greatest: Floats
 
     @classmethod
-    def of(cls, values: Floats) -> "Tally":
+    def of(cls, values: Floats) -> "Moments":
         """Of one realisation."""
         return cls(1, values, np.zeros_like(values), values, values)
 
-    def joined(self, other: "Tally") -> "Tally":
+    def joined(self, other: "Moments") -> "Moments":
         """Of both together (T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242, eq. 2.1).
 
         No square leaves the range of a float, and nor does a difference.
@@ -36,7 +36,7 @@ class Tally(NamedTuple):
         own, others = self.size / count, other.size / count
         half = 0.5 * other.mean - 0.5 * self.mean
         within = np.hypot(math.sqrt(own) * self.spread, math.sqrt(others) * other.spread)
-        return Tally(
+        return Moments(
             count,
             self.mean + (2.0 * others) * half,
             np.hypot(within, (2.0 * math.sqrt(own * others)) * half),
@@ -44,9 +44,9 @@ class Tally(NamedTuple):
             np.maximum(self.greatest, other.greatest),
         )
 
-    def picked(self, index: Any) -> "Tally":
+    def picked(self, index: Any) -> "Moments":
         """The same of a part of the arrays."""
-        return Tally(self.size, *(array[index] for array in self[1:]))
+        return Moments(self.size, *(array[index] for array in self[1:]))
 
     @property
     def standard_error(self) -> Floats:
@@ -66,23 +66,23 @@ def spans(first: int, last: int) -> Iterator[tuple[int, int]]:
         first += count
 
 
-def tallied(first: int, values: Floats) -> Iterator[tuple[int, Tally]]:
+def moments_of(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
     """Tallies of the realisations ``first`` and so on, whose ``values`` lie along the first axis, with their places."""
     for begin, count in spans(first, first + len(values)):
-        tally = Tally.of(values[begin - first : begin - first + count])
+        tally = Moments.of(values[begin - first : begin - first + count])
         while len(tally.mean) > 1:
             tally = tally.picked(np.s_[0::2]).joined(tally.picked(np.s_[1::2]))
         yield begin, tally.picked(0)
 
 
-class Tallies:
+class MomentTree:
     """The tallies of one cell, put together as far as they go: as many are held as their number has binary digits."""
 
     def __init__(self) -> None:
-        self.held: dict[int, Tally] = {}
+        self.held: dict[int, Moments] = {}
         """By the place where each begins."""
 
-    def add(self, first: int, tally: Tally) -> None:
+    def add(self, first: int, tally: Moments) -> None:
         """Take in one more; ``first`` is where it begins."""
         while (neighbour := self.held.get(first ^ tally.size)) and neighbour.size == tally.size:
             del self.held[first ^ tally.size]
@@ -92,13 +92,13 @@ class Tallies:
 
     def add_all(self, first: int, values: Floats) -> None:
         """Take in single realisations along the first axis."""
-        for begin, tally in tallied(first, values):
+        for begin, tally in moments_of(first, values):
             self.add(begin, tally)
 
-    def total(self, count: int) -> Tally | None:
+    def total(self, count: int) -> Moments | None:
         """Of the first ``count`` realisations; None where some are missing."""
         parts = [self.held.get(first) for first, _ in spans(0, count)]
-        whole: Tally | None = None
+        whole: Moments | None = None
         for part, (_, size) in zip(parts, spans(0, count), strict=True):
             if part is None or part.size != size:
                 return None

@@ -7,21 +7,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate import LoadSeparation, Route, compute
+from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.errors import SceneError
 from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import in_words
 from roughmdr.schema.wording import in_cells
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import COORDINATES, LAW
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES
 
 
 class Cell(NamedTuple):
     """A scene without a sweep, and the way of its flat."""
 
     scene: Scene
-    route: Route
+    path: LoadingPath
 
 
 class Plan(NamedTuple):
@@ -54,14 +54,14 @@ class Plan(NamedTuple):
         return {
             **self.scene.sweep.coordinates(),
             "separation": self._separation(),
-            "branch": self.cells[0].route.branch(),
+            "branch": self.cells[0].path.branch(),
         }
 
     def _separation(self) -> Array:
-        first = self.cells[0].route
-        if all(cell.route is first for cell in self.cells):
+        first = self.cells[0].path
+        if all(cell.path is first for cell in self.cells):
             return Array(("step",), first.separation, COORDINATES["separation"].attrs)
-        separation = np.array([cell.route.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
+        separation = np.array([cell.path.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
         dims = ["step"]
         for axis, name in reversed(list(enumerate(self.sizes))):
             one = separation.take([0], axis)
@@ -83,13 +83,13 @@ def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
 
 
 def _cells(scene: Scene) -> Iterator[Cell]:
-    known: dict[tuple[bytes, bool], Route] = {}
+    known: dict[tuple[bytes, bool], LoadingPath] = {}
     first: NDArray[np.str_] | None = None
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         way_in = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = way_in.tobytes(), cell.work > 0.0
         if key not in known:
-            known[key] = Route.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
+            known[key] = LoadingPath.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
             found = branches(known[key].separation)
             first = found if first is None else first
             if not np.array_equal(found, first):
@@ -98,17 +98,19 @@ def _cells(scene: Scene) -> Iterator[Cell]:
         yield Cell(cell, known[key])
 
 
-def law_of(scene: Scene, route: Route, realization: int, variables: list[str], estimator: str) -> LoadSeparation:
+def simulate_realization(
+    scene: Scene, path: LoadingPath, realization: int, variables: list[str], estimator: str
+) -> LoadSeparation:
     """The law of one realisation of a scene without a sweep, by an estimator."""
-    effective_modulus, adhesion, section = scene.effective_modulus, scene.law, scene.asperities
+    effective_modulus, adhesion, section = scene.effective_modulus, scene.adhesion_model, scene.asperities
     if estimator == "expected":
         from roughmdr import expected
 
         return expected.compute(
-            section, route, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables
+            section, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables
         )
     ensemble = section.ensemble(scene.seed, realization, stratified=estimator == "stratified")
-    return compute(ensemble, route, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
+    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
 
 
 def left_out(scene: Scene) -> list[str]:
@@ -121,9 +123,9 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "adhesion: the scene has no [adhesion]"
     elif scene.work == 0.0:
         yield "adhesion: adhesion.work is 0"
-    if scene.law.model == "auto":
-        yield f"range of the adhesion: where JKR is off by less than {scene.law.error:g}, see tabor_number"
-    elif scene.work > 0.0 and not scene.law.cohesive:
+    if scene.adhesion_model.model == "auto":
+        yield f"range of the adhesion: where JKR is off by less than {scene.adhesion_model.error:g}, see tabor_number"
+    elif scene.work > 0.0 and not scene.adhesion_model.cohesive:
         yield "range of the adhesion: adhesion.model is 'jkr'"
     if scene.work == 0.0:
         yield "hysteresis: without adhesion a contact has no memory"
@@ -134,7 +136,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
     if scene.asperities.drawn:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"
-    unasked = [name for name in LAW if name not in scene.output.variables]
+    unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]
     if unasked:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

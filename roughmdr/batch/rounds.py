@@ -3,18 +3,18 @@
 import math
 from typing import NamedTuple
 
-from roughmdr.batch.collect import Gathered
+from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import keys_of
 from roughmdr.batch.stopping_rule import FIRST, enough, next_count, relative_error, still_missing
-from roughmdr.batch.tasks import Stretch
+from roughmdr.batch.tasks import RunRange
 from roughmdr.batch.unmet import Rare
 from roughmdr.scene.sections import Accuracy
 from roughmdr.variables import DONE
 
 
-class Choice(NamedTuple):
+class CellMethod(NamedTuple):
     """How a cell is computed."""
 
     key: str
@@ -29,10 +29,10 @@ class Choice(NamedTuple):
 class _Way(NamedTuple):
     """How a cell came to its choice."""
 
-    choice: Choice
-    draws: Choice | None = None
+    choice: CellMethod
+    draws: CellMethod | None = None
     """Those before its expected law."""
-    law: Choice | None = None
+    law: CellMethod | None = None
     """Its expected law, where that is not right enough."""
 
 
@@ -51,7 +51,7 @@ class Rounds:
         self._rare: dict[int, Rare] = {}
 
     @property
-    def choices(self) -> list[Choice]:
+    def choices(self) -> list[CellMethod]:
         """How each cell is computed, as far as that is known; cells that are the same are computed once."""
         return [self._ways[leader].choice for leader in self._leader]
 
@@ -60,15 +60,15 @@ class Rounds:
         """Of each cell the keys that it may come to have."""
         return [set(keys) for keys in zip(*self._keys.values(), strict=True)]
 
-    def key(self, stretch: Stretch) -> str:
+    def key(self, stretch: RunRange) -> str:
         """Of the cell of a stretch."""
         return self._keys[stretch.estimator][stretch.cell]
 
-    def begin(self) -> list[Stretch]:
+    def begin(self) -> list[RunRange]:
         """The runs of the first round."""
         return [self._stretch(cell) for cell in self._open]
 
-    def next(self, gathered: Gathered) -> list[Stretch]:
+    def next(self, gathered: Collector) -> list[RunRange]:
         """The runs of the next round, given what was gathered in those before; none where there are enough."""
         if self._accuracy is None:
             return []
@@ -78,13 +78,13 @@ class Rounds:
         self._open = [cell for cell, choice in wanting if choice.realizations > self._made.get(choice.key, 0)]
         return [self._stretch(cell) for cell in self._open]
 
-    def _stretch(self, cell: int) -> Stretch:
+    def _stretch(self, cell: int) -> RunRange:
         """What the choice of a cell needs beyond what was made."""
         key, estimator, count, *_ = self._ways[cell].choice
         first, self._made[key] = self._made.get(key, 0), count
-        return Stretch(cell, first, count, estimator)
+        return RunRange(cell, first, count, estimator)
 
-    def _first_choice(self, cell: int) -> Choice:
+    def _first_choice(self, cell: int) -> CellMethod:
         accuracy = self._accuracy
         estimator, *other = self._plan.cells[cell].scene.estimators
         if accuracy is None:
@@ -93,8 +93,8 @@ class Rounds:
             return self._choice(cell, "expected", 1)
         return self._choice(cell, estimator, self._few(accuracy))
 
-    def _choice(self, cell: int, estimator: str, count: int) -> Choice:
-        return Choice(self._keys[estimator][cell], estimator, count)
+    def _choice(self, cell: int, estimator: str, count: int) -> CellMethod:
+        return CellMethod(self._keys[estimator][cell], estimator, count)
 
     def _few(self, accuracy: Accuracy) -> int:
         """How many realisations to begin with."""
@@ -106,7 +106,7 @@ class Rounds:
         drawn, law = (seconds(own, estimator) for estimator in own.scene.estimators)
         return draws * drawn > law
 
-    def _after(self, cell: int, way: _Way, gathered: Gathered, accuracy: Accuracy) -> _Way:
+    def _after(self, cell: int, way: _Way, gathered: Collector, accuracy: Accuracy) -> _Way:
         """The same choice with its error where that is small enough or nothing is better; else a better one."""
         if way.choice.estimator != "expected":
             return self._after_draws(cell, way, gathered, accuracy)
@@ -119,7 +119,7 @@ class Rounds:
             return way._replace(choice=draws, law=law)
         return self._after_draws(cell, way._replace(choice=way.draws, law=law), gathered, accuracy)
 
-    def _after_draws(self, cell: int, way: _Way, gathered: Gathered, accuracy: Accuracy) -> _Way:
+    def _after_draws(self, cell: int, way: _Way, gathered: Collector, accuracy: Accuracy) -> _Way:
         draws = way.choice
         tally = gathered.watched(draws.key, draws.realizations)
         if tally is None:  # some failed

@@ -18,7 +18,7 @@ def held_bytes(plan: Plan, runs: int) -> int:
 
 
 def _steps(plan: Plan) -> int:
-    return int(plan.cells[0].route.separation.size)
+    return int(plan.cells[0].path.separation.size)
 
 
 def _values(plan: Plan, runs: int) -> int:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from roughmdr.batch.moments import Tally
+from roughmdr.batch.moments import Moments
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 
@@ -17,7 +17,7 @@ _GROWTH = 4  # times as many at most from one look to the next
 _FAR = 1e3  # times too large, an error asks for more than _GROWTH whatever it is
 
 
-def relative_error(tally: Tally, unmet: Floats | float = 0.0) -> float:
+def relative_error(tally: Moments, unmet: Floats | float = 0.0) -> float:
     """The largest standard error of the mean force [step] over its largest magnitude; inf without any force.
 
     ``unmet`` is the spread that asperities that were not met would add to that of a realisation [N], [step].

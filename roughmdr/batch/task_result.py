@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import Tally
+from roughmdr.batch.moments import Moments
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import DONE
 
 Integers = NDArray[np.int64]
 
 
-class Shard(NamedTuple):
+class TaskResult(NamedTuple):
     """A row for each realisation, or for some that were put together (``tally.py``); all arrays begin with the rows."""
 
     keys: tuple[str, ...]
@@ -51,17 +51,17 @@ class Shard(NamedTuple):
         """Whether every row is one realisation."""
         return bool((self.size == 1).all())
 
-    def of_row(self, row: int) -> Tally:
+    def of_row(self, row: int) -> Moments:
         """What a row says of all variables."""
         if self.size[row] == 1:
-            return Tally.of(self.values[row])
-        return Tally(int(self.size[row]), self.values[row], self.spread[row], self.least[row], self.greatest[row])
+            return Moments.of(self.values[row])
+        return Moments(int(self.size[row]), self.values[row], self.spread[row], self.least[row], self.greatest[row])
 
-    def rows(self, chosen: Integers) -> "Shard":
+    def rows(self, chosen: Integers) -> "TaskResult":
         """Some of the rows."""
         return self._replace(**{name: getattr(self, name)[chosen] for name in _BY_ROW})
 
-    def with_variables(self, names: Sequence[str]) -> "Shard | None":
+    def with_variables(self, names: Sequence[str]) -> "TaskResult | None":
         """The same in these variables; None where one is missing."""
         if tuple(names) == self.variables:
             return self
@@ -79,7 +79,7 @@ class Shard(NamedTuple):
         return buffer.getvalue()
 
     @classmethod
-    def loaded(cls, content: bytes) -> "Shard":
+    def loaded(cls, content: bytes) -> "TaskResult":
         """The shard that bytes hold; ValueError, KeyError or OSError where they hold none."""
         with np.load(io.BytesIO(content), allow_pickle=False) as held:
             arrays = {name: held[name] for name in cls._fields}
@@ -88,10 +88,10 @@ class Shard(NamedTuple):
         )
 
 
-_BY_ROW = tuple(name for name in Shard._fields if name not in ("keys", "variables"))
+_BY_ROW = tuple(name for name in TaskResult._fields if name not in ("keys", "variables"))
 
 
-class Row(NamedTuple):
+class RunDiagnostics(NamedTuple):
     """What there is to say of one realisation, beside its variables."""
 
     run_time: float
@@ -103,9 +103,9 @@ class Row(NamedTuple):
     status: int = DONE
     remark: str = ""
 
-    def joined(self, other: "Row") -> "Row":
+    def joined(self, other: "RunDiagnostics") -> "RunDiagnostics":
         """Of both together: the time of all, the worst of the rest, what was said first."""
-        return Row(
+        return RunDiagnostics(
             self.run_time + other.run_time,
             float(np.fmax(self.numerical_error, other.numerical_error)),  # NaN where a run failed
             min(self.tabor, other.tabor),
@@ -117,14 +117,14 @@ class Row(NamedTuple):
         )
 
     @classmethod
-    def of(cls, shard: Shard, row: int) -> "Row":
+    def of(cls, shard: TaskResult, row: int) -> "RunDiagnostics":
         """The row of a shard."""
         return cls(*(getattr(shard, name)[row].item() for name in cls._fields))
 
 
 def table_of(
-    keys: Sequence[str], variables: Sequence[str], rows: Sequence[tuple[int, int, Tally, Row]], steps: int
-) -> Shard:
+    keys: Sequence[str], variables: Sequence[str], rows: Sequence[tuple[int, int, Moments, RunDiagnostics]], steps: int
+) -> TaskResult:
     """The shard of rows: the cell, where the realisations begin, what they come to, and what else there is to say."""
     cell, first, tallies, beside = zip(*rows, strict=True) if rows else ((), (), (), ())
     size = np.array([tally.size for tally in tallies], dtype=np.int64)
@@ -137,9 +137,11 @@ def table_of(
 
     columns = {
         name: np.array([getattr(row, name) for row in beside], dtype=kind)
-        for name, kind in zip(Row._fields, (float, float, float, np.int64, float, float, np.int64, str), strict=True)
+        for name, kind in zip(
+            RunDiagnostics._fields, (float, float, float, np.int64, float, float, np.int64, str), strict=True
+        )
     }
-    return Shard(
+    return TaskResult(
         tuple(keys),
         tuple(variables),
         np.array(cell, dtype=np.int64),

@@ -28,7 +28,7 @@ class Rare:
 
     def __init__(self, cell: Cell) -> None:
         section = cell.scene.asperities
-        self._count, self._steps = section.expected_count, cell.route.separation.size
+        self._count, self._steps = section.expected_count, cell.path.separation.size
         try:
             found = [_squares(cell, stream) for stream in section.far_reaching]
         except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverse leads nowhere so far out:
@@ -72,10 +72,10 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     one = slice(number, number + 1)
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
-    scene, route = cell
+    scene, path = cell
     try:
         return compute(
-            alone, route, effective_modulus=scene.effective_modulus, adhesion=scene.law, variables=["force"]
+            alone, path, effective_modulus=scene.effective_modulus, adhesion=scene.adhesion_model, variables=["force"]
         ).variables["force"]
     except RoughmdrError:
-        return np.zeros(route.separation.size)
+        return np.zeros(path.separation.size)

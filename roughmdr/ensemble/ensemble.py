@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.asperity.validity import Extremes
+from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import shown
-from roughmdr.shapes import SHAPES, Common, Shape
+from roughmdr.shapes import SHAPES, Shape, SharedProfile
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
 
@@ -30,7 +30,7 @@ class Ensemble:
     nominal_area: float | None = None
     positions: dict[str, Floats] = field(default_factory=dict)
     attrs: dict[str, float | int | str] = field(default_factory=dict)
-    fixed: Common | None = None
+    fixed: SharedProfile | None = None
     """The one profile of all asperities, of a shape that has no plain numbers for parameters."""
     warnings: tuple[str, ...] = ()
     """What makes the asperities themselves doubtful, for the user."""
@@ -44,7 +44,7 @@ class Ensemble:
         nominal_area: float | None = None,
         positions: dict[str, Floats] | None = None,
         attrs: dict[str, float | int | str] | None = None,
-        fixed: Common | None = None,
+        fixed: SharedProfile | None = None,
     ) -> "Ensemble":
         """The ensemble in its one order: descending height, equal heights by their parameters."""
         order = np.argsort(-height, kind="stable")
@@ -59,18 +59,18 @@ class Ensemble:
         """Width [m], rise [m] and form [1] of each asperity; of a fixed profile the one form in a row."""
         if self.fixed is None:
             with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
-                return SHAPES[self.shape].stretch(self.parameters)
-        width, rise, form = self.fixed.stretched()
+                return SHAPES[self.shape].nondimensionalise(self.parameters)
+        width, rise, form = self.fixed.nondimensional()
         return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(form)[None]
 
-    def extremes(self, radius: Floats) -> Extremes:
+    def extremes(self, radius: Floats) -> ValidityLimits:
         """The most that contacts of these radii [m], 0 for none, come to."""
         if self.fixed is None:
             kind = SHAPES[self.shape]
             with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
                 slopes = kind.slopes(self.parameters, radius)
-            return Extremes.of(radius, slopes, kind.ends(self.parameters))
-        return Extremes.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
+            return ValidityLimits.of(radius, slopes, kind.ends(self.parameters))
+        return ValidityLimits.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
 
     def labelled(self) -> Labelled:
         """The arrays over ``asperity``, with their units."""
@@ -114,9 +114,9 @@ class Ensemble:
         return replace(found, warnings=tuple(doubts.splitlines()))
 
 
-def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], Common | None]:
+def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], SharedProfile | None]:
     """The parameters of each asperity, or the one profile of all."""
-    if issubclass(kind, Common):
+    if issubclass(kind, SharedProfile):
         columns = {name: _column(dataset, name, unit, kind.along) for name, unit in kind.units.items()}
         return {}, kind.of_columns(columns)
     spelling = kind.spelling({name for name in kind.units if name in dataset})

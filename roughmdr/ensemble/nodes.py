@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.ensemble.random.distributions import Distribution
-from roughmdr.ensemble.random.population import AsperityLaw, Population
+from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.numerics.arguments import Floats
 
 END = 10.0
@@ -189,7 +189,7 @@ class Nodes(NamedTuple):
     """[node]"""
 
 
-def nodes_of(law: AsperityLaw, rule: Rule) -> Nodes:
+def nodes_of(law: Populations, rule: Rule) -> Nodes:
     """Nodes at the scores of a rule, for each shape parameter that is not a constant."""
     found = [_of_population(law, population, rule) for population in law.populations]
     names = law.populations[0].parameters
@@ -200,7 +200,7 @@ def nodes_of(law: AsperityLaw, rule: Rule) -> Nodes:
     )
 
 
-def _of_population(law: AsperityLaw, population: Population, rule: Rule) -> Nodes:
+def _of_population(law: Populations, population: Population, rule: Rule) -> Nodes:
     drawn, order = population.drawn, rule.scores.size
     numbers = np.indices((order,) * len(drawn)).reshape(len(drawn), order ** len(drawn))
     share = population.share * np.prod(rule.weights[numbers], axis=0)

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.source import Source
-from roughmdr.ensemble.streams import Draws
+from roughmdr.ensemble.streams import Streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Length, Quantity
@@ -42,7 +42,7 @@ class PatchSource(Source):
         """Of the patch [m2]."""
         return self.patch * self.patch
 
-    def positions(self, draws: Draws, count: int) -> dict[str, Floats]:
+    def positions(self, draws: Streams, count: int) -> dict[str, Floats]:
         """x and y [m] of ``count`` asperities; OutOfRange where they cannot stand as far apart as asked."""
         from roughmdr.ensemble import placement
 

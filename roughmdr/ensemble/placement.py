@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.streams import POSITION, Draws
+from roughmdr.ensemble.streams import POSITION, Streams
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -16,7 +16,7 @@ _JAMMED = 0.547
 _TRIES = 2**10  # places tried for one point, on average, before the patch counts as full
 
 
-def at_random(draws: Draws, count: int, patch: float) -> tuple[Floats, Floats]:
+def at_random(draws: Streams, count: int, patch: float) -> tuple[Floats, Floats]:
     """x and y [m] of ``count`` points anywhere on a patch of side ``patch`` [m]."""
     x, y = draws(POSITION, 2 * count).reshape(count, 2).T * patch
     return x, y
@@ -34,7 +34,7 @@ def hexagonal(count: int, patch: float) -> tuple[Floats, Floats]:
     return (column + 0.25 + 0.5 * (row % 2)) * (patch / max(columns, 1)), (row + 0.5) * (patch / rows)
 
 
-def hard_core(draws: Draws, count: int, patch: float, distance: float) -> tuple[Floats, Floats]:
+def hard_core(draws: Streams, count: int, patch: float, distance: float) -> tuple[Floats, Floats]:
     """x and y [m] of ``count`` points at least ``distance`` [m] apart, also across the edges of the patch [m].
 
     Placed one after the other at random, each where there is room. OutOfRange where they do not fit.

@@ -9,7 +9,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Section
-from roughmdr.shapes import Common
+from roughmdr.shapes import SharedProfile
 
 
 class Source(Section):
@@ -26,7 +26,7 @@ class Source(Section):
         raise NotImplementedError
 
     @property
-    def fixed(self) -> Common | None:
+    def fixed(self) -> SharedProfile | None:
         """The one profile of all asperities, where the shape's parameters are no plain numbers."""
         return None
 

@@ -18,7 +18,7 @@ _SPREAD = 1000  # the stream of what scrambles the evenly spread numbers
 _BITS = 52
 SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
 
-Draws = Callable[[int, int], Floats]
+Streams = Callable[[int, int], Floats]
 """(stream, count) -> ``count`` numbers in (0, 1), never 0 or 1."""
 
 
@@ -31,12 +31,12 @@ def uniforms(seed: int, realization: int, stream: int, count: int) -> Floats:
     return (leading + 0.5) * 2.0**-_BITS
 
 
-def independent(seed: int, realization: int) -> Draws:
+def independent(seed: int, realization: int) -> Streams:
     """Streams of independent numbers."""
     return lambda stream, count: uniforms(seed, realization, stream, count)
 
 
-def spread(seed: int, realization: int, streams: tuple[int, ...]) -> Draws:
+def spread(seed: int, realization: int, streams: tuple[int, ...]) -> Streams:
     """The given streams as the coordinates of points that fill the cube evenly; all other streams are independent.
 
     A Sobol sequence, scrambled anew in each realization (A. B. Owen, J. Complexity 14 (1998) 466).

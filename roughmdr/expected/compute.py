@@ -9,16 +9,16 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from roughmdr.aggregate import LoadSeparation, Route
+from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.load_separation import ROW
-from roughmdr.aggregate.tabor import range_of
+from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import DOUBTFUL, FIRST_ORDER, converge
 from roughmdr.expected.kinks import Parted
-from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of, undecided_of
+from roughmdr.expected.node import Node, Problem, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
@@ -29,21 +29,21 @@ _HEAVY = 0.05  # index of a tail: of lighter ones all is borne by their lowest h
 
 @np.errstate(all="ignore")  # what no float can hold is refused at the end
 def compute(
-    source: Source, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    source: Source, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
     """The expected law of the asperities of a source along a route; E* [Pa].
 
     ``numerical_error`` is how far the force may be off by what the integrals leave out, and by how much it changes with
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
     """
-    names, steps = list(variables), route.separation.size
+    names, steps = list(variables), path.separation.size
     rows, dissipating = _rows(names), any(ROW[name] == DISSIPATED for name in names)
     coarse = _stand_ins(source, source.nodes(Rule.smooth(FIRST_ORDER)))
-    reach = range_of(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
-    asked = Asked(source, route, effective_modulus, adhesion.settled(reach.jkr_error), rows)
+    reach = jkr_validity(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
+    asked = Problem(source, path, effective_modulus, adhesion.resolved(reach.jkr_error), rows)
     parted = Parted.of(asked)
     rule, nodes, doubt, doubt_of_others = converge(asked, parted, dissipating=dissipating)
-    total, products = totals_of(nodes, route.separation, rows, list(range(steps)))
+    total, products = totals_of(nodes, path.separation, rows, list(range(steps)))
     if dissipating:
         total[DISSIPATED] = dissipated_of(nodes, steps)
     if parted is not None:
@@ -54,7 +54,7 @@ def compute(
     count = source.expected_count
     total *= count
     largest = float(np.abs(total[FORCE]).max())
-    closest = float(route.separation.min())
+    closest = float(path.separation.min())
     total[ERROR] += (doubt + _KERNEL_ERROR) * largest + count * _beyond(nodes, closest)
     if total[ERROR].max() == math.inf:
         raise OutOfRange(
@@ -74,13 +74,13 @@ def compute(
 
 @np.errstate(all="ignore")  # nothing is made of its numbers
 def prepare(
-    source: Source, route: Route, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    source: Source, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> None:
     """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
     rows = _rows(variables)
     for model in adhesion.candidates:
-        asked = Asked(source, route, effective_modulus, adhesion._replace(model=model), rows)
-        totals_of(set_up(asked, Rule.smooth(1)), route.separation, rows, [0])
+        asked = Problem(source, path, effective_modulus, adhesion._replace(model=model), rows)
+        totals_of(set_up(asked, Rule.smooth(1)), path.separation, rows, [0])
 
 
 def _rows(variables: Iterable[str]) -> tuple[int, ...]:

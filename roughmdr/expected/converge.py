@@ -15,7 +15,7 @@ from roughmdr.aggregate.totals import STIFFNESS
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.kinks import Parted
-from roughmdr.expected.node import Asked, Node, dissipated_of, set_up, totals_of
+from roughmdr.expected.node import Node, Problem, dissipated_of, set_up, totals_of
 from roughmdr.expected.panels import AGREE, Curves, halve_panels
 from roughmdr.numerics.arguments import Floats
 
@@ -47,12 +47,12 @@ class Converged(NamedTuple):
     """Likewise of what else is asked for, but for the stiffness, which runs off where contacts let go."""
 
 
-def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Converged:
+def converge(asked: Problem, parted: Parted | None, *, dissipating: bool) -> Converged:
     """The rule for all that is asked for; RoughmdrError where a contact is not representable.
 
     Steps at which the rule is parted do not count.
     """
-    separation = asked.route.separation
+    separation = asked.path.separation
     steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
     if not asked.hysteretic:
         steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
@@ -86,7 +86,7 @@ def converge(asked: Asked, parted: Parted | None, *, dissipating: bool) -> Conve
     return Converged(rule, nodes, float(doubts[0]), float(doubts[1:].max(initial=0.0)))
 
 
-def _smooth(asked: Asked, curves: Curves) -> Converged:
+def _smooth(asked: Problem, curves: Curves) -> Converged:
     """Gauss's rule for smooth functions."""
     rule = Rule.smooth(FIRST_ORDER)
     nodes = set_up(asked, rule)

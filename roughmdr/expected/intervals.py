@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate import Route
+from roughmdr.aggregate import LoadingPath
 from roughmdr.asperity.contact import Contact
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.profile.layout import ONSET
@@ -31,17 +31,17 @@ class Intervals(NamedTuple):
         return cls(step, before, rung, columns[3], columns[4])
 
 
-def remember(contact: Contact, route: Route) -> tuple[Intervals, Intervals]:
+def remember(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
     """Where summits are in contact at each step, and where they jumped on the way to it."""
     if contact.law.branched:
-        return _on_branches(contact, route.separation)
-    return _on_one(contact, route)
+        return _on_branches(contact, path.separation)
+    return _on_one(contact, path)
 
 
-def _on_one(contact: Contact, route: Route) -> tuple[Intervals, Intervals]:
+def _on_one(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
     """Without branches all summits above one height are in contact: that of the lowest step of the staircase."""
     depth = contact.depth[0] if contact.law.adhesive else 0.0
-    memory = route.memory
+    memory = path.memory
     each = np.maximum(memory.bottom, memory.top - depth)
     lowest = np.minimum.reduceat(each, memory.first[:-1])
     steps = np.arange(lowest.size)
@@ -55,7 +55,7 @@ def _on_one(contact: Contact, route: Route) -> tuple[Intervals, Intervals]:
 
 def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
     """With branches: the heights are cut wherever a jump begins, and each interval moves as one."""
-    row, depth, reach = contact.form, contact.depth[0], contact.adhesion.reach
+    row, depth, reach = contact.form, contact.depth[0], contact.adhesion.range
     law_rung = contact.law.rung
     if law_rung is None:
         raise AssertionError("a branched law has rungs")

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import Route
+from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import LAST, Rule
 from roughmdr.errors import RoughmdrError
-from roughmdr.expected.node import Asked, contacts_of, dissipated_of, set_up, totals_of
+from roughmdr.expected.node import Problem, contacts_of, dissipated_of, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
 
 _MOST = 32  # steps; where more would be parted it takes longer than it is worth
@@ -25,12 +25,12 @@ _ORDERS = (40, 56)  # on each side of a cut; the second tells how right the firs
 class Parted(NamedTuple):
     """Where the rule over the one parameter that is drawn has to be parted."""
 
-    asked: Asked
+    asked: Problem
     cuts: dict[int, list[float]]
     """The scores, for each step that needs it."""
 
     @classmethod
-    def of(cls, asked: Asked) -> "Parted | None":
+    def of(cls, asked: Problem) -> "Parted | None":
         """None where there is nothing to part, or no single parameter to part it by, or too many steps need it.
 
         Nor is the rule parted where it would leave out parameters that are felt, or that no contact can have.
@@ -44,7 +44,7 @@ class Parted(NamedTuple):
             return None
         heights = dict.fromkeys(asked.source.nodes(scan).heights)
         ends = [end for own in heights for end in (own.low, own.high)] if len(heights) == 1 else []
-        kinks = _kinks(asked.route, ends, float(depths.min()), float(depths.max()))
+        kinks = _kinks(asked.path, ends, float(depths.min()), float(depths.max()))
         if len(kinks) > _MOST:
             return None
         cuts = {
@@ -55,7 +55,7 @@ class Parted(NamedTuple):
 
     def total(self, step: int, *, dissipating: bool) -> Floats:
         """[row] of ``totals`` at a step, for an asperity."""
-        separation = self.asked.route.separation
+        separation = self.asked.path.separation
         found = []
         for order in _ORDERS:
             nodes = set_up(self.asked, Rule.between(self.cuts[step], order))
@@ -77,17 +77,17 @@ def _far(source: Source) -> bool:
     return False
 
 
-def _depths(asked: Asked, scores: Floats) -> Floats:
+def _depths(asked: Problem, scores: Floats) -> Floats:
     """How far below first touch [m] the contacts at some scores let go."""
     nodes = asked.source.nodes(Rule(scores, np.ones_like(scores)))
     return np.array([contact.depth[0] for contact in contacts_of(asked, nodes)])
 
 
-def _kinks(route: Route, ends: list[float], least: float, most: float) -> dict[int, list[float]]:
+def _kinks(path: LoadingPath, ends: list[float], least: float, most: float) -> dict[int, list[float]]:
     """The depths between ``least`` and ``most`` at which contacts part in what they remember, for each such step."""
-    first, bottom, top = route.memory
+    first, bottom, top = path.memory
     found = {}
-    for step in range(route.separation.size):
+    for step in range(path.separation.size):
         pairs = slice(first[step], first[step + 1])
         gaps = np.unique(top[pairs, None] - np.concatenate([bottom[pairs], ends]))
         if (kinks := gaps[(gaps > least) & (gaps < most)]).size:
@@ -95,7 +95,7 @@ def _kinks(route: Route, ends: list[float], least: float, most: float) -> dict[i
     return found
 
 
-def _scores(asked: Asked, scores: Floats, depths: Floats, kink: float) -> list[float]:
+def _scores(asked: Problem, scores: Floats, depths: Floats, kink: float) -> list[float]:
     """The scores at which the depth passes ``kink``, one in each interval of the scan where it does."""
     from scipy.optimize import brentq
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import Route
+from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble import Source
@@ -14,30 +14,30 @@ from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.intervals import Intervals, lost, remember
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Law
+from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 
 
-class Asked(NamedTuple):
+class Problem(NamedTuple):
     """What the expected law is asked of."""
 
     source: Source
-    route: Route
+    path: LoadingPath
     effective_modulus: float
     adhesion: Adhesion
     rows: tuple[int, ...]
     """As in ``totals``; the first is FORCE."""
 
     @property
-    def law(self) -> Law:
+    def law(self) -> Kernels:
         """The law of one asperity."""
         return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].law
 
     @property
     def hysteretic(self) -> bool:
         """Whether contacts remember the path: where they stick, and the flat rises."""
-        return self.adhesion.work > 0.0 and bool((np.diff(self.route.separation) > 0.0).any())
+        return self.adhesion.work > 0.0 and bool((np.diff(self.path.separation) > 0.0).any())
 
 
 class Node(NamedTuple):
@@ -53,7 +53,7 @@ class Node(NamedTuple):
     """Likewise."""
 
 
-def contacts_of(asked: Asked, nodes: Nodes) -> list[Contact]:
+def contacts_of(asked: Problem, nodes: Nodes) -> list[Contact]:
     """The contact of each node; OutOfRange where one is not representable."""
     shape = SHAPES[asked.source.shape_name]
     columns = {name: column.tolist() for name, column in nodes.parameters.items()}
@@ -64,14 +64,14 @@ def contacts_of(asked: Asked, nodes: Nodes) -> list[Contact]:
     return [Contact.of(one, asked.effective_modulus, asked.adhesion) for one in shapes]
 
 
-def set_up(asked: Asked, rule: Rule) -> list[Node]:
+def set_up(asked: Problem, rule: Rule) -> list[Node]:
     """The nodes at the scores of a rule."""
     nodes = asked.source.nodes(rule)
     contacts = contacts_of(asked, nodes)
     tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
-    curves = curves_of(contacts, nodes.heights, float(asked.route.separation.min()), asked.rows)
+    curves = curves_of(contacts, nodes.heights, float(asked.path.separation.min()), asked.rows)
     return [
-        Node(float(share), contact, curve, tables[heights], *remember(contact, asked.route.seen_from(heights.origin)))
+        Node(float(share), contact, curve, tables[heights], *remember(contact, asked.path.seen_from(heights.origin)))
         for share, contact, curve, heights in zip(nodes.share, contacts, curves, nodes.heights, strict=True)
     ]
 

@@ -11,10 +11,10 @@ from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.fields import integrals
 from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
-from roughmdr.kernels.adhesion import Adhesion, stretch_at
+from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats, check_values
-from roughmdr.shapes import Curved, FlatPunch, Shape
+from roughmdr.shapes import FlatPunch, ProfileShape, Shape
 from roughmdr.shapes.power_profiles import profile_of
 
 _ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding
@@ -79,14 +79,14 @@ class HalfSpace(NamedTuple):
             a, delta = float(radius[0]), float(depth[0])
         if not (math.isfinite(a) and math.isfinite(delta)):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
-        width, rise, form = shape.stretched()
+        width, rise, form = shape.nondimensional()
         row = np.concatenate([np.atleast_1d(np.asarray(form, dtype=np.float64)), [0.0]])
         if isinstance(shape, FlatPunch):
             stretch = delta
         else:
             profile_of(type(shape)).ready(row)
-            stretch = -stretch_at(a, contact.effective_modulus, adhesion.work)
-        state = float(t[0]) if isinstance(shape, Curved) else a / width
+            stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
+        state = float(t[0]) if isinstance(shape, ProfileShape) else a / width
         return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, row)
 
     @property
@@ -188,4 +188,4 @@ class HalfSpace(NamedTuple):
     def warnings(self) -> list[str]:
         """What is doubtful about the contact."""
         radius = np.array([self.radius])
-        return validity.Extremes.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings
+        return validity.ValidityLimits.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings

@@ -30,12 +30,12 @@ class Adhesion(NamedTuple):
         return self.work > 0.0 and self.model == "dugdale"
 
     @property
-    def reach(self) -> float:
+    def range(self) -> float:
         """From how far away the surfaces attract each other, w/sigma0 [m]; 0 where the law has no range."""
         return self.work / self.strength if self.cohesive else 0.0
 
     @property
-    def known(self) -> bool:
+    def tabor_known(self) -> bool:
         """Whether the Tabor number can be told."""
         return self.work > 0.0 and self.strength < math.inf
 
@@ -44,7 +44,7 @@ class Adhesion(NamedTuple):
         """The laws that may be taken."""
         return ("jkr", "dugdale") if self.model == "auto" else (self.model,)
 
-    def settled(self, jkr_error: float) -> "Adhesion":
+    def resolved(self, jkr_error: float) -> "Adhesion":
         """The law itself: of "auto" the cheapest that is right enough where JKR is off by ``jkr_error``."""
         if self.model != "auto":
             return self
@@ -64,11 +64,11 @@ class Adhesion(NamedTuple):
         return cls(work, model, math.inf if strength is None else check_number("strength", strength, "Pa"))
 
 
-def stretch_at(radius: float, effective_modulus: float, work: float) -> float:
+def release_stretch(radius: float, effective_modulus: float, work: float) -> float:
     """dl [m]: how far the edge of a contact of this radius [m] is stretched in JKR, sqrt(2 pi a w/E*) (H 44)."""
     return math.sqrt(2.0 * math.pi * radius) * math.sqrt(work) / math.sqrt(effective_modulus)
 
 
 def tabor_number(radius: float, effective_modulus: float, work: float, strength: float) -> float:
     """The Tabor number [1] of a contact that lets go at this radius [m] in JKR: dl(radius) strength/(pi^(2/3) work)."""
-    return float(stretch_at(radius, effective_modulus, work) / work * strength / math.pi ** (2.0 / 3.0))
+    return float(release_stretch(radius, effective_modulus, work) / work * strength / math.pi ** (2.0 / 3.0))

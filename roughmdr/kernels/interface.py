@@ -12,12 +12,12 @@ from roughmdr.kernels.closed import jkr_cone, jkr_paraboloid, jkr_power, scalar
 from roughmdr.kernels.dugdale import flat_punch as dugdale_flat
 from roughmdr.kernels.profile import build as curved
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import SHAPES, Curved, FlatPunch, Shape
+from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape, Shape
 
 Kernel = Callable[..., float]
 
 
-class Law(NamedTuple):
+class Kernels(NamedTuple):
     """The kernels of one asperity: scalars in, scalars out, reduced by the natural scales of the contact.
 
     ``x`` is the distance to the onset of contact over the natural depth (without adhesion delta/depth, with it
@@ -96,35 +96,35 @@ class Law(NamedTuple):
         return {**kernels, "_cohesive": self.cohesive_radius is not None}
 
 
-def _scalar(name: str, module: ModuleType, adhesive: bool, suffix: str = "", **others: Callable[..., Any]) -> Law:
+def _scalar(name: str, module: ModuleType, adhesive: bool, suffix: str = "", **others: Callable[..., Any]) -> Kernels:
     """The law of a module's kernels, those that end in ``suffix`` before others, and of ``others``."""
     kernels = {"prepare": scalar.prepare, "own": scalar.own, "mixed": scalar.mixed, **_of_module(module, suffix)}
-    return Law(name, adhesive, curved=False, branched=False, **{**kernels, **others})
+    return Kernels(name, adhesive, curved=False, branched=False, **{**kernels, **others})
 
 
 def _of_module(module: ModuleType, suffix: str = "") -> dict[str, Any]:
-    """A module's kernels, by the names that ``Law`` has for them."""
-    found = {name: getattr(module, name + suffix, None) or getattr(module, name, None) for name in Law._fields}
+    """A module's kernels, by the names that ``Kernels`` has for them."""
+    found = {name: getattr(module, name + suffix, None) or getattr(module, name, None) for name in Kernels._fields}
     return {name: kernel for name, kernel in found.items() if kernel is not None and not isinstance(kernel, ModuleType)}
 
 
-def _curved(shape: type[Curved], adhesive: bool) -> Law:
+def _curved(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """The law of a shape that is known by its profile."""
     built = curved.build(shape, cohesive=False)
-    kernels = {name: built[name] for name in Law._fields if name in built}
+    kernels = {name: built[name] for name in Kernels._fields if name in built}
     name = f"{'jkr' if adhesive else 'elastic'}_{shape.name}"
     branched = adhesive and shape.branched()
-    return Law(name, adhesive, curved=True, branched=branched, **kernels)
+    return Kernels(name, adhesive, curved=True, branched=branched, **kernels)
 
 
-def _dugdale(shape: type[Shape]) -> Law:
+def _dugdale(shape: type[Shape]) -> Kernels:
     """The law of a shape under adhesion of finite range."""
     if shape is FlatPunch:
         kernels = _of_module(dugdale_flat)
     else:
         built = curved.build(shape, cohesive=True)
-        kernels = {name: built[name] for name in Law._fields if name in built}
-    return Law(f"dugdale_{shape.name}", adhesive=True, curved=True, branched=True, **kernels)
+        kernels = {name: built[name] for name in Kernels._fields if name in built}
+    return Kernels(f"dugdale_{shape.name}", adhesive=True, curved=True, branched=True, **kernels)
 
 
 _ELASTIC = {
@@ -141,7 +141,7 @@ _JKR = {
 }
 
 
-def choose(shape: str, adhesion: Adhesion, form: Floats) -> Law:
+def choose(shape: str, adhesion: Adhesion, form: Floats) -> Kernels:
     """The law of asperities of one shape; ``form`` as from ``Shape.stretch``.
 
     OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
@@ -154,6 +154,6 @@ def choose(shape: str, adhesion: Adhesion, form: Floats) -> Law:
             raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
     if adhesion.cohesive:
         return _dugdale(kind)
-    if issubclass(kind, Curved):
+    if issubclass(kind, ProfileShape):
         return _curved(kind, adhesion.work > 0.0)
     return (_JKR if adhesion.work > 0.0 else _ELASTIC)[shape]

@@ -11,22 +11,22 @@ from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES
 
 
-class Route(NamedTuple):
+class LoadingPath(NamedTuple):
     """A path of the flat, with what the contacts remember of it."""
 
     separation: Floats
     memory: Staircase
 
     @classmethod
-    def along(cls, way_in: Floats, *, unload: bool, adhesive: bool) -> "Route":
+    def along(cls, way_in: Floats, *, unload: bool, adhesive: bool) -> "LoadingPath":
         """The way in [m] and, with ``unload``, the way back with the turning point repeated."""
         separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
-    def seen_from(self, origin: float) -> "Route":
+    def seen_from(self, origin: float) -> "LoadingPath":
         """The path with separations and memory as differences to ``origin`` [m]."""
         first, bottom, top = self.memory
-        return Route(self.separation - origin, Staircase(first, bottom - origin, top - origin))
+        return LoadingPath(self.separation - origin, Staircase(first, bottom - origin, top - origin))
 
     def branch(self) -> Array:
         """The branch of each step."""

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.batch.plan import Cell, Plan, law_of, make_plan
+from roughmdr.batch.plan import Cell, Plan, make_plan, simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.curves import EXPECTED, Line, separations
-from roughmdr.report.named import LAWS, NamedLaw
+from roughmdr.report.named import LAWS, TheoryCurve
 from roughmdr.scene import read
 from roughmdr.schema.wording import in_cells
 from roughmdr.storage.labelled import Labelled
@@ -41,7 +41,7 @@ def plan_of(file: Path, result: Labelled) -> Plan:
     SceneError where that scene cannot be read again, StoreError where the result has other cells or other separations.
     """
     plan, held = make_plan(read(file)), separations(result)
-    asked = np.array([cell.route.separation for cell in plan.cells])
+    asked = np.array([cell.path.separation for cell in plan.cells])
     if held.size != asked.size or np.abs(held.reshape(asked.shape) - asked).max() > _SAME * np.abs(asked).max():
         raise StoreError(f"{file}: its separations are not those of the scene that it holds")
     return plan
@@ -74,17 +74,17 @@ def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Fl
             remarks.append(f"not drawn: {error}")
             continue
         remarks.append(f"drawn{note and f'; {note}'}")
-        lines += [Line(law, name, number, cell.route.separation, values) for name, values in said.items()]
+        lines += [Line(law, name, number, cell.path.separation, values) for name, values in said.items()]
     return Comparison(lines, in_cells(remarks, len(plan.cells)))
 
 
 def _expected(cell: Cell, names: list[str]) -> dict[str, Floats]:
     if reason := cell.scene.asperities.unfit_for("expected"):
         raise RoughmdrError(reason)
-    return law_of(cell.scene, cell.route, 0, names, "expected").variables
+    return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
 
 
-def _saying(law: NamedLaw, names: list[str]) -> Callable[[Cell], dict[str, Floats]]:
+def _saying(law: TheoryCurve, names: list[str]) -> Callable[[Cell], dict[str, Floats]]:
     """What a law says of a cell; RoughmdrError where it says nothing."""
     spoken_of = [name for name in names if name in _SAID_AS and _SAID_AS[name][0] in law.variables]
 

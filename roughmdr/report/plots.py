@@ -13,7 +13,7 @@ from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_i
 from roughmdr.schema.wording import harmless
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import replacing
-from roughmdr.variables import LAW
+from roughmdr.variables import CURVE_VARIABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,7 +75,7 @@ def format_of(path: Path) -> str:
 
 
 def _draw(ax: "Axes", name: str, drawn: list[Curve], labels: list[str], said: _Said) -> None:
-    units = LAW[name].units
+    units = CURVE_VARIABLES[name].units
     h_scale, h_prefix = _scale(np.concatenate([curve.separation for curve in drawn]))
     shown = _shown(name, drawn)
     scale, prefix = (1.0, "") if units == "1" else _scale(shown, power=2 if units == "m2" else 1)

@@ -29,7 +29,7 @@ _MOST_CELLS = 30
 
 def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
     """What a run will do, how long it will take and how much memory."""
-    steps, output = plan.cells[0].route.separation.size, plan.scene.output
+    steps, output = plan.cells[0].path.separation.size, plan.scene.output
     lines = [
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in all"),

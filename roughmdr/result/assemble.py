@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.asperity.validity import Extremes
-from roughmdr.batch.collect import Found
+from roughmdr.asperity.validity import ValidityLimits
+from roughmdr.batch.collect import CollectedResults
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.rounds import Choice
+from roughmdr.batch.rounds import CellMethod
 from roughmdr.result.statistics import summarise
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.store import provenance
-from roughmdr.variables import ADHESION_CODES, DONE, FAILED, LAW, RUN, STATUSES
+from roughmdr.variables import ADHESION_CODES, CURVE_VARIABLES, DONE, FAILED, RUN_VARIABLES, STATUSES
 
 _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
@@ -27,7 +27,9 @@ _MOSTLY_MET = 0.9  # of an error, what the draws alone show, where nothing need 
 _ALWAYS = ("run_time", "numerical_error", "edge_slope", "profile_extent")
 
 
-def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Sequence[str], command: str) -> Labelled:
+def assemble(
+    plan: Plan, choices: Sequence[CellMethod], found: CollectedResults, variables: Sequence[str], command: str
+) -> Labelled:
     """The result, from all that was found in ``variables``; ``choices`` tell how each cell was computed."""
     scene = plan.scene
     swept = tuple(plan.sizes)
@@ -35,7 +37,7 @@ def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Seq
     cells = tuple(plan.sizes.values())
     dims = swept if statistics else (*swept, "realization")
     shape = cells if statistics else (*cells, found.values.shape[1])
-    snaps = np.array([cell.route.snaps() for cell in plan.cells])
+    snaps = np.array([cell.path.snaps() for cell in plan.cells])
     data: dict[str, Array] = {}
     for name in scene.output.variables:
         row = list(variables).index(name)
@@ -44,26 +46,31 @@ def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Seq
             over = summarise(name, (*dims, "step"), of_variable, sem, snaps)
             data |= {key: array._replace(values=array.values.reshape(*cells, -1)) for key, array in over.items()}
         else:
-            data[name] = Array((*dims, "step"), found.values[:, :, row].reshape(*shape, -1), LAW[name].attrs)
+            data[name] = Array(
+                (*dims, "step"), found.values[:, :, row].reshape(*shape, -1), CURVE_VARIABLES[name].attrs
+            )
     if statistics or scene.accuracy is not None:
         count = np.array([choice.realizations for choice in choices], dtype=float).reshape(cells)
-        data["realization_count"] = Array(swept, count, RUN["realization_count"].attrs)
+        data["realization_count"] = Array(swept, count, RUN_VARIABLES["realization_count"].attrs)
     done = found.beside["status"] == DONE
     extremes = {"edge_slope": found.beside["slope"], "profile_extent": found.beside["extent"]}
     beside = found.beside | {name: np.where(done, values, np.nan) for name, values in extremes.items()}
     for name in _ALWAYS:
-        data[name] = Array(dims, beside[name].reshape(shape), RUN[name].attrs)
+        data[name] = Array(dims, beside[name].reshape(shape), RUN_VARIABLES[name].attrs)
     data["status"] = _flags("status", dims, beside["status"].reshape(shape), STATUSES)
-    if any(cell.scene.law.known for cell in plan.cells):
+    if any(cell.scene.adhesion_model.tabor_known for cell in plan.cells):
         tabor = np.where(np.isfinite(beside["tabor"]), beside["tabor"], np.nan)
-        data["tabor_number"] = Array(dims, tabor.reshape(shape), RUN["tabor_number"].attrs)
+        data["tabor_number"] = Array(dims, tabor.reshape(shape), RUN_VARIABLES["tabor_number"].attrs)
         data["adhesion_law"] = _flags("adhesion_law", dims, beside["law"].reshape(shape), ADHESION_CODES)
     # Texts are coordinates, so that one can reckon with the rest.
     keys = np.array([choice.key for choice in choices], dtype=object).reshape(cells)
-    coordinates = {**plan.coordinates(), "cell_key": Array(swept, keys, {"long_name": RUN["cell_key"].long_name})}
+    coordinates = {
+        **plan.coordinates(),
+        "cell_key": Array(swept, keys, {"long_name": RUN_VARIABLES["cell_key"].long_name}),
+    }
     if (beside["remark"] != "").any():
         remarks = beside["remark"].reshape(shape)
-        coordinates["remark"] = Array(dims, remarks, {"long_name": RUN["remark"].long_name})
+        coordinates["remark"] = Array(dims, remarks, {"long_name": RUN_VARIABLES["remark"].long_name})
     attrs: dict[str, Any] = {
         "references": _REFERENCES,
         "seed": scene.seed,
@@ -85,10 +92,10 @@ def assemble(plan: Plan, choices: Sequence[Choice], found: Found, variables: Seq
 
 def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tuple[str, ...]) -> Array:
     flags = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
-    return Array(dims, values.astype(np.int8), {"long_name": RUN[name].long_name, **flags})
+    return Array(dims, values.astype(np.int8), {"long_name": RUN_VARIABLES[name].long_name, **flags})
 
 
-def _warnings(plan: Plan, found: Found) -> list[str]:
+def _warnings(plan: Plan, found: CollectedResults) -> list[str]:
     """Warn of numbers that are doubtful: for the scene, for the ensembles, or for the most that contacts come to."""
     beside = found.beside
     done = beside["status"] == DONE
@@ -97,20 +104,23 @@ def _warnings(plan: Plan, found: Found) -> list[str]:
         return said
     jkr = done & (beside["law"] == ADHESION_CODES.index("jkr"))
     tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
-    return [*said, *Extremes(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings]
+    return [
+        *said,
+        *ValidityLimits(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings,
+    ]
 
 
-def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[Choice]) -> dict[str, Array]:
+def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[CellMethod]) -> dict[str, Array]:
     """Which error each cell came to, and by which method."""
     error = np.array([choice.error for choice in choices]).reshape(cells)
     method = np.array([_ESTIMATORS.index(choice.estimator) for choice in choices]).reshape(cells)
     return {
-        "accuracy_reached": Array(swept, error, RUN["accuracy_reached"].attrs),
+        "accuracy_reached": Array(swept, error, RUN_VARIABLES["accuracy_reached"].attrs),
         "accuracy_method": _flags("accuracy_method", swept, method, _ESTIMATORS),
     }
 
 
-def _in_words(accuracy: Accuracy, choices: Sequence[Choice]) -> str:
+def _in_words(accuracy: Accuracy, choices: Sequence[CellMethod]) -> str:
     """The error asked for, what it took, and where the expected law was used."""
     known = [choice for choice in choices if not math.isnan(choice.error)]
     drawn = [choice.realizations for choice in known if choice.estimator != "expected"]
@@ -125,7 +135,7 @@ def _in_words(accuracy: Accuracy, choices: Sequence[Choice]) -> str:
     return "; ".join(parts)
 
 
-def _missed(accuracy: Accuracy, choices: Sequence[Choice], failed: NDArray[np.bool_]) -> list[str]:
+def _missed(accuracy: Accuracy, choices: Sequence[CellMethod], failed: NDArray[np.bool_]) -> list[str]:
     """What to say of cells that did not reach the error; those that failed say so themselves."""
     said = []
     missed = [choice for choice in choices if choice.error > accuracy.relative]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import BESIDE, DONE, LAW
+from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE
 
 
 def held_variables(result: Labelled) -> list[str]:
@@ -16,7 +16,7 @@ def held_variables(result: Labelled) -> list[str]:
     return [
         name.removesuffix("_mean")
         for name, array in result.variables.items()
-        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW
+        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in CURVE_VARIABLES
     ]
 
 
@@ -86,7 +86,7 @@ def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     names = list(swept_sizes(result))
     parts = []
     for name, array in result.coordinates.items():
-        if name not in BESIDE and array.dims and set(array.dims) <= set(names):
+        if name not in AUXILIARY_COORDINATES and array.dims and set(array.dims) <= set(names):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
             unit = array.attrs.get("units", "1")
             shown = f"{value:.6g}" if array.values.dtype.kind == "f" else str(value)

@@ -5,17 +5,17 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import Tallies, Tally
+from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import LAW
+from roughmdr.variables import CURVE_VARIABLES
 
 _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"
 
 
-def tally_of(values: Floats) -> Tally:
+def tally_of(values: Floats) -> Moments:
     """Of the realisations along the first axis."""
-    tallies = Tallies()
+    tallies = MomentTree()
     tallies.add_all(0, values)
     whole = tallies.total(len(values))
     if whole is None:
@@ -24,14 +24,14 @@ def tally_of(values: Floats) -> Tally:
 
 
 def summarise(
-    name: str, dims: tuple[str, ...], tally: Tally, sem: Floats, snaps: NDArray[np.bool_]
+    name: str, dims: tuple[str, ...], tally: Moments, sem: Floats, snaps: NDArray[np.bool_]
 ) -> dict[str, Array]:
     """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable over dims, from its tally and standard error.
 
     ``snaps`` [..., step] says where contacts may be at the point of letting go. NaN stands for a standard error that is
     not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
     """
-    variable = LAW[name]
+    variable = CURVE_VARIABLES[name]
     remark = {}
     if name == "stiffness" and snaps.any():
         sem[snaps] = math.nan

@@ -14,11 +14,11 @@ from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Event
 from typing import Any, Protocol
 
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import Task, compute, failed
 from roughmdr.errors import RoughmdrError
 
-Sink = Callable[[Shard], None]
+Sink = Callable[[TaskResult], None]
 """Takes a finished shard, in the thread that called."""
 
 _AT_ONCE = 64  # tasks a worker that dask is given at a time: it ends a lot before it begins the next one
@@ -40,7 +40,7 @@ class Pool(Protocol):
         ...
 
 
-class Here:
+class Serial:
     """The thread that calls, for what is over before dask is loaded."""
 
     workers = 1
@@ -159,7 +159,7 @@ def _over_processes(
     """Compute some of the tasks that are waiting; those that are done wait no longer."""
     from dask.multiprocessing import get
 
-    def done(number: int, shard: Shard) -> None:
+    def done(number: int, shard: TaskResult) -> None:
         del waiting[number]
         if stop.is_set():
             halt.set()
@@ -171,8 +171,8 @@ def _over_processes(
 
 def _over_dask(
     get: Callable[..., Any],
-    functions: Mapping[int, Callable[[], Shard | None]],
-    done: Callable[[int, Shard], None],
+    functions: Mapping[int, Callable[[], TaskResult | None]],
+    done: Callable[[int, TaskResult], None],
     **options: Any,
 ) -> None:
     """Call functions over one of dask's schedulers; what each returns goes to ``done`` as soon as it is there."""
@@ -181,7 +181,7 @@ def _over_dask(
     keys = {f"shard-{len(functions) - place:09d}": number for place, number in enumerate(functions)}
     graph = {key: (functions[number],) for key, number in keys.items()}
 
-    def posttask(key: str, result: Shard | None, *_: object) -> None:
+    def posttask(key: str, result: TaskResult | None, *_: object) -> None:
         if result is not None:
             done(keys[key], result)
 
@@ -196,7 +196,7 @@ def _lots(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
         yield lot
 
 
-def _unless(stop: threading.Event, task: Task) -> Shard | None:
+def _unless(stop: threading.Event, task: Task) -> TaskResult | None:
     return None if stop.is_set() else compute(task)
 
 
@@ -220,5 +220,5 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _unless_halted(task: Task) -> Shard | None:
+def _unless_halted(task: Task) -> TaskResult | None:
     return None if _halt is not None and _halt.is_set() else compute(task)

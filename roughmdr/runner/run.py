@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.batch.collect import Gathered
+from roughmdr.batch.collect import Collector
 from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import Plan, make_plan
-from roughmdr.batch.resume.find import check_no_less, earlier, is_finished, use_again
+from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.reusable import Held
-from roughmdr.batch.resume.writer import Keeper, keeping
+from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.writer import CheckpointWriter, checkpointing
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.sizes import held_bytes
-from roughmdr.batch.task_result import Shard
-from roughmdr.batch.tasks import Part, Stretch, Task, cut, first_error
+from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.tasks import RunRange, Task, TaskPart, first_error, split_into_tasks
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.cluster import Cluster, Tls, connected
-from roughmdr.runner.local import Here, Pool, Processes, Threads
+from roughmdr.runner.local import Pool, Processes, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
-from roughmdr.runner.signals import Interrupted, stoppable
+from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_room, left_in_words
@@ -90,16 +90,16 @@ def execute(
         check_writable(target, plan.scene.inputs)
         target = destination(target)
     rounds = Rounds(plan)
-    with keeping(target) as keeper:
-        held = Held(rounds.keys, computed(plan), tallied=plan.scene.output.keep == "statistics")
+    with checkpointing(target) as keeper:
+        held = ReusableRows(rounds.keys, computed(plan), tallied=plan.scene.output.keep == "statistics")
         old: Labelled | None = None
         if target is not None and keeper is not None and resume:
-            old = None if keeper.may_replace(plan.scene.toml) else earlier(target)
+            old = None if keeper.may_replace(plan.scene.toml) else find_previous(target)
             if old is not None and is_finished(old, plan, rounds.keys):
                 if keeper.parts is not None and keeper.parts.scene in ("", old.attrs["scene"]):
                     keeper.parts.remove()  # the run that wrote the result was killed before it could
                 return old
-            use_again(target, old, keeper.parts, plan, held)
+            reuse(target, old, keeper.parts, plan, held)
         _check_memory(plan, rounds)
         try:
             with _pool(scheduler, workers, tls) as pool:
@@ -155,18 +155,25 @@ class _Batch:
     """A plan while it is carried out."""
 
     def __init__(
-        self, plan: Plan, rounds: Rounds, keeper: Keeper | None, held: Held, pool: Pool, *, quiet: bool
+        self,
+        plan: Plan,
+        rounds: Rounds,
+        keeper: CheckpointWriter | None,
+        held: ReusableRows,
+        pool: Pool,
+        *,
+        quiet: bool,
     ) -> None:
         self._plan, self._rounds, self._keeper, self._held, self._pool = plan, rounds, keeper, held, pool
         self._quiet, self._variables = quiet, computed(plan)
         self._tallied = plan.scene.output.keep == "statistics"
         watched = None if plan.scene.accuracy is None else _FORCE
-        steps = plan.cells[0].route.separation.size
-        self._gathered = Gathered(self._variables, steps, tallied=self._tallied, watched=watched)
+        steps = plan.cells[0].path.separation.size
+        self._gathered = Collector(self._variables, steps, tallied=self._tallied, watched=watched)
 
     def run(self, command: str, old: Labelled | None) -> Labelled:
         """All rounds; the result, whose history goes on from that of the ``old`` one that it may take the place of."""
-        with stoppable(self._begun, self._kept) as stop:
+        with interruptible(self._begun, self._kept) as stop:
             with progress(self._plan.scene.title, quiet=self._quiet) as display:
                 stretches = self._rounds.begin()
                 while stretches:
@@ -201,7 +208,7 @@ class _Batch:
     def _begun(self) -> bool:
         return self._keeper is not None and self._keeper.begun
 
-    def _round(self, stretches: list[Stretch], display: Progress, stop: threading.Event) -> None:
+    def _round(self, stretches: list[RunRange], display: Progress, stop: threading.Event) -> None:
         """Take what is at hand, compute what is missing."""
         picks: list[tuple[int, int]] = []
         missing = [
@@ -212,7 +219,7 @@ class _Batch:
         for shard in self._held.shards(picks):
             self._gathered.add(shard)
             display.use_again(int(shard.size.sum()))
-        tasks = cut(self._plan, missing, self._variables, self._pool.workers)
+        tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers)
         if not tasks:
             return
         display.expect(sum(last - first for _, first, last, _ in missing))
@@ -220,9 +227,9 @@ class _Batch:
             prepare_all(self._plan, missing)
         if len(tasks) > 1 and self._keeper is not None:
             self._keeper.begin(self._plan.scene.toml)
-        pool = Here() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
+        pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
-        def sink(shard: Shard) -> None:
+        def sink(shard: TaskResult) -> None:
             if self._keeper is not None:
                 self._keeper.put(shard)
             self._gathered.add(shard)
@@ -234,6 +241,6 @@ class _Batch:
                 self._keeper.flush()
             raise Interrupted(f"interrupted; {self._kept()}")
 
-    def _task(self, group: list[Stretch]) -> Task:
-        parts = (Part(self._rounds.key(stretch), self._plan.cells[stretch.cell], *stretch[1:]) for stretch in group)
+    def _task(self, group: list[RunRange]) -> Task:
+        parts = (TaskPart(self._rounds.key(stretch), self._plan.cells[stretch.cell], *stretch[1:]) for stretch in group)
         return Task(tuple(parts), self._variables, self._tallied, versions())

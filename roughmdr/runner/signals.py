@@ -15,7 +15,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 @contextmanager
-def stoppable(begun: Callable[[], bool], kept: Callable[[], str]) -> Iterator[threading.Event]:
+def interruptible(begun: Callable[[], bool], kept: Callable[[], str]) -> Iterator[threading.Event]:
     """An event that is set when the batch is to stop; ``kept`` says what is safe then.
 
     Unless what is finished is kept, it ends at once.

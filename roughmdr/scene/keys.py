@@ -5,7 +5,7 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator
 
-from roughmdr.ensemble.random.reader import Drawn
+from roughmdr.ensemble.random.reader import DistributionReader
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.quantities import Reader
@@ -36,7 +36,7 @@ def readers(sections: list[type[BaseModel]], table: Any, at: str = "") -> Iterat
             reader = _reader((*field.metadata, field.annotation))
             if reader is not None:
                 yield key, reader
-            if isinstance(reader, Drawn):
+            if isinstance(reader, DistributionReader):
                 yield f"{key}.distribution", Name()
                 yield from ((f"{key}.{inner}", reader.parameter(inner)) for inner in reader.parameters(value))
 

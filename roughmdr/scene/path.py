@@ -51,7 +51,7 @@ class Range(Section):
     steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
 
 
-class Path(Section):
+class FlatPath(Section):
     """[path]: a range or a list of separations; ``unload`` appends the way back."""
 
     separation: Annotated[

@@ -19,11 +19,11 @@ from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import check_number
-from roughmdr.scene.path import Path
+from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
 from roughmdr.schema.units import effective_modulus
-from roughmdr.variables import DEFAULT, LAW
+from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _ERROR = 0.01  # of the largest force, by which "auto" may be off unless the scene says otherwise
@@ -81,7 +81,7 @@ class AdhesionSection(Section):
         return self
 
     @property
-    def law(self) -> Adhesion:
+    def adhesion_model(self) -> Adhesion:
         """What is asked for."""
         strength = self.strength
         if self.range is not None and self.work > 0.0:
@@ -91,8 +91,8 @@ class AdhesionSection(Section):
 
 
 def _known_variable(value: object) -> object:
-    if not isinstance(value, str) or value not in LAW:
-        raise RoughmdrError(f"no such variable; there are {', '.join(LAW)}")
+    if not isinstance(value, str) or value not in CURVE_VARIABLES:
+        raise RoughmdrError(f"no such variable; there are {', '.join(CURVE_VARIABLES)}")
     return value
 
 
@@ -100,7 +100,7 @@ class Output(Section):
     """[output]: what the result holds."""
 
     variables: Annotated[list[Annotated[str, BeforeValidator(_known_variable)]], Field(min_length=1)] = Field(
-        default=list(DEFAULT)
+        default=list(DEFAULT_VARIABLES)
     )
     keep: Literal["curves", "statistics"] = "curves"
 
@@ -150,7 +150,7 @@ class Scene(Section):
     counter: Body | None = None
     adhesion: AdhesionSection | None = None
     asperities: Asperities
-    path: Path
+    path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
     accuracy: Accuracy | None = None
@@ -260,9 +260,9 @@ class Scene(Section):
         return 0.0 if self.adhesion is None else self.adhesion.work
 
     @property
-    def law(self) -> Adhesion:
+    def adhesion_model(self) -> Adhesion:
         """The law of adhesion that is asked for."""
-        return Adhesion() if self.adhesion is None else self.adhesion.law
+        return Adhesion() if self.adhesion is None else self.adhesion.adhesion_model
 
     @property
     def file(self) -> FilePath | None:

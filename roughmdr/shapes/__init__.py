@@ -1,6 +1,6 @@
 """The profiles of single asperities. A new shape is one file here and one line in ``SHAPES``."""
 
-from roughmdr.shapes.base import Common, Curved, Shape
+from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile
 from roughmdr.shapes.capped import CappedParaboloid
 from roughmdr.shapes.flat_punch import FlatPunch
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
@@ -31,16 +31,16 @@ SHAPES: dict[str, type[Shape]] = {
 __all__ = [
     "SHAPES",
     "CappedParaboloid",
-    "Common",
     "Cone",
-    "Curved",
     "FlatPunch",
     "Paraboloid",
     "PowerLaw",
     "PowerSeries",
+    "ProfileShape",
     "RoundedCone",
     "RoundedPunch",
     "Shape",
+    "SharedProfile",
     "Sphere",
     "Tabulated",
     "TruncatedCone",

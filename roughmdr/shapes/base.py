@@ -66,7 +66,7 @@ class Shape(ABC):
 
     @classmethod
     @abstractmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """Width [m], rise [m] and form [1] of asperities whose parameters come as equally long arrays."""
 
     @classmethod
@@ -81,7 +81,7 @@ class Shape(ABC):
 
     @classmethod
     def least_exponent(cls, form: Floats) -> float:
-        """The least n among the tips f ~ r^n of asperities, from the third column of ``stretch``."""
+        """The least n among the tips f ~ r^n of asperities, from the third column of ``nondimensionalise``."""
         return math.inf
 
     @classmethod
@@ -95,11 +95,11 @@ class Shape(ABC):
         values = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in values.items() if value is not None}
 
-    def stretched(self) -> tuple[float, float, Any]:
+    def nondimensional(self) -> tuple[float, float, Any]:
         """Width [m], rise [m] and form [1] of this one."""
         parameters = {name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()}
         with np.errstate(all="ignore"):  # what no float can hold is refused where a contact is looked for
-            columns = self.stretch(parameters)
+            columns = self.nondimensionalise(parameters)
         width, rise, form = (float(column[0]) for column in columns)
         return width, rise, form
 
@@ -128,7 +128,7 @@ class Shape(ABC):
                 )
 
 
-class Curved(Shape):
+class ProfileShape(Shape):
     """A shape whose MDR profile comes from the functions of its ``Profile``, compiled when they are first used."""
 
     profile: ClassVar[Profile]
@@ -152,7 +152,7 @@ class Curved(Shape):
         lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
         with mp.workdps(40 + int(4.0 * lost)):
             exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
-            width, rise, form = (column[0] for column in self.stretch(exact))
+            width, rise, form = (column[0] for column in self.nondimensionalise(exact))
             a, _, g, _ = remake(self.profile.curve)(mp.mpf(t), [form])
             return width * a, rise * g, width * rise * remake(self.profile.push)(mp.mpf(t), [form])
 
@@ -160,14 +160,14 @@ class Curved(Shape):
         return self._along(radii("x", x), lambda curve, swept, t, form: curve(t, form)[2])
 
     def G(self, a: ArrayLike) -> Floats:
-        width = self.stretched()[0]
+        width = self.nondimensional()[0]
         return width * self._along(radii("a", a), lambda curve, swept, t, form: swept(t, form))
 
     def _along(self, radius: Floats, value: Callable[..., float]) -> Floats:
         """The rise times ``value`` at each contact radius; 0 on the flat."""
         from roughmdr.numerics.jit import compiled  # it alone needs the compiler
 
-        width, rise, form = self.stretched()
+        width, rise, form = self.nondimensional()
         curve, swept, place = (compiled(part) for part in (self.profile.curve, self.profile.swept, self.profile.place))
         numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
         begin = width if self.profile.flat else 0.0
@@ -179,7 +179,7 @@ class Curved(Shape):
         return results
 
 
-class Common(Curved):
+class SharedProfile(ProfileShape):
     """A curved shape that all asperities of an ensemble share, since its parameters are no plain numbers."""
 
     common: ClassVar[bool] = True
@@ -193,7 +193,7 @@ class Common(Curved):
 
     @classmethod
     @abstractmethod
-    def of_columns(cls, columns: dict[str, Floats]) -> "Common":
+    def of_columns(cls, columns: dict[str, Floats]) -> "SharedProfile":
         """The shape of such arrays; ShapeError as the shape itself."""
 
     @classmethod
@@ -201,8 +201,8 @@ class Common(Curved):
         return cls(**parameters).df(r)
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
-        return cls(**parameters).stretched()
+    def nondimensionalise(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
+        return cls(**parameters).nondimensional()
 
     @property
     def end(self) -> float:

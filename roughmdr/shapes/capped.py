@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
-from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 
 
@@ -81,7 +81,7 @@ def _at_the_blend(low: float, high: float, form: Form) -> bool:
 
 
 @dataclass(frozen=True)
-class CappedParaboloid(Curved):
+class CappedParaboloid(ProfileShape):
     """f' = r/R1 to the blend radius b, then r/R2: radius R2, cap_radius R1 >= R2, all [m].
 
     ShapeError unless all are > 0, and for R1 < R2: there the contact would not be a disc.
@@ -128,7 +128,7 @@ class CappedParaboloid(Curved):
         return parameters["radius"]
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, b^2/R2 and R2/R1."""
         blend, radius = parameters["blend_radius"], parameters["radius"]
         return blend, blend * (blend / radius), radius / parameters["cap_radius"]

@@ -34,7 +34,7 @@ class FlatPunch(Shape):
         return np.zeros_like(r)
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, b and nothing."""
         radius = parameters["radius"]
         return radius, radius, np.zeros_like(radius)

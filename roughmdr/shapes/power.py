@@ -14,21 +14,21 @@ class _Power(Shape):
     """The power laws' f, g and G, from width, rise and exponent."""
 
     def f(self, r: ArrayLike) -> Floats:
-        width, rise, exponent = self.stretched()
+        width, rise, exponent = self.nondimensional()
         return np.asarray(rise * (radii("r", r) / width) ** exponent)
 
     def g(self, x: ArrayLike) -> Floats:
         from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
 
-        return np.asarray(kappa(self.stretched()[2]) * self.f(radii("x", x)))
+        return np.asarray(kappa(self.nondimensional()[2]) * self.f(radii("x", x)))
 
     def G(self, a: ArrayLike) -> Floats:
         radius = radii("a", a)
-        return np.asarray(radius * self.g(radius) / (self.stretched()[2] + 1.0))
+        return np.asarray(radius * self.g(radius) / (self.nondimensional()[2] + 1.0))
 
     @classmethod
     def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        width, rise, exponent = cls.stretch(parameters)
+        width, rise, exponent = cls.nondimensionalise(parameters)
         with np.errstate(divide="ignore"):  # below n = 1 the tip is infinitely steep
             return np.asarray(exponent * rise / width * (r / width) ** (exponent - 1.0))
 
@@ -49,7 +49,7 @@ class Paraboloid(_Power):
         return parameters["radius"]
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """R, R/2 and 2."""
         radius = parameters["radius"]
         return radius, 0.5 * radius, np.full_like(radius, 2.0)
@@ -66,7 +66,7 @@ class Cone(_Power):
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope",),)
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """One metre, S and 1."""
         slope = parameters["slope"]
         return np.ones_like(slope), slope, np.ones_like(slope)
@@ -97,7 +97,7 @@ class PowerLaw(_Power):
         return float(np.min(form, initial=np.inf))
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """l, H and n; with a coefficient, l is one metre."""
         exponent = parameters["exponent"]
         if "coefficient" in parameters:

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from roughmdr.shapes import Shape
-from roughmdr.shapes.base import Curved
+from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.kappa import kappa
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.profile import Form, Profile
@@ -107,4 +107,4 @@ _POWERS: dict[type[Shape], Profile] = {
 
 def profile_of(shape: type[Shape]) -> Profile:
     """The profile of a shape that is not a flat punch."""
-    return shape.profile if issubclass(shape, Curved) else _POWERS[shape]
+    return shape.profile if issubclass(shape, ProfileShape) else _POWERS[shape]

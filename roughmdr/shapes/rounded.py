@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
-from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 from roughmdr.shapes.special import less_atan, less_atan_and_cube
 
@@ -59,7 +59,7 @@ def _at_the_blend(low: float, high: float, form: Form) -> bool:
 
 
 @dataclass(frozen=True)
-class RoundedCone(Curved):
+class RoundedCone(ProfileShape):
     """f = S r^2/(2 b) to the blend radius b [m], then a cone of slope S [1]. ShapeError unless both are > 0."""
 
     slope: float
@@ -90,7 +90,7 @@ class RoundedCone(Curved):
         return np.asarray(parameters["slope"] * np.minimum(r / parameters["blend_radius"], 1.0))
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, S b and nothing."""
         blend = parameters["blend_radius"]
         return blend, parameters["slope"] * blend, np.zeros_like(blend)
@@ -128,7 +128,7 @@ def _punch_place(radius: float, width: float, form: Form) -> float:
 
 
 @dataclass(frozen=True)
-class RoundedPunch(Curved):
+class RoundedPunch(ProfileShape):
     """A flat of radius b [m], then f = (r - b)^2/(2 R), R [m] the radius of its edge. ShapeError unless both > 0."""
 
     flat_radius: float
@@ -163,7 +163,7 @@ class RoundedPunch(Curved):
         return np.asarray(parameters["flat_radius"] + parameters["edge_radius"])
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, b^2/R and nothing."""
         flat = parameters["flat_radius"]
         return flat, flat * (flat / parameters["edge_radius"]), np.zeros_like(flat)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import Common, check_one, check_positive, radii
+from roughmdr.shapes.base import SharedProfile, check_one, check_positive, radii
 from roughmdr.shapes.profile import Form, Profile
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
@@ -76,7 +76,7 @@ def _kink(low: float, high: float, form: Form) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class PowerSeries(Common):
+class PowerSeries(SharedProfile):
     """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c the number that it is in metres, [m^(1-n)].
 
     ShapeError unless there is a term and all n and c are finite and > 0.
@@ -140,7 +140,7 @@ class PowerSeries(Common):
         with np.errstate(all="ignore"):  # below n = 1 the tip is infinitely steep
             return self._summed({n: n * c for n, c in self.terms.items()}, radii("r", r), 1.0)
 
-    def stretched(self) -> tuple[float, float, Any]:
+    def nondimensional(self) -> tuple[float, float, Any]:
         """The width where the first and the last term are equal, their rise there, and the reduced terms."""
         from roughmdr.numerics import double_double as extended  # these alone need the compiler
         from roughmdr.shapes.kappa import precise_kappa
@@ -167,7 +167,7 @@ class PowerSeries(Common):
         from mpmath import mp
 
         with mp.workdps(40):
-            a = mp.mpf(self.stretched()[0]) * mp.mpf(t)
+            a = mp.mpf(self.nondimensional()[0]) * mp.mpf(t)
             g = push = mp.mpf(0)
             for exponent, coefficient in self.terms.items():
                 n = mp.mpf(exponent)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import expm1, tanh
-from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Form, Profile
 from roughmdr.shapes.special import beyond_tanh
 
@@ -49,7 +49,7 @@ def _place(radius: float, width: float, form: Form) -> float:
 
 
 @dataclass(frozen=True)
-class Sphere(Curved):
+class Sphere(ProfileShape):
     """f = R - sqrt(R^2 - r^2), r <= R [m]; its contact radius stays below R. ShapeError unless R > 0."""
 
     radius: float
@@ -74,7 +74,7 @@ class Sphere(Curved):
         return parameters["radius"]
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """R, R and nothing."""
         radius = parameters["radius"]
         return radius, radius, np.zeros_like(radius)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
-from roughmdr.shapes.base import Curved, radii
+from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
 from roughmdr.shapes.special import less_atan
 
@@ -52,7 +52,7 @@ def _cone_dip(index: int, form: Form) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class TruncatedCone(Curved):
+class TruncatedCone(ProfileShape):
     """A flat of radius b [m], then f = S (r - b) with slope S [1]. ShapeError unless both are > 0."""
 
     slope: float
@@ -84,7 +84,7 @@ class TruncatedCone(Curved):
         return np.where(r > parameters["flat_radius"], parameters["slope"], 0.0)
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, S b and nothing."""
         flat = parameters["flat_radius"]
         return flat, parameters["slope"] * flat, np.zeros_like(flat)
@@ -113,7 +113,7 @@ def _paraboloid_dip(index: int, form: Form) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class TruncatedParaboloid(Curved):
+class TruncatedParaboloid(ProfileShape):
     """A flat of radius b [m], then f = (r^2 - b^2)/(2 R), R [m]. ShapeError unless both are > 0."""
 
     radius: float
@@ -150,7 +150,7 @@ class TruncatedParaboloid(Curved):
         return parameters["radius"]
 
     @classmethod
-    def stretch(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
         """b, b^2/R and nothing."""
         flat = parameters["flat_radius"]
         return flat, flat * (flat / parameters["radius"]), np.zeros_like(flat)

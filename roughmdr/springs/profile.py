@@ -9,7 +9,7 @@ import numpy as np
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import Curved, FlatPunch, Shape, Sphere
+from roughmdr.shapes import FlatPunch, ProfileShape, Shape, Sphere
 from roughmdr.springs.reduced import reduced
 
 _FALL = 1e-12  # of the highest f, by which a function may fall: rounding
@@ -56,18 +56,18 @@ class OfShape:
     @property
     def flat(self) -> float:
         """The radius of the flat at the tip."""
-        edged = isinstance(self.shape, Curved) and self.shape.profile.flat
-        return self.shape.stretched()[0] if edged or isinstance(self.shape, FlatPunch) else 0.0
+        edged = isinstance(self.shape, ProfileShape) and self.shape.profile.flat
+        return self.shape.nondimensional()[0] if edged or isinstance(self.shape, FlatPunch) else 0.0
 
     @property
     def start(self) -> float:
         """Where the profile ends or, where it never does, its width."""
-        return self.shape.end if math.isfinite(self.shape.end) else self.shape.stretched()[0]
+        return self.shape.end if math.isfinite(self.shape.end) else self.shape.nondimensional()[0]
 
     @property
     def least_exponent(self) -> float:
         """That of power laws and their series."""
-        return self.shape.least_exponent(np.array([self.shape.stretched()[2]]))
+        return self.shape.least_exponent(np.array([self.shape.nondimensional()[2]]))
 
     def row(self, spacing: float, count: int) -> Floats:
         """g of the shape."""

@@ -19,7 +19,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.storage.files import check_ordinary
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_room
-from roughmdr.variables import BESIDE
+from roughmdr.variables import AUXILIARY_COORDINATES
 
 if TYPE_CHECKING:
     import netCDF4
@@ -68,7 +68,7 @@ def _opened(path: Path) -> "Iterator[netCDF4.Dataset]":
 
 
 def _arrays(file: "netCDF4.Dataset") -> Labelled:
-    arrays, beside = {}, {*file.dimensions, *BESIDE}
+    arrays, beside = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
     for name, variable in file.variables.items():
         attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
         others = attrs.pop("coordinates", "")

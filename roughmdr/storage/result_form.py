@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import BESIDE, DONE, FAILED, LAW, NOT_RUN
+from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN
 
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _MORE_TEXTS = ("accuracy", "warnings", "versions", "checksum")
@@ -83,7 +83,7 @@ def _arrays(data: Labelled) -> Iterator[str]:
         yield f"separation lies over {', '.join(separation.dims)}; it must lie over swept keys and step"
     yield from _misfit("separation", separation, (*separation.dims[:-1], "step"), "f")
     for name, array in data.coordinates.items():
-        if name not in BESIDE and not _is_text(array.attrs.get("units", "")):
+        if name not in AUXILIARY_COORDINATES and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"
 
 
@@ -98,7 +98,7 @@ def _pairs(data: Labelled) -> Iterator[str]:
 def _curves(data: Labelled) -> Iterator[str]:
     """Of the variables: one at least, over all runs and steps, with all its statistics if with one."""
     over, found = (*data.variables["status"].dims, "step"), False
-    for name in LAW:
+    for name in CURVE_VARIABLES:
         several = [f"{name}_{what}" for what in _STATISTICS]
         missing = [part for part in several if part not in data.variables]
         if missing and several[0] not in missing:
@@ -108,7 +108,7 @@ def _curves(data: Labelled) -> Iterator[str]:
                 found = True
                 yield from _misfit(part, data.variables[part], over, "f")
     if not found:
-        yield f"it holds none of {', '.join(LAW)}"
+        yield f"it holds none of {', '.join(CURVE_VARIABLES)}"
 
 
 def _numbers(data: Labelled) -> Iterator[str]:
@@ -122,7 +122,7 @@ def _numbers(data: Labelled) -> Iterator[str]:
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
     done = status == DONE
-    for name in ("run_time", "numerical_error", *LAW, *(f"{name}_mean" for name in LAW)):
+    for name in ("run_time", "numerical_error", *CURVE_VARIABLES, *(f"{name}_mean" for name in CURVE_VARIABLES)):
         if name in data.variables and not np.isfinite(data.variables[name].values[done]).all():
             yield f"{name} is not finite, and status says that it was computed"
     if "realization_count" in data.variables:

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
-from roughmdr.batch.resume.reusable import Held
-from roughmdr.batch.resume.store import Parts
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.store import ShardStore
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import read
-from roughmdr.variables import DONE, FAILED, LAW
+from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED
 
 _MOST_CHANGES = 5
 _SHAPING = ("title", "output", "batch", "accuracy", "sweep")
@@ -23,7 +23,7 @@ _SHAPING = ("title", "output", "batch", "accuracy", "sweep")
 _WAYS_OUT = "give another output, or --fresh (resume=False) to replace it"
 
 
-def earlier(target: Path) -> Labelled | None:
+def find_previous(target: Path) -> Labelled | None:
     """The result at ``target``, None where nothing is; StoreError where it is none, or was changed later."""
     if not target.exists():
         return None
@@ -50,7 +50,7 @@ def _keys(old: Labelled) -> list[str]:
     return old.coordinates["cell_key"].values.ravel().tolist() if "cell_key" in old.coordinates else []
 
 
-def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Plan, held: Held) -> None:
+def reuse(target: Path, old: Labelled | None, parts: ShardStore | None, plan: Plan, held: ReusableRows) -> None:
     """Add what there is of earlier runs to ``held``: the shards that were kept, and the curves of a result.
 
     StoreError, saying what changed, where there are results and none of them is of use.
@@ -79,7 +79,7 @@ def use_again(target: Path, old: Labelled | None, parts: Parts | None, plan: Pla
         )
 
 
-def _what_would_go(old: Labelled, plan: Plan, held: Held) -> str:
+def _what_would_go(old: Labelled, plan: Plan, held: ReusableRows) -> str:
     """Name the part of a result that would be lost: cells, variables, curves or realisations; empty for nothing."""
     strangers = sum(not held.wants([key]) for key in _keys(old))
     if strangers:
@@ -113,7 +113,7 @@ def check_no_less(target: Path, old: Labelled, new: Labelled, keys: Sequence[set
 
 def _variables(old: Labelled) -> list[str]:
     """The variables of a law that a result holds, as curves or as statistics."""
-    return [name for name in LAW if name in old.variables or f"{name}_mean" in old.variables]
+    return [name for name in CURVE_VARIABLES if name in old.variables or f"{name}_mean" in old.variables]
 
 
 def _counts(result: Labelled) -> dict[str, int]:
@@ -139,12 +139,12 @@ def _what_changed(scene: str, made_with: str, plan: Plan) -> list[str]:
     return changed or ["a file that it reads holds something else" if reads else "its cells are others"]
 
 
-def _shard_of(old: Labelled) -> Shard:
+def _shard_of(old: Labelled) -> TaskResult:
     """The curves of a result that were computed, as a shard."""
     status = old.variables["status"]
     cells = status.values.reshape(-1, status.values.shape[-1])
     cell, first = np.nonzero(cells == DONE)
-    names = [name for name in LAW if name in old.variables]
+    names = [name for name in CURVE_VARIABLES if name in old.variables]
 
     def column(name: str, default: float) -> np.ndarray:
         if name not in old.variables:
@@ -153,7 +153,7 @@ def _shard_of(old: Labelled) -> Shard:
 
     tabor = column("tabor_number", np.inf)
     nothing = np.empty((cell.size, 0, 0))
-    return Shard(
+    return TaskResult(
         keys=tuple(_keys(old)),
         variables=tuple(names),
         cell=cell,

@@ -40,14 +40,14 @@ def keys_of(plan: Plan, estimator: str) -> list[str]:
 
 
 def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
-    scene, route = cell
+    scene, path = cell
     if id(scene.asperities) not in known:
         known[id(scene.asperities)] = _asperities(scene.asperities)
     parts = (
         scene.effective_modulus,
-        tuple(scene.law),
+        tuple(scene.adhesion_model),
         known[id(scene.asperities)],
-        _path(route.separation.tobytes()),
+        _path(path.separation.tobytes()),
         scene.seed,
         estimator,
         versions(),

@@ -4,17 +4,17 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 
 
-class Held:
+class ReusableRows:
     """By the keys of the cells. Only where the rows are is in memory; they are read again when they are taken."""
 
     def __init__(self, keys: Sequence[set[str]], variables: Sequence[str], *, tallied: bool) -> None:
         self._wanted = set[str]().union(*keys)
         self._variables, self._tallied = variables, tallied
-        self._reads: list[Callable[[], Shard | None]] = []
+        self._reads: list[Callable[[], TaskResult | None]] = []
         self._rows: dict[str, list[tuple[int, int, int, int]]] = {}
         self._more = False
 
@@ -22,7 +22,7 @@ class Held:
         """Whether a cell of one of the keys is among those that are wanted."""
         return not self._wanted.isdisjoint(keys)
 
-    def add(self, read: Callable[[], Shard | None]) -> bool | None:
+    def add(self, read: Callable[[], TaskResult | None]) -> bool | None:
         """Note the contents of a shard; whether it has cells that are wanted, in whatever variables.
 
         None where it cannot be read.
@@ -49,7 +49,7 @@ class Held:
             first - less > count for key, count in chosen for first, less, *_ in self._rows.get(key, ())
         )
 
-    def _fitting(self, shard: Shard) -> Shard | None:
+    def _fitting(self, shard: TaskResult) -> TaskResult | None:
         return shard.with_variables(self._variables) if self._tallied or shard.single else None
 
     def take(self, key: str, first: int, last: int, picks: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
@@ -63,7 +63,7 @@ class Held:
         if first < last:
             yield first, last
 
-    def shards(self, picks: Sequence[tuple[int, int]]) -> Iterator[Shard]:
+    def shards(self, picks: Sequence[tuple[int, int]]) -> Iterator[TaskResult]:
         """The rows that were taken, as shards."""
         by_shard: dict[int, list[int]] = {}
         for number, row in picks:

@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.store import cannot_be_written, sync_folder
 
@@ -32,7 +32,7 @@ _OWN = re.compile(rf"{re.escape(_MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\
 """Names of all that is written to the folder beside the lock: nothing else is taken away."""
 
 
-def parts_of(target: Path) -> Path:
+def store_folder(target: Path) -> Path:
     """The folder of the parts of a result."""
     return target.with_name(f"{target.name}.parts")
 
@@ -42,7 +42,7 @@ def _ordinary(path: Path) -> bool:
     return stat.S_ISREG(path.lstat().st_mode)
 
 
-class Parts:
+class ShardStore:
     """The folder, while this process holds its lock."""
 
     def __init__(self, folder: Path) -> None:
@@ -66,20 +66,20 @@ class Parts:
             self.scene, self.versions, self.replaces = scene, versions, replaces
             self._append({"scene": scene, "versions": versions, "replaces": replaces})
 
-    def held(self) -> Iterator[Callable[[], Shard | None]]:
+    def held(self) -> Iterator[Callable[[], TaskResult | None]]:
         """What reads each of the shards; it gives None for one that is not whole."""
         return (partial(self._shard, line["file"], line["sha256"]) for line in self._lines)
 
-    def _shard(self, file: str, sha256: str) -> Shard | None:
+    def _shard(self, file: str, sha256: str) -> TaskResult | None:
         path = self.folder / file
         with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
             if _ordinary(path):
                 content = path.read_bytes()
                 if hashlib.sha256(content).hexdigest() == sha256:
-                    return Shard.loaded(content)
+                    return TaskResult.loaded(content)
         return None
 
-    def put(self, shard: Shard) -> None:
+    def put(self, shard: TaskResult) -> None:
         """Keep a shard for good; StoreError where that fails, and then nothing is changed."""
         content, file = shard.dumped(), _SHARD.format(self._next)
         temporary = self.folder / f"{file}.tmp"
@@ -148,12 +148,12 @@ class Parts:
 
 
 @contextmanager
-def locked_parts(target: Path) -> Iterator[Parts]:
+def locked_store(target: Path) -> Iterator[ShardStore]:
     """The parts of a result, made if need be, for this process alone; StoreError where another one holds them.
 
     The folder goes away at the end if nothing is kept in it.
     """
-    folder = parts_of(target)
+    folder = store_folder(target)
     with cannot_be_written(folder):
         lock = _locked(folder, target)
     try:
@@ -161,7 +161,7 @@ def locked_parts(target: Path) -> Iterator[Parts]:
             for path in folder.glob("*.tmp"):
                 if _OWN.fullmatch(path.name):
                     path.unlink()
-            parts = Parts(folder)
+            parts = ShardStore(folder)
         try:
             yield parts
         finally:

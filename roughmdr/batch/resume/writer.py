@@ -8,8 +8,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.store import Parts, locked_parts, parts_of
-from roughmdr.batch.task_result import Shard
+from roughmdr.batch.resume.store import ShardStore, locked_store, store_folder
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import write
@@ -19,17 +19,17 @@ _LONGEST = 255  # bytes of a file's name
 _WAITING = 16  # shards that may wait to be written before the batch does
 
 
-class Keeper:
+class CheckpointWriter:
     """Of one output; it holds the lock of its parts, unless its name is too long for them."""
 
     def __init__(self, target: Path, stack: ExitStack) -> None:
         self.target, self._stack = target, stack
-        self.parts: Parts | None = None
+        self.parts: ShardStore | None = None
         self._cleared, self._replaces = False, ""
         self._writer: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
-        if len(os.fsencode(parts_of(target).name)) <= _LONGEST:
-            self.parts = stack.enter_context(locked_parts(target))
+        if len(os.fsencode(store_folder(target).name)) <= _LONGEST:
+            self.parts = stack.enter_context(locked_store(target))
 
     def clear(self) -> None:
         """Take away what an earlier run kept; the file that is at the output now, if one is, may be replaced."""
@@ -51,7 +51,7 @@ class Keeper:
             return False
         return self.parts.scene == scene and self.parts.replaces == _mark(self.target)
 
-    def put(self, shard: Shard) -> None:
+    def put(self, shard: TaskResult) -> None:
         """Keep a shard, if shards are kept, without the runs of it that failed; StoreError where that cannot be."""
         done = shard.rows((shard.status != FAILED).nonzero()[0])
         if self._writer is None or self.parts is None or not len(done.first):
@@ -105,7 +105,7 @@ def _mark(path: Path) -> str:
 
 
 @contextmanager
-def keeping(target: Path | None) -> Iterator[Keeper | None]:
+def checkpointing(target: Path | None) -> Iterator[CheckpointWriter | None]:
     """The keeper of an output, None where there is none."""
     with ExitStack() as stack:
-        yield None if target is None else Keeper(target, stack)
+        yield None if target is None else CheckpointWriter(target, stack)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.gaussian.summit_distribution import SummitLaw, product_of_score
+from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_of_score
 from roughmdr.ensemble.nodes import END as HEIGHT_END
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule, UpperTail
 from roughmdr.ensemble.patch import PatchSource
@@ -104,10 +104,10 @@ class NayakAsperities(PatchSource):
         return {key: entry for key, entry in entries.items() if entry is not None}
 
     @cached_property
-    def law(self) -> SummitLaw:
+    def law(self) -> SummitDistribution:
         """The law of the summits; OutOfRange where no surface has such moments, ArithmeticError where no float has."""
         moments = Moments(**self._given(_MOMENTS)) if self.spectrum is None else self.spectrum.moments
-        return SummitLaw(Moments.checked(*moments))
+        return SummitDistribution(Moments.checked(*moments))
 
     @property
     def spectrum(self) -> SelfAffine | None:

@@ -37,7 +37,7 @@ class Summits(NamedTuple):
     """1/sqrt(k1 k2) [m] (J. A. Greenwood, Wear 261 (2006) 191)."""
 
 
-class SummitLaw(NamedTuple):
+class SummitDistribution(NamedTuple):
     """The law of the summits of a surface with these moments, whose alpha is above 3/2."""
 
     moments: Moments

@@ -9,13 +9,13 @@ import numpy as np
 from roughmdr.ensemble.maps.instrument import read_instrument
 from roughmdr.ensemble.maps.netcdf_map import read_netcdf
 from roughmdr.ensemble.maps.plain import read_npy, read_npz, read_text
-from roughmdr.ensemble.maps.raw_map import Content, blocks, check_points
+from roughmdr.ensemble.maps.raw_map import RawMap, blocks, check_points
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.units import unit_factor
 
-_BY_SUFFIX: dict[str, Callable[[Path, str | None], Content]] = {
+_BY_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), read_netcdf),
     **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), read_text),
     ".npy": read_npy,
@@ -94,7 +94,7 @@ def read_map(
     return found._replace(rounding=eps * found.highest)
 
 
-def _content(path: Path, channel: str | None) -> Content:
+def _content(path: Path, channel: str | None) -> RawMap:
     try:
         with path.open("rb") as file:
             start = file.read(8)
@@ -114,7 +114,7 @@ def _content(path: Path, channel: str | None) -> Content:
     return content
 
 
-def _factor(path: Path, content: Content, unit: str | None) -> float:
+def _factor(path: Path, content: RawMap, unit: str | None) -> float:
     """What one unit of the heights is in metres."""
     if unit is not None and content.unit is not None:
         raise SceneError(f"{path}: the file says itself that heights are in {content.unit}; leave out unit = {unit!r}")
@@ -125,7 +125,7 @@ def _factor(path: Path, content: Content, unit: str | None) -> float:
 
 
 def _spacings(
-    path: Path, content: Content, size: float | tuple[float, float] | None, shape: tuple[int, ...]
+    path: Path, content: RawMap, size: float | tuple[float, float] | None, shape: tuple[int, ...]
 ) -> tuple[float, float]:
     nx, ny = shape
     if content.spacing is not None:

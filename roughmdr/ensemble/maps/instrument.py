@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.ensemble.maps.raw_map import Content
+from roughmdr.ensemble.maps.raw_map import RawMap
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import unit_factor
 
 
-def read_instrument(path: Path, channel: str | None) -> Content:
+def read_instrument(path: Path, channel: str | None) -> RawMap:
     """The channel of that name, or the file's default one; undefined points become NaN.
 
     Of several channels of one name, the first. RoughmdrError where the file cannot be read or is no map of heights.
@@ -36,7 +36,7 @@ def read_instrument(path: Path, channel: str | None) -> Content:
             ) from error
 
 
-def _content(reader: Any, channel: str | None) -> Content:
+def _content(reader: Any, channel: str | None) -> RawMap:
     chosen = reader.default_channel
     if channel is not None:
         names = [each.name for each in reader.channels]
@@ -51,9 +51,9 @@ def _content(reader: Any, channel: str | None) -> Content:
     height = np.ma.filled(found.heights(), np.nan)
     unit = "Å" if found.unit == "A" else found.unit
     if sizes is None:
-        return Content(height, unit)
+        return RawMap(height, unit)
     if unit is None:
         raise RoughmdrError("does not say in which unit it is; export it as text, where size and unit can be given")
     factor = float(unit_factor(unit, "m"))
     dx, dy = (float(side) * factor / points for side, points in zip(sizes, height.shape, strict=True))
-    return Content(height, unit, (dx, dy), found.is_periodic)
+    return RawMap(height, unit, (dx, dy), found.is_periodic)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.datasets import opened
-from roughmdr.ensemble.maps.raw_map import Content, blocks, check_points
+from roughmdr.ensemble.maps.raw_map import RawMap, blocks, check_points
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import unit_factor
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular grid
 
 
-def read_netcdf(path: Path, channel: str | None) -> Content:
+def read_netcdf(path: Path, channel: str | None) -> RawMap:
     """The variable ``channel``, or height, over x and y; fill values become NaN. RoughmdrError where there is none."""
     name = channel or "height"
     with opened(path) as dataset:
@@ -31,7 +31,7 @@ def read_netcdf(path: Path, channel: str | None) -> Content:
             values, dims = values.T, dims[::-1]
         dx, dy = (_spacing(dataset, str(dim)) for dim in dims)
         unit = str(height.attrs.get("units", "")).strip() or None
-        return Content(values, unit, (dx, dy), _periodic(dataset))
+        return RawMap(values, unit, (dx, dy), _periodic(dataset))
 
 
 def _values(height: "xr.DataArray") -> NDArray[Any]:

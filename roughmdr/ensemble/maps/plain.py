@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.maps.raw_map import Content
+from roughmdr.ensemble.maps.raw_map import RawMap
 from roughmdr.errors import RoughmdrError
 
 _DELIMITERS = (";", ",", "\t")
 
 
-def read_npy(path: Path, channel: str | None) -> Content:
+def read_npy(path: Path, channel: str | None) -> RawMap:
     """The array of a .npy file; RoughmdrError where it is none, or would run code to be read."""
     _refuse_channel(channel)
-    return Content(_array(_load(path)))
+    return RawMap(_array(_load(path)))
 
 
-def read_npz(path: Path, channel: str | None) -> Content:
+def read_npz(path: Path, channel: str | None) -> RawMap:
     """The array ``channel`` of a .npz file, or height, or the only one; RoughmdrError where that is not one."""
     arrays = _load(path)
     if not isinstance(arrays, np.lib.npyio.NpzFile):
@@ -29,12 +29,12 @@ def read_npz(path: Path, channel: str | None) -> Content:
         if name not in names:
             raise RoughmdrError(f"has no array {name!r}, but {names}; name one as channel")
         try:
-            return Content(_array(arrays[name]))
+            return RawMap(_array(arrays[name]))
         except Exception as error:
             raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
 
 
-def read_text(path: Path, channel: str | None) -> Content:
+def read_text(path: Path, channel: str | None) -> RawMap:
     """A text of numbers in rows, parted by blanks, tabs, commas or semicolons, # before comments; "nan" is undefined.
 
     RoughmdrError where it is no such text.
@@ -46,7 +46,7 @@ def read_text(path: Path, channel: str | None) -> Content:
         if not first:
             raise RoughmdrError("holds no numbers")
         delimiter = next((mark for mark in _DELIMITERS if mark in first.strip()), None)
-        return Content(np.loadtxt(path, delimiter=delimiter, encoding="utf-8-sig", ndmin=2))
+        return RawMap(np.loadtxt(path, delimiter=delimiter, encoding="utf-8-sig", ndmin=2))
     except UnicodeDecodeError:
         raise RoughmdrError("not a text file in UTF-8") from None
     except RoughmdrError:

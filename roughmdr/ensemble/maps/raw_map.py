@@ -10,7 +10,7 @@ from roughmdr.errors import RoughmdrError
 _TOGETHER = 2**20  # points of a block
 
 
-class Content(NamedTuple):
+class RawMap(NamedTuple):
     """A map as it stands in a file; None is what the file does not say."""
 
     height: NDArray[Any]

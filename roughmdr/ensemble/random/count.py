@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from roughmdr.ensemble.streams import COUNT, Draws
+from roughmdr.ensemble.streams import COUNT, Streams
 
 
-def poisson(draws: Draws, mean: float) -> int:
+def poisson(draws: Streams, mean: float) -> int:
     """How many independent asperities fall on a patch that has ``mean`` of them on average."""
     from scipy.special import pdtr, pdtrik
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from roughmdr.ensemble.random.distributions import Distribution
-from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Draws
+from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Streams
 from roughmdr.numerics.arguments import Floats
 
 
@@ -26,7 +26,7 @@ class Population:
 
 
 @dataclass(frozen=True)
-class AsperityLaw:
+class Populations:
     """One or two populations, in which one parameter may go with the height."""
 
     populations: tuple[Population, ...]
@@ -64,7 +64,7 @@ class AsperityLaw:
         mixed = (POPULATION,) if len(self.populations) > 1 else ()
         return (HEIGHT, *mixed, *(self.streams[name] for name in names))
 
-    def draw(self, draws: Draws, count: int) -> tuple[Floats, dict[str, Floats]]:
+    def draw(self, draws: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
         """Heights [m] and shape parameters [SI] of ``count`` asperities."""
         level = draws(HEIGHT, count)
         levels = {name: draws(stream, count) for name, stream in self.streams.items()}

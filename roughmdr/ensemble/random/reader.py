@@ -25,7 +25,7 @@ _LEAST_OWN, _GREATEST_OWN = 1e-12, 1e12  # of a family's own parameters: far bey
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DistributionReader:
     """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
 
     The parameters are scipy's own (shape parameters, loc, scale), with which the distribution is scipy's, loc = 0 by

@@ -12,8 +12,8 @@ from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
 from roughmdr.ensemble.patch import PatchSource
 from roughmdr.ensemble.random.count import poisson
 from roughmdr.ensemble.random.distributions import Distribution
-from roughmdr.ensemble.random.population import AsperityLaw, Population
-from roughmdr.ensemble.random.reader import Drawn
+from roughmdr.ensemble.random.population import Population, Populations
+from roughmdr.ensemble.random.reader import DistributionReader
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, independent, spread
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
@@ -22,7 +22,7 @@ from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SHAPES
 
 _MOST = 1_000_000_000
-_Height = Annotated[Distribution, BeforeValidator(Drawn("m", mean=0.0))]
+_Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
 
 
 class Second(Section):
@@ -86,7 +86,7 @@ class RandomAsperities(PatchSource):
         return population.height if name == "height" else population.parameters[name]
 
     @cached_property
-    def law(self) -> AsperityLaw:
+    def law(self) -> Populations:
         """What heights and parameters are drawn from."""
         first = Population(1.0, self.height, self.distributions)
         populations = [first]
@@ -99,13 +99,13 @@ class RandomAsperities(PatchSource):
         streams = {name: PARAMETER + order.index(name) for name in self.distributions}
         correlated = _given(self.correlation, self.shape)
         name = next((name for name in correlated if name in self.distributions), "")
-        return AsperityLaw(tuple(populations), streams, name, correlated.get(name, 0.0))
+        return Populations(tuple(populations), streams, name, correlated.get(name, 0.0))
 
     @property
     def least_exponent(self) -> float:
         """The least exponent among the tips."""
         if self.fixed is not None:
-            return self.fixed.least_exponent(np.asarray(self.fixed.stretched()[2])[None])
+            return self.fixed.least_exponent(np.asarray(self.fixed.nondimensional()[2])[None])
         exponents = [
             each.parameters["exponent"].least for each in self.law.populations if "exponent" in each.parameters
         ]

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator
 
 from roughmdr.ensemble.random.distributions import Distribution
-from roughmdr.ensemble.random.reader import Drawn
+from roughmdr.ensemble.random.reader import DistributionReader
 from roughmdr.ensemble.random.section import Correlation, RandomAsperities, Second
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.schema.units import DIMENSIONLESS, quantity
-from roughmdr.shapes import SHAPES, Common, PowerSeries, Shape, Tabulated
+from roughmdr.shapes import SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
 _Section = TypeVar("_Section", bound=Section)
 
@@ -49,7 +49,7 @@ class RandomPowerSeries(RandomAsperities):
     terms: Annotated[dict[str, float], BeforeValidator(_terms)]
 
     @cached_property
-    def fixed(self) -> Common:
+    def fixed(self) -> SharedProfile:
         """The series; ShapeError where it is none."""
         return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
 
@@ -69,7 +69,7 @@ class RandomTabulated(RandomAsperities):
         return value
 
     @cached_property
-    def fixed(self) -> Common:
+    def fixed(self) -> SharedProfile:
         """The table; ShapeError where it is none."""
         return Tabulated(self.r, self.f)
 
@@ -82,7 +82,7 @@ def _section(shape: type[Shape]) -> type[RandomAsperities]:
     together: dict[str, Any] = {}
     rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, least=-1.0, most=1.0))]
     for name, unit in shape.units.items():
-        kind = Annotated[Distribution, BeforeValidator(Drawn(unit, positive=True))]
+        kind = Annotated[Distribution, BeforeValidator(DistributionReader(unit, positive=True))]
         keys[name] = (kind, ...) if name in always else (kind | None, None)
         others[name] = (kind | None, None)
         together[name] = (rank | None, None)
@@ -108,7 +108,7 @@ else:
         Union[
             RandomPowerSeries,
             RandomTabulated,
-            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, Common)),
+            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, SharedProfile)),
         ],
         Field(discriminator="shape"),
     ]

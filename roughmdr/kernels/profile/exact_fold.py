@@ -6,10 +6,10 @@ Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt
 from roughmdr.kernels.profile.layout import CONTROL, FOLD
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
-from roughmdr.shapes import Curved
+from roughmdr.shapes import ProfileShape
 
 
-def exact_depth(shape: Curved, effective_modulus: float, work: float, row: Floats) -> Pair:
+def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, row: Floats) -> Pair:
     """-delta [m] or -P [N] at the lowest foot of a row (H 40-41, 44), as two floats.
 
     The quantity is stationary there, so that the rounding of t does not matter.

@@ -10,7 +10,7 @@ from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import NayakAsperities
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.named.law import NamedLaw, check_no_adhesion
+from roughmdr.report.named.law import TheoryCurve, check_no_adhesion
 from roughmdr.theory import (
     bush_gibson_thomas,
     bush_gibson_thomas_asymptote,
@@ -42,7 +42,7 @@ def _surface(cell: Cell) -> NayakAsperities:
 
 def _of_summits(law: _OfSummits, cell: Cell, variable: Variable) -> Floats:
     m0, m2, m4 = _surface(cell).law.moments
-    separation, effective_modulus = cell.route.separation, cell.scene.effective_modulus
+    separation, effective_modulus = cell.path.separation, cell.scene.effective_modulus
     return law(separation=separation, effective_modulus=effective_modulus, m0=m0, m2=m2, m4=m4, variable=variable)
 
 
@@ -58,7 +58,7 @@ def _persson(cell: Cell, variable: Variable) -> Floats:
     spectrum, effective_modulus = _surface(cell).spectrum, cell.scene.effective_modulus
     if spectrum is None:
         raise RoughmdrError("it needs a self-affine spectrum, the scene gives m0, m2 and m4")
-    h = cell.route.separation
+    h = cell.path.separation
     values = np.full_like(h, math.nan)
     open_ = h > 0.0  # a surface in full contact has the mean gap 0
     pressure = persson_pressure(separation=h[open_], effective_modulus=effective_modulus, spectrum=spectrum)
@@ -72,13 +72,13 @@ def _persson(cell: Cell, variable: Variable) -> Floats:
 
 
 LAWS = {
-    "bush_gibson_thomas": NamedLaw(lambda cell, variable: _of_summits(bush_gibson_thomas, cell, variable)),
-    "bush_gibson_thomas_asymptote": NamedLaw(
+    "bush_gibson_thomas": TheoryCurve(lambda cell, variable: _of_summits(bush_gibson_thomas, cell, variable)),
+    "bush_gibson_thomas_asymptote": TheoryCurve(
         _asymptote, ("contact_fraction",), "at the pressure of bush_gibson_thomas"
     ),
-    "greenwood_elliptic": NamedLaw(lambda cell, variable: _of_summits(greenwood_elliptic, cell, variable)),
-    "persson_separation": NamedLaw(_persson, ("pressure",), _DEFORMED),
-    "persson_contact_fraction": NamedLaw(
+    "greenwood_elliptic": TheoryCurve(lambda cell, variable: _of_summits(greenwood_elliptic, cell, variable)),
+    "persson_separation": TheoryCurve(_persson, ("pressure",), _DEFORMED),
+    "persson_contact_fraction": TheoryCurve(
         _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}"
     ),
 }

@@ -10,7 +10,7 @@ from roughmdr.scene import Scene
 from roughmdr.theory.equal_summits import Variable
 
 
-class NamedLaw(NamedTuple):
+class TheoryCurve(NamedTuple):
     """What a law says of a scene, and of which variables."""
 
     over: Callable[[Cell, Variable], Floats]

@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.aggregate.tabor import Range, range_of
+from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble, RandomAsperities
 from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.named.law import NamedLaw, check_no_adhesion
+from roughmdr.report.named.law import TheoryCurve, check_no_adhesion
 from roughmdr.scene import Scene
 from roughmdr.theory import dmt_maugis, fuller_tabor, greenwood_williamson
 from roughmdr.theory.equal_summits import Variable
@@ -59,24 +59,24 @@ def _equal_summits(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _range(scene: Scene, radius: float) -> Range:
+def _range(scene: Scene, radius: float) -> JkrValidity:
     """Whether the range of the adhesion matters; RoughmdrError where there is no adhesion."""
     if scene.work == 0.0:
         raise RoughmdrError("the scene has no adhesion")
     one = Ensemble("paraboloid", np.zeros(1), {"radius": np.array([radius])})
-    return range_of(one.shape, scene.asperities.sigma, one.columns(), scene.effective_modulus, scene.law)
+    return jkr_validity(one.shape, scene.asperities.sigma, one.columns(), scene.effective_modulus, scene.adhesion_model)
 
 
 def _greenwood_williamson(cell: Cell, variable: Variable) -> Floats:
     given = _equal_summits(cell.scene)
     check_no_adhesion(cell.scene)
-    return greenwood_williamson(separation=cell.route.separation, variable=variable, **given)
+    return greenwood_williamson(separation=cell.path.separation, variable=variable, **given)
 
 
 def _fuller_tabor(cell: Cell, variable: Variable) -> Floats:
     """In to the closest separation without, from there on with it as the turning point."""
-    given, h = _equal_summits(cell.scene), cell.route.separation
-    if cell.scene.law.settled(_range(cell.scene, given["radius"]).jkr_error).model != "jkr":
+    given, h = _equal_summits(cell.scene), cell.path.separation
+    if cell.scene.adhesion_model.resolved(_range(cell.scene, given["radius"]).jkr_error).model != "jkr":
         raise RoughmdrError("the adhesion is of finite range, not that of JKR")
     turn = int(h.argmin())
     if (np.diff(h[: turn + 1]) > 0.0).any() or (np.diff(h[turn:]) < 0.0).any():
@@ -89,15 +89,15 @@ def _fuller_tabor(cell: Cell, variable: Variable) -> Floats:
 def _dmt_maugis(cell: Cell, variable: Variable) -> Floats:
     given, work = _equal_summits(cell.scene), cell.scene.work
     tabor = _range(cell.scene, given["radius"]).tabor
-    if not cell.scene.law.known:
+    if not cell.scene.adhesion_model.tabor_known:
         raise RoughmdrError("neither strength nor range of the adhesion is given")
     if not tabor < _DMT_BELOW:
         raise RoughmdrError(f"the Tabor number is {tabor:.3g}, not below {_DMT_BELOW:g}")
-    return dmt_maugis(separation=cell.route.separation, work=work, variable=variable, **given)
+    return dmt_maugis(separation=cell.path.separation, work=work, variable=variable, **given)
 
 
 LAWS = {
-    "greenwood_williamson": NamedLaw(_greenwood_williamson),
-    "fuller_tabor": NamedLaw(_fuller_tabor),
-    "dmt_maugis": NamedLaw(_dmt_maugis, note="summits that do not touch do not pull in it"),
+    "greenwood_williamson": TheoryCurve(_greenwood_williamson),
+    "fuller_tabor": TheoryCurve(_fuller_tabor),
+    "dmt_maugis": TheoryCurve(_dmt_maugis, note="summits that do not touch do not pull in it"),
 }

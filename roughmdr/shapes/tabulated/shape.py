@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import Common, radii
+from roughmdr.shapes.base import SharedProfile, radii
 from roughmdr.shapes.profile import Profile
 from roughmdr.shapes.tabulated import lookup
 
@@ -21,7 +21,7 @@ _ROUNDING = 4 * np.finfo(float).eps  # of a chord's slope, from the rounding of 
 _NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
 
 
-class Tabulated(Common):
+class Tabulated(SharedProfile):
     """f [m] at radii r [m], both from 0 on: between them a monotone cubic spline, beyond them a cone.
 
     The spline is the not-a-knot cubic, its slopes at the points kept between 0 and three times the lesser slope of the
@@ -107,7 +107,7 @@ class Tabulated(Common):
 
         return tabulate(*self._pieces)
 
-    def stretched(self) -> tuple[float, float, Any]:
+    def nondimensional(self) -> tuple[float, float, Any]:
         """About the last r and f, and the pieces in these units."""
         return *self._units, self._form
 

@@ -1,0 +1,512 @@
+"""Batches that are killed, interrupted, starved of disk or robbed of their folder: what becomes of them."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+import xarray as xr
+from batches import (
+    CURVES,
+    RUNS,
+    STATISTICS,
+    Batch,
+    assert_clean,
+    assert_no_traceback,
+    assert_result,
+    assert_same,
+    computed,
+    kept,
+    lines,
+    mounted,
+    running,
+    slow_scene,
+    until,
+    write_scene,
+)
+
+import roughmdr as rm
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.store import ShardStore
+from roughmdr.runner.run import execute
+from roughmdr.scene import read
+from roughmdr.storage.store import read as read_result
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a batch leaves that was killed half way."""
+    folder = tmp_path_factory.mktemp("killed") / "batch"
+    write_scene(folder, CURVES)
+    batch = Batch(folder)
+    batch.wait_for_lines(RUNS // 8)
+    batch.kill()
+    return folder
+
+
+@pytest.fixture
+def left(killed: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return Path(shutil.copytree(killed, tmp_path / "left"))
+
+
+def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -> int:
+    """Go on in this process: how many runs were computed. The result is right, and nothing else is left."""
+    capsys.readouterr()
+    execute(make_plan(read(folder / "scene.toml"), 4), folder / "out.nc", quiet=False)
+    assert_result(folder, base)
+    assert_clean(folder)
+    return computed(capsys.readouterr().err)
+
+
+# Killed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("keep", "kills"), [("curves", 14), ("statistics", 6)])
+def test_killed_again_and_again_it_comes_to_the_same_bits(
+    tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
+) -> None:
+    """At random moments, each start the resume of the one before; the last quarter while the result is written."""
+    base = request.getfixturevalue(keep)
+    folder, chosen = tmp_path / "batch", random.Random(2012)
+    write_scene(folder, CURVES if keep == "curves" else STATISTICS)
+    shards, before, survived = RUNS // 4, 0, 0
+    for kill in range(kills):
+        late = kill >= 3 * kills // 4
+        batch = Batch(folder, "--workers", chosen.choice([1, 2, 3]))
+        if late:
+            batch.wait_for_lines(shards)
+            time.sleep(chosen.uniform(0.0, 0.06))
+        elif chosen.random() < 0.15:
+            time.sleep(chosen.uniform(0.0, 2.0))  # anywhere, also before anything is computed
+        else:
+            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), shards - 4))
+            time.sleep(chosen.uniform(0.0, 0.03))
+        survived += batch.process.poll() is None
+        batch.kill()
+        if (folder / "out.nc").exists():  # whole, from the first moment
+            assert_result(folder, base)
+            (folder / "out.nc").unlink()  # so that the next has something to do
+            before = 0
+        else:
+            now = kept(folder)
+            assert now >= before
+            before = now
+    assert survived > 0.8 * kills
+    last = Batch(folder)
+    assert last.succeed() <= RUNS - before
+    assert_result(folder, base)
+    assert_clean(folder)
+
+
+def test_killed_between_the_result_and_the_end_of_the_parts(
+    left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    parts = left / "out.nc.parts"
+    saved = shutil.copytree(parts, left.parent / "saved")
+    assert 0 < resume(left, capsys, curves) < RUNS
+    written = (left / "out.nc").stat()
+    for missing in ([], ["manifest.jsonl", "000001.npz"], [path.name for path in saved.iterdir()]):
+        shutil.copytree(saved, parts)
+        for name in missing:
+            (parts / name).unlink()
+        assert resume(left, capsys, curves) == 0
+    assert (left / "out.nc").stat().st_mtime_ns == written.st_mtime_ns
+
+
+def test_parts_of_another_scene_outlive_a_result_that_is_there(
+    left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    saved = shutil.move(left / "out.nc.parts", left.parent / "saved")
+    other = slow_scene(4, count=100)
+    write_scene(left, other)
+    execute(make_plan(read(left / "scene.toml"), 4), left / "out.nc")
+    shutil.move(saved, left / "out.nc.parts")
+    execute(make_plan(read(left / "scene.toml"), 4), left / "out.nc")
+    assert lines(left)
+    (left / "out.nc").unlink()
+    write_scene(left, CURVES)
+    assert 0 < resume(left, capsys, curves) < RUNS
+
+
+@pytest.mark.parametrize("chunk", [8, RUNS])
+def test_killed_while_the_result_is_half_written(
+    folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], chunk: int
+) -> None:
+    """Also where all is one task, of which nothing is kept."""
+    halfway = """
+import os, signal
+import netCDF4
+def sync(*_):
+    os.kill(os.getpid(), signal.SIGKILL)
+netCDF4.Dataset.__exit__ = sync
+"""
+    with running(Batch(folder, chunk=chunk, code=halfway)) as batch:
+        assert batch.end()[0] == -signal.SIGKILL
+    assert not (folder / "out.nc").exists()
+    assert [path.name for path in (folder / "out.nc.parts").glob(".roughmdr.*.tmp")]
+    assert resume(folder, capsys, curves) == (0 if chunk < RUNS else RUNS)
+
+
+# Damaged
+
+
+@pytest.mark.parametrize(
+    "damage",
+    ["torn line", "odd lines", "no first line", "shard", "no shard", "every shard", "nothing left", "leftovers"],
+)
+def test_only_what_is_damaged_is_computed_again(
+    left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
+) -> None:
+    parts, had = left / "out.nc.parts", lines(left)
+    manifest, third = parts / "manifest.jsonl", parts / had[2]["file"]
+    lost = 0
+    match damage:
+        case "torn line":
+            manifest.write_bytes(manifest.read_bytes()[:-20])
+            lost = had[-1]["realizations"]
+        case "odd lines":
+            with manifest.open("ab") as file:
+                file.write(b'7\n[]\nnull\n{"file": 3}\n{"file": "x.npz", "sha256": "0"}\n\xff\xfe\n\0\0\0\n{"file": "0')
+        case "no first line":
+            manifest.write_bytes(b"".join(manifest.read_bytes().splitlines(keepends=True)[1:]))
+        case "shard":
+            content = bytearray(third.read_bytes())
+            content[len(content) // 2] ^= 1
+            third.write_bytes(content)
+            lost = had[2]["realizations"]
+        case "no shard":
+            third.unlink()
+            lost = had[2]["realizations"]
+        case "every shard" | "nothing left":
+            for line in had:
+                shard = parts / line["file"]
+                os.truncate(shard, 0 if damage == "nothing left" else shard.stat().st_size // 2)
+            lost = sum(line["realizations"] for line in had)
+        case "leftovers":
+            (parts / "000099.npz.tmp").write_bytes(b"half")
+            (parts / "000098.npz").write_bytes(b"of no line")
+            (parts / ".roughmdr.abc.tmp").write_bytes(b"half a result")
+    assert resume(left, capsys, curves) == RUNS - sum(line["realizations"] for line in had) + lost
+
+
+# Interrupted
+
+
+@pytest.mark.parametrize(
+    ("number", "scheduler", "group"),
+    [(signal.SIGTERM, "threads", False), (signal.SIGINT, "threads", True), (signal.SIGINT, "processes", True)],
+)
+def test_interrupted_it_ends_what_it_began_and_says_what_is_kept(
+    folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], number: int, scheduler: str, group: bool
+) -> None:
+    with running(Batch(folder, "--scheduler", scheduler)) as batch:
+        batch.wait_for_lines(5)
+        batch.signal_group(number) if group else os.kill(batch.pid, number)
+        status, said = batch.end()
+    assert status == 130, said
+    assert "finishing what is under way" in said
+    assert "interrupted; what is finished is kept in out.nc.parts; the same command goes on from there" in said
+    assert_no_traceback(said)
+    done = kept(folder)
+    assert 20 <= done < RUNS
+    assert resume(folder, capsys, curves) == RUNS - done
+
+
+@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureFixture[str], scheduler: str) -> None:
+    """Its runs would take minutes."""
+    endless = slow_scene(64, count=20_000_000)
+    write_scene(folder, endless)
+    with running(Batch(folder, "--scheduler", scheduler, chunk=1)) as batch:
+        until((folder / "out.nc.parts" / "manifest.jsonl").exists)
+        if scheduler == "processes":
+            until(lambda: len(batch.children()) == 2)
+        time.sleep(1.0)
+        workers = batch.children()
+        batch.signal_group(signal.SIGINT)
+        until(lambda: b"finishing" in (folder.parent / "batch.stderr").read_bytes(), 5.0)
+        batch.signal_group(signal.SIGINT)
+        until(lambda: batch.process.poll() is not None, 10.0)
+        status, said = batch.end()
+    assert status == 130, said
+    assert "interrupted; nothing was written" in said
+    assert_no_traceback(said)
+    gone(workers)
+    assert [path.name for path in folder.iterdir()] == ["scene.toml"]
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.3, 0.8])
+def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -> None:
+    with running(Batch(folder, "--scheduler", "processes")) as batch:
+        until(lambda: len(batch.children()) > 0)
+        time.sleep(delay)
+        batch.signal_group(signal.SIGINT)
+        status, said = batch.end()
+    assert status == 130, said
+    assert "interrupted; " in said
+    assert_no_traceback(said)
+
+
+def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Path, curves: xr.Dataset) -> None:
+    slowly = """
+import os, signal
+import roughmdr.batch.resume.writer as keeper
+def write(*arguments, write=keeper.write):
+    os.kill(os.getpid(), signal.SIGINT)
+    write(*arguments)
+keeper.write = write
+"""
+    with running(Batch(folder, code=slowly)) as batch:
+        status, said = batch.end()
+    assert status == 0, said
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+# Processes that die
+
+
+def gone(processes: list[psutil.Process]) -> None:
+    def is_gone(process: psutil.Process) -> bool:
+        with suppress(psutil.NoSuchProcess):
+            return process.status() == psutil.STATUS_ZOMBIE
+        return True
+
+    until(lambda: all(map(is_gone, processes)), 10.0)
+
+
+def test_a_worker_process_that_is_killed_is_replaced(folder: Path, curves: xr.Dataset) -> None:
+    with running(Batch(folder, "--scheduler", "processes")) as batch:
+        batch.wait_for_lines(5)
+        workers = batch.children()
+        assert len(workers) == 2
+        workers[0].kill()
+        gone(workers)  # the other one is of no use any more
+        assert batch.succeed() == RUNS
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+def test_no_worker_process_outlives_a_killed_batch(folder: Path) -> None:
+    with running(Batch(folder, "--scheduler", "processes")) as batch:
+        batch.wait_for_lines(2)
+        workers = batch.children()
+        assert len(workers) == 2
+        batch.kill()
+        gone(workers)
+
+
+@pytest.mark.slow
+def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(folder: Path) -> None:
+    """A system out of memory kills whatever takes too much; here the test does it in its place."""
+    counts = [100, 200, 6_000_000, 300, 400]
+    write_scene(folder, slow_scene(1, sweep={"asperities.count": counts}))
+    with running(Batch(folder, "--scheduler", "processes", chunk=1)) as batch:
+        deaths = 0
+        while batch.process.poll() is None:
+            with suppress(psutil.NoSuchProcess):
+                for child in batch.children():
+                    with suppress(psutil.NoSuchProcess):
+                        if child.memory_info().rss > 350e6:
+                            child.kill()
+                            deaths += 1
+            time.sleep(0.02)
+        status, said = batch.end()
+    assert status == 1, said
+    assert_no_traceback(said)
+    assert deaths >= 3
+    result = read_result(folder / "out.nc").to_xarray()
+    assert (result.status.sel(asperities_count=6_000_000) == 1).all()
+    assert (result.remark.sel(asperities_count=6_000_000) == "the process that computed it died").all()
+    others = result.drop_sel(asperities_count=6_000_000)
+    assert (others.status == 0).all()
+    assert kept(folder) == 4
+
+
+# Runs that fail
+
+
+def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
+    swept = slow_scene(12, count=1000, sweep={"asperities.radius": ["1e-300 m", "20 um", "50 um"]})
+    write_scene(folder, swept)
+    for runs in (36, 12):  # again: only those that failed
+        with running(Batch(folder)) as batch:
+            status, said = batch.end()
+        assert status == 1, said
+        assert_no_traceback(said)
+        assert computed(said) == runs
+        result = read_result(folder / "out.nc").to_xarray()
+        assert result.status.values.tolist() == [[1] * 12, [0] * 12, [0] * 12]
+        assert all("OutOfRange" in text for text in result.remark.values[0])
+        assert (result.remark.values[1:] == "").all()
+        assert result.force.isel(asperities_radius=0).isnull().all()
+        assert result.force.isel(asperities_radius=[1, 2]).notnull().all()
+        assert kept(folder) == 24
+    good = rm.run(slow_scene(12, count=1000, sweep={"asperities.radius": ["20 um", "50 um"]}))
+    assert result.force.values[1:].tobytes() == good.force.values.tobytes()
+
+
+def test_a_failure_that_has_gone_away_is_repaired(folder: Path, curves: xr.Dataset) -> None:
+    short_of_memory = """
+import roughmdr.batch.tasks as tasks
+def law_of(scene, route, realization, *more, law_of=tasks.law_of):
+    if realization in (3, 70):
+        raise MemoryError
+    return law_of(scene, route, realization, *more)
+tasks.law_of = law_of
+"""
+    with running(Batch(folder, code=short_of_memory)) as batch:
+        status, said = batch.end()
+    assert status == 1, said
+    assert_no_traceback(said)
+    result = read_result(folder / "out.nc").to_xarray()
+    assert result.status.values.nonzero()[0].tolist() == [3, 70]
+    assert result.remark.values[[3, 70]].tolist() == ["MemoryError"] * 2
+    assert kept(folder) == RUNS - 2
+    with running(Batch(folder)) as batch:
+        assert batch.succeed() == 2
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
+    with running(Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.law_of = lambda *_: [][0]")) as batch:
+        status, said = batch.end()
+    assert status == 1
+    assert "realisation 0: IndexError: list index out of range" in said
+    assert_no_traceback(said.replace("IndexError:", ""))
+    assert [path.name for path in folder.iterdir()] == ["scene.toml"]
+
+
+# Disks and folders
+
+
+def test_a_full_disk_keeps_what_fits_and_more_room_is_all_it_takes(tmp_path: Path) -> None:
+    everything = ["force", "contact_area", "contact_count", "stiffness", "pressure", "energy", "contact_radius_sum"]
+    steps = {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 1000}, "unload": True}
+    table = slow_scene(80, count=100, path=steps, output={"variables": everything})  # 112 kB each
+    folder = tmp_path / "disk"
+    with mounted(folder, "4m"):
+        write_scene(folder, table)
+        with running(Batch(folder)) as batch:
+            status, said = batch.end()
+        assert status == 1, said
+        assert "No space left on device; what is finished is kept in out.nc.parts" in said
+        assert_no_traceback(said)
+        assert not (folder / "out.nc").exists()
+        held = sum(
+            shard.status.size for read in ShardStore(folder / "out.nc.parts").held() if (shard := read()) is not None
+        )
+        assert 20 < held == kept(folder) < 40
+        with running(Batch(folder)) as batch:  # nothing has changed, and so is the answer
+            status, said = batch.end()
+        assert status in {1, 2}
+        assert "No space left on device" in said
+        assert_no_traceback(said)
+        assert kept(folder) >= held
+        subprocess.run(["mount", "-o", "remount,size=64m", folder], check=True)
+        held = kept(folder)
+        with running(Batch(folder)) as batch:
+            assert batch.succeed() == 80 - held
+        assert_result(folder, rm.run(table))
+        assert_clean(folder)
+
+
+def test_a_folder_that_cannot_be_written_is_found_before_computing(tmp_path: Path) -> None:
+    folder = tmp_path / "disk"
+    with mounted(folder, "4m"):
+        write_scene(folder, CURVES)
+        subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
+        with running(Batch(folder)) as batch:
+            status, said = batch.end()
+        assert status == 2, said
+        assert "out.nc: cannot be written: Read-only file system" in said
+        assert_no_traceback(said)
+
+
+@pytest.mark.parametrize("target", ["scene.toml/out.nc", "none/out.nc"])
+def test_a_folder_that_is_none_is_found_before_computing(folder: Path, target: str) -> None:
+    with running(Batch(folder, "-o", target)) as batch:
+        status, said = batch.end()
+    assert status == 2, said
+    assert target in said
+    assert_no_traceback(said)
+    assert [path.name for path in folder.iterdir()] == ["scene.toml"]
+
+
+def remove(folder: Path) -> None:
+    def is_removed() -> bool:
+        shutil.rmtree(folder, ignore_errors=True)
+        return not folder.exists()
+
+    until(is_removed)
+
+
+@pytest.mark.parametrize("what", ["", "out.nc.parts"])
+def test_a_folder_that_vanishes_is_told_of(folder: Path, curves: xr.Dataset, what: str) -> None:
+    with running(Batch(folder)) as batch:
+        batch.wait_for_lines(3)
+        remove(folder / what)
+        status, said = batch.end()
+    assert status in {1, 2}, said
+    assert "out.nc.parts: cannot be written: No such file or directory" in said
+    assert "is kept" not in said
+    assert_no_traceback(said)
+    assert not (folder / "out.nc").exists()
+
+
+# Side by side
+
+
+def test_two_batches_do_not_write_one_result(folder: Path, curves: xr.Dataset) -> None:
+    with running(Batch(folder)) as first:
+        first.wait_for_lines(1)
+        os.kill(first.pid, signal.SIGSTOP)
+        for options in ([], ["--fresh"]):
+            shutil.copy(folder / "scene.toml", folder.parent / "second.toml")
+            with running(Batch(folder, *options, scene="../second.toml")) as second:
+                status, said = second.end()
+            assert status == 2, said
+            assert f"out.nc: another run is writing it (process {first.pid} on " in said
+            assert_no_traceback(said)
+        first.kill()
+    held = kept(folder)
+    with running(Batch(folder)) as third:
+        assert third.succeed() == RUNS - held
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+def test_nothing_listens(folder: Path, scheduler: str) -> None:
+    with running(Batch(folder, "--scheduler", scheduler)) as batch:
+        batch.wait_for_lines(2)
+        for process in [psutil.Process(batch.pid), *psutil.Process(batch.pid).children(recursive=True)]:
+            assert not process.net_connections("inet"), process
+
+
+def test_batches_in_threads_of_one_process(tmp_path: Path, curves: xr.Dataset) -> None:
+    """No signal can be caught there, and none needs to be."""
+    found: dict[int, Any] = {}
+
+    def work(number: int) -> None:
+        found[number] = execute(make_plan(read(CURVES), 16), tmp_path / f"{number}.nc").to_xarray()
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for result in found.values():
+        assert_same(result, curves)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.nc", "1.nc"]

@@ -1,0 +1,41 @@
+"""What the bound of the error rests on: g and ∫ x g' dx of every profile are right to the roundings that it states."""
+
+import numpy as np
+import pytest
+from exact_contact import mp, profile
+from random_asperities import DRAW
+
+import roughmdr as rm
+from roughmdr.numerics.jit import compiled
+from roughmdr.shapes import SHAPES, ProfileShape
+
+CURVED = [kind for kind, shape in SHAPES.items() if issubclass(shape, ProfileShape)]
+
+
+@pytest.mark.parametrize("kind", CURVED)
+def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
+    rng = np.random.default_rng(CURVED.index(kind))
+    own: type[ProfileShape] = SHAPES[kind]  # type: ignore[assignment]
+    curve, push, roundings = (compiled(part) for part in (own.profile.curve, own.profile.push, own.profile.roundings))
+    magnitude = None if own.profile.magnitude is None else compiled(own.profile.magnitude)
+    worst = 0.0
+    for _ in range(20):
+        try:
+            with np.errstate(all="ignore"):
+                shape = DRAW[kind](rng)
+            width, rise, form = shape.nondimensional()
+        except rm.RoughmdrError:
+            continue
+        numbers, exact = np.atleast_1d(np.asarray(form, dtype=np.float64)), profile(shape)
+        for t in 10.0 ** np.concatenate([rng.uniform(-4.0, 1.0, 8), rng.uniform(-0.5, 0.5, 8)]):
+            _, _, g, _ = curve(t, numbers)
+            pushed = push(t, numbers)
+            if not (1e-290 < g < 1e290 and 1e-290 < pushed < 1e290):
+                continue
+            point = exact(mp.mpf(float(t)))
+            terms = magnitude(t, numbers) if magnitude is not None else (g, pushed)
+            for got, true, size in ((g, point.g / rise, terms[0]), (pushed, point.push / rise / width, terms[1])):
+                error = float(abs(got - true)) / max(got, size) * 2.0**53
+                worst = max(worst, error)
+                assert error <= roundings(numbers), (shape, t)
+    assert worst > 0.0
