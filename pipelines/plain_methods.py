@@ -119,7 +119,7 @@ def scalar_g(shape: Shape) -> Callable[[float], float]:
         factor, n = kappa(form) * rise, form
         return lambda a: factor * (a / width) ** n
     assert isinstance(shape, ProfileShape)
-    curve, place = compiled(shape.profile.curve), compiled(shape.profile.place)
+    curve, place = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
     numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
     return lambda a: rise * curve(place(a, width, numbers), numbers)[2]
 

@@ -84,7 +84,7 @@ class HalfSpace(NamedTuple):
         if isinstance(shape, FlatPunch):
             stretch = delta
         else:
-            profile_of(type(shape)).ready(row)
+            profile_of(type(shape)).precompute(row)
             stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
         state = float(t[0]) if isinstance(shape, ProfileShape) else a / width
         return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, row)
@@ -94,7 +94,7 @@ class HalfSpace(NamedTuple):
         """Whether the pressure is infinite at r = 0."""
         if self.radius == 0.0 or isinstance(self.shape, FlatPunch):
             return False
-        height = profile_of(type(self.shape)).height
+        height = profile_of(type(self.shape)).f_and_slope
         return bool(height(0.0, self.row)[1] > _ROUNDING * height(self.radius / self.width, self.row)[1])
 
     def singular(self) -> dict[float, str]:
@@ -105,10 +105,10 @@ class HalfSpace(NamedTuple):
         if self.sharp:
             found[0.0] = "the sharp tip of the profile"
         if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).corner:
-            for index in range(profile.edge_count(self.row)):
-                edge = profile.edge(index, self.row)[0]
-                before, after = (profile.height(math.nextafter(edge, to), self.row)[1] for to in (0.0, math.inf))
-                if after - before > _ROUNDING * after and self.t > profile.place(edge, 1.0, self.row):
+            for index in range(profile.breakpoint_count(self.row)):
+                edge = profile.breakpoint(index, self.row)[0]
+                before, after = (profile.f_and_slope(math.nextafter(edge, to), self.row)[1] for to in (0.0, math.inf))
+                if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.row):
                     found[edge * self.width] = "a corner of the profile"
         if self.stretch != 0.0:
             found[self.radius] = "the edge of the contact"
@@ -162,8 +162,8 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).edge_count(self.row):
-            smallest = min(smallest, profile.edge(0, self.row)[0] * self.width)
+        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).breakpoint_count(self.row):
+            smallest = min(smallest, profile.breakpoint(0, self.row)[0] * self.width)
         decades = math.log10(_DEEP / _SHALLOW) + math.log10(self.radius / smallest)
         depths = np.geomspace(_SHALLOW * smallest, _DEEP * self.radius, int(_STEPS_A_DECADE * decades))
         depths = np.concatenate([[0.0], depths])

@@ -117,10 +117,10 @@ def build(shape: type[Shape]) -> Callable[..., float]:
     profile = profile_of(shape)
     kernels: dict[str, Any] = {
         "_FLAT": profile.flat,
-        "_curve": compiled(profile.curve),
-        "_place": compiled(profile.place),
-        "_edge_count": compiled(profile.edge_count),
-        "_edge": compiled(profile.edge),
+        "_curve": compiled(profile.mdr_profile),
+        "_place": compiled(profile.t_of_radius),
+        "_edge_count": compiled(profile.breakpoint_count),
+        "_edge": compiled(profile.breakpoint),
     }
     parts: tuple[Callable[..., Any], ...] = (*quadrature.PARTS, leg, rate_from, span, field)
     for part in parts:

@@ -13,7 +13,7 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
-from roughmdr.shapes.profile import Profile, no_dips
+from roughmdr.shapes.profile import Profile, never_softens
 
 
 class Shape(ABC):
@@ -138,7 +138,7 @@ class ProfileShape(Shape):
     @classmethod
     def branched(cls) -> bool:
         """Whether there can be more than one stable branch with adhesion."""
-        return cls.profile.dip_count is not no_dips
+        return cls.profile.softening_count is not never_softens
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         """a [m], g [m] and a g - G [m2] at t with 40 digits."""
@@ -153,8 +153,8 @@ class ProfileShape(Shape):
         with mp.workdps(40 + int(4.0 * lost)):
             exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
             width, rise, form = (column[0] for column in self.nondimensionalise(exact))
-            a, _, g, _ = remake(self.profile.curve)(mp.mpf(t), [form])
-            return width * a, rise * g, width * rise * remake(self.profile.push)(mp.mpf(t), [form])
+            a, _, g, _ = remake(self.profile.mdr_profile)(mp.mpf(t), [form])
+            return width * a, rise * g, width * rise * remake(self.profile.reduced_load)(mp.mpf(t), [form])
 
     def g(self, x: ArrayLike) -> Floats:
         return self._along(radii("x", x), lambda curve, swept, t, form: curve(t, form)[2])
@@ -168,7 +168,9 @@ class ProfileShape(Shape):
         from roughmdr.numerics.jit import compiled  # it alone needs the compiler
 
         width, rise, form = self.nondimensional()
-        curve, swept, place = (compiled(part) for part in (self.profile.curve, self.profile.swept, self.profile.place))
+        curve, swept, place = (
+            compiled(part) for part in (self.profile.mdr_profile, self.profile.mdr_integral, self.profile.t_of_radius)
+        )
         numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
         begin = width if self.profile.flat else 0.0
         flat = [value(curve, swept, place(a, width, numbers), numbers) if a > begin else 0.0 for a in radius.flat]

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
+from roughmdr.shapes.profile import Form, Profile, breakpoint_at_one, one_breakpoint, swung
 
 
-def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     """g = c a^2 + (1 - c) a q with the flatness c = R2/R1 of the cap and q = sqrt(a^2 - 1), 0 below the blend.
 
     t is a on the cap and 1 + q/c beyond, so that it resolves the blend where the cap is nearly flat.
@@ -25,7 +25,7 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
 
 
-def _push(t: float, form: Form) -> float:
+def _reduced_load(t: float, form: Form) -> float:
     c = form[0]
     if t <= 1.0:
         return 2.0 * c * t * t * t / 3.0
@@ -34,7 +34,7 @@ def _push(t: float, form: Form) -> float:
     return 2.0 * c * square * sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
 
 
-def _swept(t: float, form: Form) -> float:
+def _mdr_integral(t: float, form: Form) -> float:
     c = form[0]
     if t <= 1.0:
         return c * t * t * t / 3.0
@@ -43,18 +43,18 @@ def _swept(t: float, form: Form) -> float:
     return (c * square * sqrt(square) + (1.0 - c) * q * q * q) / 3.0
 
 
-def _height(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
     c = form[0]
     return (0.5 * c * r * r, c * r) if r <= 1.0 else (0.5 * c + 0.5 * (r - 1.0) * (r + 1.0), r)
 
 
-def _place(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, form: Form) -> float:
     if radius <= width:
         return radius / width
     return 1.0 + swung(radius, width) / form[0]
 
 
-def _beyond(q: float, form: Form) -> float:
+def _t_of_q(q: float, form: Form) -> float:
     return 1.0 + q / form[0]
 
 
@@ -62,7 +62,7 @@ def _one(form: Form) -> int:
     return 1
 
 
-def _dip(index: int, form: Form) -> tuple[float, float]:
+def _softening_interval(index: int, form: Form) -> tuple[float, float]:
     """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
     c = form[0]
     low, high = 0.0, 0.61575390344349083  # its place for c = 0
@@ -98,18 +98,18 @@ class CappedParaboloid(ProfileShape):
         ("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),
     )
     profile: ClassVar[Profile] = Profile(
-        _curve,
-        _push,
-        _swept,
-        _place,
-        _height,
+        _mdr_profile,
+        _reduced_load,
+        _mdr_integral,
+        _t_of_radius,
+        _f_and_slope,
         _one,
-        _dip,
+        _softening_interval,
         _at_the_blend,
         corner=True,
-        edge_count=one_edge,
-        edge=at_one,
-        beyond=_beyond,
+        breakpoint_count=one_breakpoint,
+        breakpoint=breakpoint_at_one,
+        t_of_q=_t_of_q,
     )
 
     def f(self, r: ArrayLike) -> Floats:

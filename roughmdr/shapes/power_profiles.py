@@ -10,62 +10,62 @@ from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.profile import Form, Profile
 
 
-def _place(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, form: Form) -> float:
     return radius / width
 
 
-def _paraboloid_curve(a: float, form: Form) -> tuple[float, float, float, float]:
+def _paraboloid_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
     return a, 1.0, 2.0 * a * a, 4.0 * a
 
 
-def _paraboloid_push(a: float, form: Form) -> float:
+def _paraboloid_reduced_load(a: float, form: Form) -> float:
     return 4.0 / 3.0 * (a * a * a)
 
 
-def _paraboloid_swept(a: float, form: Form) -> float:
+def _paraboloid_mdr_integral(a: float, form: Form) -> float:
     return 2.0 / 3.0 * (a * a * a)
 
 
-def _paraboloid_height(r: float, form: Form) -> tuple[float, float]:
+def _paraboloid_f_and_slope(r: float, form: Form) -> tuple[float, float]:
     return r * r, 2.0 * r
 
 
-def _paraboloid_strain(a: float, form: Form) -> float:
+def _paraboloid_elastic_integral(a: float, form: Form) -> float:
     square = a * a
     return 32.0 / 15.0 * (square * square * a)
 
 
-def _cone_curve(a: float, form: Form) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
     return a, 1.0, 0.5 * math.pi * a, 0.5 * math.pi
 
 
-def _cone_push(a: float, form: Form) -> float:
+def _cone_reduced_load(a: float, form: Form) -> float:
     return 0.25 * math.pi * (a * a)
 
 
-def _cone_height(r: float, form: Form) -> tuple[float, float]:
+def _cone_f_and_slope(r: float, form: Form) -> tuple[float, float]:
     return r, 1.0
 
 
-def _cone_strain(a: float, form: Form) -> float:
+def _cone_elastic_integral(a: float, form: Form) -> float:
     return math.pi * math.pi / 12.0 * (a * a * a)
 
 
-def _power_curve(a: float, form: Form) -> tuple[float, float, float, float]:
+def _power_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
     """The form is the exponent n, and kappa(n)."""
     g = form[1] * a ** form[0]
     return a, 1.0, g, form[0] * g / a
 
 
-def _power_push(a: float, form: Form) -> float:
+def _power_reduced_load(a: float, form: Form) -> float:
     return form[0] / (form[0] + 1.0) * form[1] * a ** form[0] * a
 
 
-def _power_swept(a: float, form: Form) -> float:
+def _power_mdr_integral(a: float, form: Form) -> float:
     return form[1] * a ** form[0] * a / (form[0] + 1.0)
 
 
-def _power_height(r: float, form: Form) -> tuple[float, float]:
+def _power_f_and_slope(r: float, form: Form) -> tuple[float, float]:
     n = form[0]
     if r > 0.0:
         f = r**n
@@ -73,7 +73,7 @@ def _power_height(r: float, form: Form) -> tuple[float, float]:
     return 0.0, math.inf if n < 1.0 else (1.0 if n == 1.0 else 0.0)
 
 
-def _power_strain(a: float, form: Form) -> float:
+def _power_elastic_integral(a: float, form: Form) -> float:
     n, g = form[0], form[1] * a ** form[0]
     return 2.0 * n * n / (n + 1.0) / (2.0 * n + 1.0) * (g * g * a)
 
@@ -83,24 +83,36 @@ def _power_roundings(form: Form) -> float:
     return 14.0 + form[0]
 
 
-def _power_ready(form: Any) -> None:
+def _power_precompute(form: Any) -> None:
     form[1] = kappa(form[0])
 
 
 _POWERS: dict[type[Shape], Profile] = {
     Paraboloid: Profile(
-        _paraboloid_curve, _paraboloid_push, _paraboloid_swept, _place, _paraboloid_height, strain=_paraboloid_strain
+        _paraboloid_mdr_profile,
+        _paraboloid_reduced_load,
+        _paraboloid_mdr_integral,
+        _t_of_radius,
+        _paraboloid_f_and_slope,
+        elastic_integral=_paraboloid_elastic_integral,
     ),
-    Cone: Profile(_cone_curve, _cone_push, _cone_push, _place, _cone_height, strain=_cone_strain),
+    Cone: Profile(
+        _cone_mdr_profile,
+        _cone_reduced_load,
+        _cone_reduced_load,
+        _t_of_radius,
+        _cone_f_and_slope,
+        elastic_integral=_cone_elastic_integral,
+    ),
     PowerLaw: Profile(
-        _power_curve,
-        _power_push,
-        _power_swept,
-        _place,
-        _power_height,
-        strain=_power_strain,
+        _power_mdr_profile,
+        _power_reduced_load,
+        _power_mdr_integral,
+        _t_of_radius,
+        _power_f_and_slope,
+        elastic_integral=_power_elastic_integral,
         roundings=_power_roundings,
-        ready=_power_ready,
+        precompute=_power_precompute,
     ),
 }
 

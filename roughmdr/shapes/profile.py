@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 Form = Sequence[float]
 
 
-def no_dips(form: Form) -> int:
+def never_softens(form: Form) -> int:
     """No dip."""
     return 0
 
 
-def _no_dip(index: int, form: Form) -> tuple[float, float]:
+def _no_softening_interval(index: int, form: Form) -> tuple[float, float]:
     """Never called."""
     return 0.0, 0.0
 
@@ -28,22 +28,22 @@ def _smooth(low: float, high: float, form: Form) -> bool:
     return False
 
 
-def no_edges(form: Form) -> int:
+def no_breakpoints(form: Form) -> int:
     """No edge."""
     return 0
 
 
-def _no_edge(index: int, form: Form) -> tuple[float, float]:
+def _no_breakpoint(index: int, form: Form) -> tuple[float, float]:
     """Never called."""
     return 0.0, 0.0
 
 
-def one_edge(form: Form) -> int:
+def one_breakpoint(form: Form) -> int:
     """One edge."""
     return 1
 
 
-def at_one(index: int, form: Form) -> tuple[float, float]:
+def breakpoint_at_one(index: int, form: Form) -> tuple[float, float]:
     """At one width, from which on the profile is smooth in sqrt(x^2 - 1)."""
     return 1.0, 1.0
 
@@ -60,23 +60,23 @@ def _nothing(form: Any) -> None:
 class Profile(NamedTuple):
     """A profile in units of its width (radii) and its rise (depths), over the contact radius a; g and G as in H 17."""
 
-    curve: Callable[..., tuple[Any, Any, Any, Any]]
+    mdr_profile: Callable[..., tuple[Any, Any, Any, Any]]
     """(t, form) -> a, da/dt, g, dg/dt."""
-    push: Callable[..., Any]
+    reduced_load: Callable[..., Any]
     """(t, form) -> ∫_0^a x g'(x) dx = a g - G, without their difference."""
-    swept: Callable[..., Any]
+    mdr_integral: Callable[..., Any]
     """(t, form) -> G."""
-    place: Callable[[float, float, Form], float]
+    t_of_radius: Callable[[float, float, Form], float]
     """(contact radius, width, form) -> t."""
-    height: Callable[..., tuple[Any, Any]]
+    f_and_slope: Callable[..., tuple[Any, Any]]
     """(r, form) -> f, df/dr."""
-    dip_count: Callable[[Form], int] = no_dips
+    softening_count: Callable[[Form], int] = never_softens
     """form -> how often sqrt(a) g'(a) falls on its way from 0 to infinity: each time two stable branches may part."""
-    dip: Callable[[int, Form], tuple[float, float]] = _no_dip
+    softening_interval: Callable[[int, Form], tuple[float, float]] = _no_softening_interval
     """(number, form) -> the t from which and to which it falls."""
     kink: Callable[[float, float, Form], bool] = _smooth
     """(low, high, form) -> whether g' is not smooth from low to high."""
-    strain: Callable[..., Any] | None = None
+    elastic_integral: Callable[..., Any] | None = None
     """(t, form) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
     corner: bool = False
     """Whether g' jumps up to infinity where it begins to fall."""
@@ -84,17 +84,17 @@ class Profile(NamedTuple):
     """Whether the profile is flat to one width, so that g and t begin there."""
     end: float = math.inf
     """The radius where the profile ends."""
-    edge_count: Callable[[Form], int] = no_edges
+    breakpoint_count: Callable[[Form], int] = no_breakpoints
     """form -> at how many radii g is not smooth."""
-    edge: Callable[[int, Form], tuple[float, float]] = _no_edge
+    breakpoint: Callable[[int, Form], tuple[float, float]] = _no_breakpoint
     """(number, form) -> such a radius, and the one y for which g is smooth in sqrt(x^2 - y^2) from there on."""
-    beyond: Callable[[float, Form], float] | None = None
+    t_of_q: Callable[[float, Form], float] | None = None
     """(q, form) -> t where q = sqrt(x^2 - y^2) beyond the edge y, where that has more digits than x itself."""
     roundings: Callable[[Form], float] = _few
-    """form -> by how many roundings, of what they are, g and push may be off, that of t among them."""
-    magnitude: Callable[[float, Form], tuple[float, float]] | None = None
+    """form -> by how many roundings, of what they are, g and a g - G may be off, that of t among them."""
+    term_sizes: Callable[[float, Form], tuple[float, float]] | None = None
     """(t, form) -> how large the terms are that g and push are the sums of; None where none of them cancel."""
-    ready: Callable[[Any], None] = _nothing
+    precompute: Callable[[Any], None] = _nothing
     """Fills in what else the functions need to know, in the second place of a form that is one number."""
 
 

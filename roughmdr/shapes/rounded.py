@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile, at_one, one_edge, swung
+from roughmdr.shapes.profile import Form, Profile, breakpoint_at_one, one_breakpoint, swung
 from roughmdr.shapes.special import less_atan, less_atan_and_cube
 
 _CONE_DIP = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
 
-def _cone_curve(a: float, form: Form) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
     """g = a^2; beyond the blend g = a (a - q) + a atan q, q = sqrt(a^2 - 1)."""
     if a <= 1.0:
         return a, 1.0, a * a, 2.0 * a
@@ -24,25 +24,25 @@ def _cone_curve(a: float, form: Form) -> tuple[float, float, float, float]:
     return a, 1.0, a / (a + q) + a * angle, 2.0 / (a + q) + angle
 
 
-def _cone_push(a: float, form: Form) -> float:
+def _cone_reduced_load(a: float, form: Form) -> float:
     if a <= 1.0:
         return 2.0 * a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
     return 0.5 * (a * a * atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
 
 
-def _cone_swept(a: float, form: Form) -> float:
+def _cone_mdr_integral(a: float, form: Form) -> float:
     if a <= 1.0:
         return a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
     return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - less_atan(q))
 
 
-def _cone_height(r: float, form: Form) -> tuple[float, float]:
+def _cone_f_and_slope(r: float, form: Form) -> tuple[float, float]:
     return (0.5 * r * r, r) if r < 1.0 else (r - 0.5, 1.0)
 
 
-def _cone_place(radius: float, width: float, form: Form) -> float:
+def _cone_t_of_radius(radius: float, width: float, form: Form) -> float:
     return radius / width
 
 
@@ -50,7 +50,7 @@ def _one(form: Form) -> int:
     return 1
 
 
-def _cone_dip(index: int, form: Form) -> tuple[float, float]:
+def _cone_softening_interval(index: int, form: Form) -> tuple[float, float]:
     return 1.0, _CONE_DIP
 
 
@@ -69,16 +69,16 @@ class RoundedCone(ProfileShape):
     units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "blend_radius"),)
     profile: ClassVar[Profile] = Profile(
-        _cone_curve,
-        _cone_push,
-        _cone_swept,
-        _cone_place,
-        _cone_height,
+        _cone_mdr_profile,
+        _cone_reduced_load,
+        _cone_mdr_integral,
+        _cone_t_of_radius,
+        _cone_f_and_slope,
         _one,
-        _cone_dip,
+        _cone_softening_interval,
         _at_the_blend,
-        edge_count=one_edge,
-        edge=at_one,
+        breakpoint_count=one_breakpoint,
+        breakpoint=breakpoint_at_one,
     )
 
     def f(self, r: ArrayLike) -> Floats:
@@ -96,17 +96,17 @@ class RoundedCone(ProfileShape):
         return blend, parameters["slope"] * blend, np.zeros_like(blend)
 
 
-def _punch_curve(q: float, form: Form) -> tuple[float, float, float, float]:
+def _punch_mdr_profile(q: float, form: Form) -> tuple[float, float, float, float]:
     """g = a (q - atan q), a = sqrt(1 + q^2)."""
     a, excess = sqrt(1.0 + q * q), less_atan(q)
     return a, q / a, a * excess, q * (excess + q) / a
 
 
-def _punch_push(q: float, form: Form) -> float:
+def _punch_reduced_load(q: float, form: Form) -> float:
     return q * q * q / 6.0 + 0.5 * (1.0 + q * q) * less_atan(q)
 
 
-def _punch_swept(q: float, form: Form) -> float:
+def _punch_mdr_integral(q: float, form: Form) -> float:
     return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
 
 
@@ -115,15 +115,15 @@ def _punch_roundings(form: Form) -> float:
     return 80.0
 
 
-def _punch_beyond(q: float, form: Form) -> float:
+def _punch_t_of_q(q: float, form: Form) -> float:
     return q
 
 
-def _punch_height(r: float, form: Form) -> tuple[float, float]:
+def _punch_f_and_slope(r: float, form: Form) -> tuple[float, float]:
     return (0.5 * (r - 1.0) * (r - 1.0), r - 1.0) if r > 1.0 else (0.0, 0.0)
 
 
-def _punch_place(radius: float, width: float, form: Form) -> float:
+def _punch_t_of_radius(radius: float, width: float, form: Form) -> float:
     return swung(radius, width)
 
 
@@ -138,15 +138,15 @@ class RoundedPunch(ProfileShape):
     units: ClassVar[dict[str, str]] = {"flat_radius": "m", "edge_radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("flat_radius", "edge_radius"),)
     profile: ClassVar[Profile] = Profile(
-        _punch_curve,
-        _punch_push,
-        _punch_swept,
-        _punch_place,
-        _punch_height,
+        _punch_mdr_profile,
+        _punch_reduced_load,
+        _punch_mdr_integral,
+        _punch_t_of_radius,
+        _punch_f_and_slope,
         flat=True,
-        edge_count=one_edge,
-        edge=at_one,
-        beyond=_punch_beyond,
+        breakpoint_count=one_breakpoint,
+        breakpoint=breakpoint_at_one,
+        t_of_q=_punch_t_of_q,
         roundings=_punch_roundings,
     )
 

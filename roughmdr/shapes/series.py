@@ -17,7 +17,7 @@ _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
 _STEEPEST = 1000.0  # exponent: of a steeper term floats hold radii within a factor of two only
 
 
-def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
     g, slope = 0.0, 0.0
     for i in range(int(form[0])):
@@ -27,7 +27,7 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     return t, 1.0, g, slope / t
 
 
-def _push(t: float, form: Form) -> float:
+def _reduced_load(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
         n = form[1 + 3 * i]
@@ -35,7 +35,7 @@ def _push(t: float, form: Form) -> float:
     return total * t
 
 
-def _swept(t: float, form: Form) -> float:
+def _mdr_integral(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
         n = form[1 + 3 * i]
@@ -43,7 +43,7 @@ def _swept(t: float, form: Form) -> float:
     return total * t
 
 
-def _strain(t: float, form: Form) -> float:
+def _elastic_integral(t: float, form: Form) -> float:
     total = 0.0
     for i in range(int(form[0])):
         for j in range(int(form[0])):
@@ -52,7 +52,7 @@ def _strain(t: float, form: Form) -> float:
     return 2.0 * total * t
 
 
-def _height(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
     f, slope = 0.0, 0.0
     for i in range(int(form[0])):
         n, term = form[1 + 3 * i], form[3 + 3 * i] * r ** form[1 + 3 * i]
@@ -61,7 +61,7 @@ def _height(r: float, form: Form) -> tuple[float, float]:
     return f, slope / r if r > 0.0 else (math.inf if form[1] < 1.0 else (form[3] if form[1] == 1.0 else 0.0))
 
 
-def _place(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, form: Form) -> float:
     return radius / width
 
 
@@ -89,7 +89,14 @@ class PowerSeries(SharedProfile):
     along: ClassVar[str] = "term"
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
     profile: ClassVar[Profile] = Profile(
-        _curve, _push, _swept, _place, _height, kink=_kink, strain=_strain, roundings=_roundings
+        _mdr_profile,
+        _reduced_load,
+        _mdr_integral,
+        _t_of_radius,
+        _f_and_slope,
+        kink=_kink,
+        elastic_integral=_elastic_integral,
+        roundings=_roundings,
     )
 
     def __post_init__(self) -> None:

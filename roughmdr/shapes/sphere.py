@@ -14,7 +14,7 @@ from roughmdr.shapes.profile import Form, Profile
 from roughmdr.shapes.special import beyond_tanh
 
 
-def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     """a = tanh t, g = a artanh a."""
     growth = expm1(2.0 * min(t, 300.0))
     a = growth / (growth + 2.0)
@@ -22,13 +22,13 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     return a, narrowing, a * t, a + t * narrowing
 
 
-def _push(t: float, form: Form) -> float:
+def _reduced_load(t: float, form: Form) -> float:
     """[(1 + a^2) artanh a - a]/2."""
     a = tanh(t)
     return 0.5 * (beyond_tanh(t, a) + a * a * t)
 
 
-def _swept(t: float, form: Form) -> float:
+def _mdr_integral(t: float, form: Form) -> float:
     """[(a^2 - 1) artanh a + a]/2."""
     a = tanh(t)
     return 0.5 * (a * a * t - beyond_tanh(t, a))
@@ -39,12 +39,12 @@ def _roundings(form: Form) -> float:
     return 40.0
 
 
-def _height(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
     side = math.sqrt(max((1.0 - r) * (1.0 + r), 0.0))
     return r * r / (1.0 + side), r / side if side > 0.0 else math.inf
 
 
-def _place(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, form: Form) -> float:
     return 0.5 * math.log1p(2.0 * radius / (width - radius)) if radius < width else math.inf
 
 
@@ -57,7 +57,9 @@ class Sphere(ProfileShape):
     name: ClassVar[str] = "sphere"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-    profile: ClassVar[Profile] = Profile(_curve, _push, _swept, _place, _height, end=1.0, roundings=_roundings)
+    profile: ClassVar[Profile] = Profile(
+        _mdr_profile, _reduced_load, _mdr_integral, _t_of_radius, _f_and_slope, end=1.0, roundings=_roundings
+    )
 
     def f(self, r: ArrayLike) -> Floats:
         r = radii("r", r, most=self.radius)

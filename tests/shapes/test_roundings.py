@@ -16,8 +16,10 @@ CURVED = [kind for kind, shape in SHAPES.items() if issubclass(shape, ProfileSha
 def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
     rng = np.random.default_rng(CURVED.index(kind))
     own: type[ProfileShape] = SHAPES[kind]  # type: ignore[assignment]
-    curve, push, roundings = (compiled(part) for part in (own.profile.curve, own.profile.push, own.profile.roundings))
-    magnitude = None if own.profile.magnitude is None else compiled(own.profile.magnitude)
+    curve, push, roundings = (
+        compiled(part) for part in (own.profile.mdr_profile, own.profile.reduced_load, own.profile.roundings)
+    )
+    magnitude = None if own.profile.term_sizes is None else compiled(own.profile.term_sizes)
     worst = 0.0
     for _ in range(20):
         try:

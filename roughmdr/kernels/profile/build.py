@@ -161,19 +161,19 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
     profile, shared = profile_of(shape), issubclass(shape, ProfileShape) and shape.common
     split = _SPLIT if shared else 0
     kernels: dict[str, Any] = {
-        "_curve": compiled(profile.curve),
-        "_push": compiled(profile.push),
-        "_place": compiled(profile.place),
-        "_height": compiled(profile.height),
-        "_dip_count": compiled(profile.dip_count),
-        "_dip": compiled(profile.dip),
+        "_curve": compiled(profile.mdr_profile),
+        "_push": compiled(profile.reduced_load),
+        "_place": compiled(profile.t_of_radius),
+        "_height": compiled(profile.f_and_slope),
+        "_dip_count": compiled(profile.softening_count),
+        "_dip": compiled(profile.softening_interval),
         "_kink": compiled(dugdale.kink if cohesive else profile.kink),
-        "_edge_count": compiled(profile.edge_count),
-        "_edge": compiled(profile.edge),
-        "_ready": compiled(profile.ready),
+        "_edge_count": compiled(profile.breakpoint_count),
+        "_edge": compiled(profile.breakpoint),
+        "_ready": compiled(profile.precompute),
         "_roundings": compiled(profile.roundings),
-        "magnitude": None if profile.magnitude is None else compiled(profile.magnitude),
-        "_beyond": None if profile.beyond is None else compiled(profile.beyond),
+        "magnitude": None if profile.term_sizes is None else compiled(profile.term_sizes),
+        "_beyond": None if profile.t_of_q is None else compiled(profile.t_of_q),
         "_corner": profile.corner,
         "_flat": profile.flat,
         "_end": profile.end,
@@ -186,11 +186,15 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
         "passes": _PASSES_OF_SPLIT if shared else _PASSES,
     }
     # What a table looks up is no vector code.
-    vector = {} if shared else {"_curve": profile.curve, "_push": profile.push}
+    vector = {} if shared else {"_curve": profile.mdr_profile, "_push": profile.reduced_load}
     small = {name: compiled(part, small=True) for name, part in vector.items()}
     forced = (*_VECTOR_CODE, *(_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else ()))
     for part in _parts(shape, cohesive):
-        known = compiled(profile.strain) if part is balance.strain and profile.strain is not None else None
+        known = (
+            compiled(profile.elastic_integral)
+            if part is balance.strain and profile.elastic_integral is not None
+            else None
+        )
         kernels[part.__name__] = known or specialise(
             cast(FunctionType, part),
             f"dugdale_{shape.name}" if cohesive else shape.name,

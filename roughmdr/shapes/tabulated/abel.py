@@ -23,7 +23,7 @@ _WIDE, _WIDE_WEIGHTS = _gauss(14)  # enough for a right angle
 
 
 @njit
-def _beyond(knot: float, a: float, place: float, base: float) -> float:
+def _t_of_q(knot: float, a: float, place: float, base: float) -> float:
     """sqrt(a^2 - knot^2), a^2 = place^2 + base^2."""
     return math.sqrt(place * place + (base - knot) * (base + knot) if knot <= base else (a - knot) * (a + knot))
 
@@ -44,11 +44,11 @@ def integrals(place: Floats, base: Floats, knots: Floats, coefficients: Floats) 
             knot = knots[k]
             if knot >= a:
                 break
-            q = _beyond(knot, a, beside, begin)
+            q = _t_of_q(knot, a, beside, begin)
             angle = math.atan2(q, knot)
             if k + 1 < knots.size and knots[k + 1] < a:
                 end = knots[k + 1]
-                q_end = _beyond(end, a, beside, begin)
+                q_end = _t_of_q(end, a, beside, begin)
                 sine = (end - knot) * (end + knot) * a * a / (end * q + knot * q_end)
                 angle = math.atan2(sine, q * q_end + end * knot)
             nodes, weights = (_FINE, _FINE_WEIGHTS) if angle < _SMALL else (_WIDE, _WIDE_WEIGHTS)

@@ -61,7 +61,7 @@ def _far_sum(t: float, far: int, tilt: float, form: Form) -> float:
     return total
 
 
-def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     piece = _piece(t, form)
     if piece < 0:
         steepness = form[-piece]
@@ -71,18 +71,18 @@ def _curve(t: float, form: Form) -> tuple[float, float, float, float]:
     return t, 1.0, _sum(place, piece + HEAD, form), _sum(place, piece + HEAD + 1 + DEGREE, form)
 
 
-def _push(t: float, form: Form) -> float:
+def _reduced_load(t: float, form: Form) -> float:
     piece = _piece(t, form)
     if piece < 0:
         return 0.5 * form[-piece] * t * t + form[1 - piece] + t * _far_sum(t, -piece, 2.0, form)
     return _sum(_place_on(t, piece, form), piece + HEAD + 2 + 2 * DEGREE, form)
 
 
-def _swept(t: float, form: Form) -> float:
-    return t * _curve(t, form)[2] - _push(t, form)
+def _mdr_integral(t: float, form: Form) -> float:
+    return t * _mdr_profile(t, form)[2] - _reduced_load(t, form)
 
 
-def _magnitude(t: float, form: Form) -> tuple[float, float]:
+def _term_sizes(t: float, form: Form) -> tuple[float, float]:
     """At t on the tip, where there are three terms; else the most anywhere on the piece."""
     piece = _piece(t, form)
     if piece < 0:
@@ -100,7 +100,7 @@ def _roundings(form: Form) -> float:
     return 64.0
 
 
-def _height(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
     begins = 2 + 2 * int(form[0])
     spline = begins + int(form[begins - 1]) * (1 + PIECE) + 1 + FAR
     low, left = 0, int(form[spline])
@@ -112,15 +112,15 @@ def _height(r: float, form: Form) -> tuple[float, float]:
     return form[at + 1] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)), c0 + s * (c1 + s * c2)
 
 
-def _place(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, form: Form) -> float:
     return radius / width
 
 
-def _dip_count(form: Form) -> int:
+def _softening_count(form: Form) -> int:
     return int(form[0])
 
 
-def _dip(index: int, form: Form) -> tuple[float, float]:
+def _softening_interval(index: int, form: Form) -> tuple[float, float]:
     return form[1 + 2 * index], form[2 + 2 * index]
 
 
@@ -133,12 +133,12 @@ def _kink(low: float, high: float, form: Form) -> bool:
     return last < 0 or form[last] != knot or (knot > 0.0 and high - low > 0.1 * (low - knot))
 
 
-def _edge_count(form: Form) -> int:
+def _breakpoint_count(form: Form) -> int:
     """At the begin of each piece but the first, and at the end."""
     return int(form[1 + 2 * int(form[0])])
 
 
-def _edge(index: int, form: Form) -> tuple[float, float]:
+def _breakpoint(index: int, form: Form) -> tuple[float, float]:
     begins = 2 + 2 * int(form[0])
     count = int(form[begins - 1])
     begin = form[begins + index + 1]
@@ -151,11 +151,11 @@ def strain_between(low: float, high: float, form: Form) -> float:
     for i in range(_NODES.size):
         z = _NODES[i]
         at = low + (high - low) * z * z * z * z
-        total += 8.0 * (high - low) * _WEIGHTS[i] * z * z * z * _curve(at, form)[3] * _push(at, form)
+        total += 8.0 * (high - low) * _WEIGHTS[i] * z * z * z * _mdr_profile(at, form)[3] * _reduced_load(at, form)
     return total
 
 
-def _strain(t: float, form: Form) -> float:
+def _elastic_integral(t: float, form: Form) -> float:
     piece = _piece(t, form)
     begins = 2 + 2 * int(form[0])
     count = int(form[begins - 1])
@@ -170,17 +170,17 @@ def _strain(t: float, form: Form) -> float:
 
 
 PROFILE = Profile(
-    _curve,
-    _push,
-    _swept,
-    _place,
-    _height,
-    _dip_count,
-    _dip,
+    _mdr_profile,
+    _reduced_load,
+    _mdr_integral,
+    _t_of_radius,
+    _f_and_slope,
+    _softening_count,
+    _softening_interval,
     _kink,
-    strain=_strain,
-    edge_count=_edge_count,
-    edge=_edge,
+    elastic_integral=_elastic_integral,
+    breakpoint_count=_breakpoint_count,
+    breakpoint=_breakpoint,
     roundings=_roundings,
-    magnitude=_magnitude,
+    term_sizes=_term_sizes,
 )
