@@ -131,9 +131,9 @@ _EVERYWHERE = f"everywhere_{crc32(Path(__file__).read_bytes()):08x}"
 """What was compiled is found again by its name: that tells it from the sum itself, and from other kernels here."""
 
 
-def _choose(shape: str, adhesion: Adhesion, form: Floats) -> Kernels:
+def _choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:
     """The law of a scene, everywhere."""
-    law = choose(shape, adhesion, form)
+    law = choose(shape, adhesion, params)
     return _Everywhere(*law._replace(name=f"{law.name}_{_EVERYWHERE}"))
 
 

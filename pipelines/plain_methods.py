@@ -114,13 +114,13 @@ def by_brentq(ensemble: Ensemble, path: Floats, effective_modulus: float, work: 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
     """g(a) of one shape, floats in, floats out: what a root finder calls fastest."""
-    width, rise, form = shape.nondimensional()
+    width, rise, params = shape.nondimensional()
     if isinstance(shape, PowerLaw):
-        factor, n = kappa(form) * rise, form
+        factor, n = kappa(params) * rise, params
         return lambda a: factor * (a / width) ** n
     assert isinstance(shape, ProfileShape)
     curve, place = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
-    numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
+    numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
     return lambda a: rise * curve(place(a, width, numbers), numbers)[2]
 
 

@@ -126,8 +126,8 @@ def found(kind: str, adhesive: bool, seed: int) -> tuple[Asperity, Found]:
 def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperity, Found] | None:
     shape = DRAW[kind](rng)
     effective_modulus, work = _power(rng, 3.0, 13.0), _power(rng, -9.0, 1.0) if adhesive else 0.0
-    width, rise, form = shape.nondimensional()
-    columns = (np.array([width]), np.array([rise]), np.asarray(form, dtype=np.float64)[None])
+    width, rise, params = shape.nondimensional()
+    columns = (np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
     adhesion = Adhesion(work)
     law = choose(kind, adhesion, columns[2])
     row = law.own(law.prepare(effective_modulus, work, math.inf, *columns, 0, 1, 0.0), 0)

@@ -69,7 +69,7 @@ def counted(case: Case, law: str) -> list[int] | None:
     except rm.RoughmdrError:
         return None
     (contact,) = contacts
-    return [calls(TRIALS[law], lambda: contact.law.state(case.distance, contact.form)), before]
+    return [calls(TRIALS[law], lambda: contact.law.state(case.distance, contact.params)), before]
 
 
 def main() -> None:

@@ -257,11 +257,11 @@ class Tip:
 
     def _bears(self, branch: int, above: Floats) -> Floats:
         """[N] on a branch at indentations so far above its foot."""
-        law, form = self.contact.law, self.contact.form
+        law, params = self.contact.law, self.contact.params
         x = self.feet[branch] + above / self.contact.depth[0]
         if law.branched and law.state_on is not None:
-            state = apply(law.state_on, x, branch + 1.0, form)
+            state = apply(law.state_on, x, branch + 1.0, params)
         else:
-            state = apply(law.state, x, form)
-        force = apply(law.force, state, form) if law.answer is None else apply_all(law.answer, state, form)[1]
+            state = apply(law.state, x, params)
+        force = apply(law.force, state, params) if law.answer is None else apply_all(law.answer, state, params)[1]
         return self.contact.force * force

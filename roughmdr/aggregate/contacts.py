@@ -41,21 +41,21 @@ def hold(count: int, z: Floats, begin: int, end: int, bottom: Floats, top: Float
             held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
 
 
-def conclude(count: int, forms: Floats, found: Floats) -> None:
+def conclude(count: int, params: Floats, found: Floats) -> None:
     """Find a, P and k of the first ``count`` contacts."""
     a, force, stiffness = found[RADIUS], found[FORCE], found[STIFFNESS]
     for i in range(count):
-        a[i], force[i], stiffness[i] = _answer(found[STATE, i], _own(forms, i))
+        a[i], force[i], stiffness[i] = _answer(found[STATE, i], _own(params, i))
 
 
-def leave(count: int, forms: Floats, found: Floats) -> None:
+def leave(count: int, params: Floats, found: Floats) -> None:
     """Leave a, P and k to who asks for them."""
 
 
 def settle(
     count: int,
     z: Floats,
-    forms: Floats,
+    params: Floats,
     h: float,
     reach: float,
     begin: int,
@@ -76,17 +76,17 @@ def settle(
         hold(count, z, begin, end, bottom, top, depth, held)
         for i in range(count):
             x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = _state(x if held[i] > 0.0 else 1.0, _own(forms, i))
+            state[i] = _state(x if held[i] > 0.0 else 1.0, _own(params, i))
     else:
         for i in range(count):
-            state[i] = _state((z[i] - h) * per_depth[i], _own(forms, i))
-    conclude(count, forms, found)
+            state[i] = _state((z[i] - h) * per_depth[i], _own(params, i))
+    conclude(count, params, found)
 
 
 def settle_curved(
     count: int,
     z: Floats,
-    forms: Floats,
+    params: Floats,
     h: float,
     reach: float,
     begin: int,
@@ -109,50 +109,50 @@ def settle_curved(
         x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
     if _branched:
         for i in range(count):
-            held[i] = _rung(x[i], held[i], z[i] >= h - reach, _own(forms, i))
+            held[i] = _rung(x[i], held[i], z[i] >= h - reach, _own(params, i))
     elif _adhesive:
         hold(count, z, begin, end, bottom, top, depth, held)
     if _adhesive:
         for i in range(count):
             x[i] = x[i] if held[i] > 0.0 else 1.0
     for i in range(count):
-        state[i] = _guess(x[i], _own(forms, i))
+        state[i] = _guess(x[i], _own(params, i))
     for _ in range(_passes):
         for i in range(count):
-            state[i], terms[i], _ = _nearer(state[i], x[i], _own(forms, i))
+            state[i], terms[i], _ = _nearer(state[i], x[i], _own(params, i))
     for i in range(count):
         rung = held[i] if _adhesive else 1.0
-        if rung > 0.0 and not _arrived(state[i], terms[i], x[i], rung, _own(forms, i)):
-            t, step, _ = _nearer(state[i], x[i], _own(forms, i))
-            state[i] = t if _arrived(t, step, x[i], rung, _own(forms, i)) else _state_on(x[i], rung, _own(forms, i))
-    conclude(count, forms, found)
+        if rung > 0.0 and not _arrived(state[i], terms[i], x[i], rung, _own(params, i)):
+            t, step, _ = _nearer(state[i], x[i], _own(params, i))
+            state[i] = t if _arrived(t, step, x[i], rung, _own(params, i)) else _state_on(x[i], rung, _own(params, i))
+    conclude(count, params, found)
 
 
-def radius_at(i: int, found: Floats, forms: Floats) -> float:
+def radius_at(i: int, found: Floats, params: Floats) -> float:
     """a of one contact over its natural scale."""
-    return _radius(found[STATE, i], _own(forms, i))
+    return _radius(found[STATE, i], _own(params, i))
 
 
-def force_at(i: int, found: Floats, forms: Floats) -> float:
+def force_at(i: int, found: Floats, params: Floats) -> float:
     """P of one contact over its natural scale."""
-    return _force(found[STATE, i], _own(forms, i))
+    return _force(found[STATE, i], _own(params, i))
 
 
-def stiffness_at(i: int, found: Floats, forms: Floats) -> float:
+def stiffness_at(i: int, found: Floats, params: Floats) -> float:
     """k of one contact over its natural scale."""
-    return _stiffness(found[STATE, i], _own(forms, i))
+    return _stiffness(found[STATE, i], _own(params, i))
 
 
-def radius_found(i: int, found: Floats, forms: Floats) -> float:
+def radius_found(i: int, found: Floats, params: Floats) -> float:
     """The same where it was found with the state."""
     return float(found[RADIUS, i])
 
 
-def force_found(i: int, found: Floats, forms: Floats) -> float:
+def force_found(i: int, found: Floats, params: Floats) -> float:
     """The same where it was found with the state."""
     return float(found[FORCE, i])
 
 
-def stiffness_found(i: int, found: Floats, forms: Floats) -> float:
+def stiffness_found(i: int, found: Floats, params: Floats) -> float:
     """The same where it was found with the state."""
     return float(found[STIFFNESS, i])

@@ -52,7 +52,7 @@ def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: flo
 def bound(
     count: int,
     z: Floats,
-    forms: Floats,
+    params: Floats,
     h: float,
     retracted: bool,
     scales: Floats,
@@ -67,21 +67,21 @@ def bound(
     the least or the greatest state: two calls bound a block of one form. Only a retraction brings a state below that of
     first touch, x = 1.
     """
-    high = _state(((z[0] - h) + (greatest[DEPTH] if _adhesive else 0.0)) * greatest[PER_DEPTH], _own(forms, 0))
+    high = _state(((z[0] - h) + (greatest[DEPTH] if _adhesive else 0.0)) * greatest[PER_DEPTH], _own(params, 0))
     low = high
     if _adhesive:
-        low = _state(1.0, _own(forms, 0))
+        low = _state(1.0, _own(params, 0))
         if retracted:
             for i in range(count):
                 terms[i] = found[STATE, i] if held[i] > 0.0 else math.inf
             low = max(min(low, least(terms, count)), ROUNDING)
-    slope = max(abs(_stiffness(low, _own(forms, 0))), abs(_stiffness(high, _own(forms, 0))))
+    slope = max(abs(_stiffness(low, _own(params, 0))), abs(_stiffness(high, _own(params, 0))))
     least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
-    push = max(least_push, abs(_force(high, _own(forms, 0)))) * _errors(_own(forms, 0))[0]
-    if _mixed(forms):
+    push = max(least_push, abs(_force(high, _own(params, 0)))) * _errors(_own(params, 0))[0]
+    if _mixed(params):
         for i in range(count):
-            slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(forms, i))))
-            push = max(push, abs(_force(found[STATE, i], _own(forms, i))) * _errors(_own(forms, i))[0])
+            slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(params, i))))
+            push = max(push, abs(_force(found[STATE, i], _own(params, i))) * _errors(_own(params, i))[0])
     slope, push = count * slope * greatest[RIGIDITY], count * push * greatest[LOAD]
     return worst(count, z, h, slope, push, 0.0, greatest)
 
@@ -89,7 +89,7 @@ def bound(
 def bound_found(
     count: int,
     z: Floats,
-    forms: Floats,
+    params: Floats,
     h: float,
     retracted: bool,
     scales: Floats,
@@ -102,15 +102,15 @@ def bound_found(
     slope, push, swing = 0.0, 0.0, 0.0
     for i in range(count):
         if not _adhesive or held[i] > 0.0:
-            own, each = _errors(_own(forms, i))
+            own, each = _errors(_own(params, i))
             k, stretch, share = abs(found[STIFFNESS, i]), 0.0, 0.0
             if _adhesive:
-                stretch, share = _pulled(found[RADIUS, i], _own(forms, i))
+                stretch, share = _pulled(found[RADIUS, i], _own(params, i))
                 if k == math.inf:  # on the fold itself
                     k = share / stretch / ROUNDING
             off = own * (abs(found[FORCE, i]) + 2.0 * share) + 2.0 * _NEXT_TO_A_FOLD * each * k * stretch
             if _magnitude is not None:
-                g, pushed = _magnitude(found[STATE, i], _own(forms, i))
+                g, pushed = _magnitude(found[STATE, i], _own(params, i))
                 off += own * pushed + _NEXT_TO_A_FOLD * each * k * g
             slope, push, swing = slope + scales[RIGIDITY, i] * k, push + scales[LOAD, i] * off, max(swing, each)
     return worst(count, z, h, slope, push, swing, greatest)

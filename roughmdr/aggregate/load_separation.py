@@ -118,11 +118,11 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
     """Compile the sum for a shape and a law of adhesion, once, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
-    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
-    columns = (width, rise, form)
+    width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
+    columns = (width, rise, params)
     for model in adhesion.candidates:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
-        law = choose(shape, one, form)
+        law = choose(shape, one, params)
         loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))

@@ -77,7 +77,7 @@ def _loop(
     height: Floats,
     width: Floats,
     rise: Floats,
-    form: Floats,
+    params: Floats,
     effective_modulus: float,
     work: float,
     strength: float,
@@ -108,7 +108,7 @@ def _loop(
         z = height[block]
         if _within_reach(z, closest) == 0:
             break
-        n = _prepare(effective_modulus, work, strength, width, rise, form, start, start + z.size, 0.0)
+        n = _prepare(effective_modulus, work, strength, width, rise, params, start, start + z.size, 0.0)
         if not measure(width[block], rise[block], n, effective_modulus, work, energetic, scales, greatest, terms):
             return _NOT_REPRESENTABLE
         count_before = 0

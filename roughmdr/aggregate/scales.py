@@ -21,7 +21,7 @@ _own: Callable[..., Any]
 def measure(
     width: Floats,
     rise: Floats,
-    forms: Floats,
+    params: Floats,
     effective_modulus: float,
     work: float,
     energetic: bool,
@@ -34,7 +34,7 @@ def measure(
     That of the energy is 1 unless it is ``energetic``: unless an energy is wanted.
     """
     for i in range(width.size):  # nothing but this, so that it becomes vector code
-        (depth, _), size, load, rigidity = _natural(effective_modulus, work, width[i], rise[i], _own(forms, i))
+        (depth, _), size, load, rigidity = _natural(effective_modulus, work, width[i], rise[i], _own(params, i))
         scales[DEPTH, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
         scales[SIZE, i] = size

@@ -36,7 +36,9 @@ class JkrValidity(NamedTuple):
     """About by how much the force of JKR is off, over the largest force."""
 
 
-def _extremes(width: Floats, rise: Floats, form: Floats, effective_modulus: float, work: float) -> tuple[float, float]:
+def _extremes(
+    width: Floats, rise: Floats, params: Floats, effective_modulus: float, work: float
+) -> tuple[float, float]:
     """The least radius [m] and the greatest depth [m] of contacts where they let go under fixed grips in JKR.
 
     The radius is not above 0 where a contact is not representable.
@@ -44,9 +46,9 @@ def _extremes(width: Floats, rise: Floats, form: Floats, effective_modulus: floa
     least, deepest = math.inf, 0.0
     for start in range(0, width.size, BLOCK):
         stop = min(start + BLOCK, width.size)
-        forms = _prepare(effective_modulus, work, math.inf, width, rise, form, start, stop, 0.0)
+        params = _prepare(effective_modulus, work, math.inf, width, rise, params, start, stop, 0.0)
         for i in range(stop - start):
-            n = _own(forms, i)
+            n = _own(params, i)
             (depth, _), size, _, _ = _natural(effective_modulus, work, width[start + i], rise[start + i], n)
             least = min(least, size * _radius(_state(0.0, n), n) if depth > 0.0 else 0.0)
             deepest = max(deepest, depth)

@@ -30,7 +30,7 @@ stiffness_at: Callable[..., float]
 
 def tally(
     count: int,
-    forms: Floats,
+    params: Floats,
     scales: Floats,
     held: Floats,
     found: Floats,
@@ -47,33 +47,33 @@ def tally(
     size, load, rigidity, worth = scales[SIZE], scales[LOAD], scales[RIGIDITY], scales[WORTH]
     if wanted[FORCE]:
         for i in range(count):
-            terms[i] = load[i] * force_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = load[i] * force_at(i, found, params) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[FORCE], carried[FORCE], step, add_up(terms, count))
     if wanted[RADIUS]:
         for i in range(count):
-            terms[i] = size[i] * radius_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = size[i] * radius_at(i, found, params) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[RADIUS], carried[RADIUS], step, add_up(terms, count))
     if wanted[AREA]:
         for i in range(count):
-            a = size[i] * radius_at(i, found, forms)
+            a = size[i] * radius_at(i, found, params)
             terms[i] = math.pi * (a * a) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[AREA], carried[AREA], step, add_up(terms, count))
     if wanted[STIFFNESS]:
         for i in range(count):
-            terms[i] = rigidity[i] * stiffness_at(i, found, forms) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = rigidity[i] * stiffness_at(i, found, params) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[STIFFNESS], carried[STIFFNESS], step, add_up(terms, count))
     if wanted[ENERGY]:
         for i in range(count):
-            terms[i] = worth[i] * _energy(found[STATE, i], _own(forms, i)) if not _adhesive or held[i] > 0.0 else 0.0
+            terms[i] = worth[i] * _energy(found[STATE, i], _own(params, i)) if not _adhesive or held[i] > 0.0 else 0.0
         accumulate(total[ENERGY], carried[ENERGY], step, add_up(terms, count))
     if wanted[COUNT]:
         for i in range(count):
-            touching = not _cohesive or radius_at(i, found, forms) > 0.0
+            touching = not _cohesive or radius_at(i, found, params) > 0.0
             terms[i] = 1.0 if touching and (not _adhesive or held[i] > 0.0) else 0.0
         accumulate(total[COUNT], carried[COUNT], step, add_up(terms, count))
 
 
-def jumps(count: int, forms: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
+def jumps(count: int, params: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
     """The energy [J] lost in the jumps of a block since the step before, of whose contacts it takes the place.
 
     Between two steps the flat moves one way, so that a contact made or lost on the way has jumped once: on at first
@@ -83,7 +83,7 @@ def jumps(count: int, forms: Floats, worth: Floats, held: Floats, held_before: F
         made = held[i] > held_before[i]
         lost = held[i] < held_before[i]
         if made or lost:
-            energy = _energy(_state(1.0 if made else 0.0, _own(forms, i)), _own(forms, i))
+            energy = _energy(_state(1.0 if made else 0.0, _own(params, i)), _own(params, i))
             terms[i] = worth[i] * (-energy if made else energy)
         else:
             terms[i] = 0.0
@@ -91,9 +91,11 @@ def jumps(count: int, forms: Floats, worth: Floats, held: Floats, held_before: F
     return add_up(terms, count)
 
 
-def jumps_branched(count: int, forms: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats) -> float:
+def jumps_branched(
+    count: int, params: Floats, worth: Floats, held: Floats, held_before: Floats, terms: Floats
+) -> float:
     """The same where a contact also jumps from one branch to another; ``held`` is the number of the branch."""
     for i in range(count):
-        terms[i] = worth[i] * _spent(held_before[i], held[i], _own(forms, i)) if held[i] != held_before[i] else 0.0
+        terms[i] = worth[i] * _spent(held_before[i], held[i], _own(params, i)) if held[i] != held_before[i] else 0.0
         held_before[i] = held[i]
     return add_up(terms, count)

@@ -26,7 +26,7 @@ class Contact(NamedTuple):
     shape: Shape
     effective_modulus: float
     adhesion: Adhesion
-    form: Any
+    params: Any
     depth: tuple[float, float]
     radius: float
     force: float
@@ -38,44 +38,44 @@ class Contact(NamedTuple):
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
-        width, rise, form = shape.nondimensional()
-        law = choose(shape.name, adhesion, np.array([form]))
+        width, rise, params = shape.nondimensional()
+        law = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
-            form = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
-            if isinstance(shape, ProfileShape) and shape.profile.end * width < adhesion.range and form[COUNT] == 0.0:
+            params = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
+            if isinstance(shape, ProfileShape) and shape.profile.end * width < adhesion.range and params[COUNT] == 0.0:
                 raise OutOfRange(
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, reaches beyond the end of "
                     f"{shape}; it must be larger"
                 )
-            if isinstance(shape, FlatPunch) and adhesion.cohesive and form[COUNT] == 0.0:
+            if isinstance(shape, FlatPunch) and adhesion.cohesive and params[COUNT] == 0.0:
                 raise OutOfRange(
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
                     f"of {shape} is lost in its roundings; it must be larger"
                 )
-            scales = law.natural(effective_modulus, adhesion.work, width, rise, form)
-            contact = cls(law, shape, effective_modulus, adhesion, form, *scales)
+            scales = law.natural(effective_modulus, adhesion.work, width, rise, params)
+            contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
         contact._check(
             indentation=contact.depth[0],
             contact_radius=contact.radius,
             force=contact.force,
             stiffness=contact.stiffness,
         )
-        return contact._replace(depth=contact._exact(contact.depth, form))
+        return contact._replace(depth=contact._exact(contact.depth, params))
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
         """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
-            form = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
-            force, radius = self.law.natural_force(self.effective_modulus, self.adhesion.work, width, rise, form)
+            params = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
+            force, radius = self.law.natural_force(self.effective_modulus, self.adhesion.work, width, rise, params)
         self._check(force=force[0], contact_radius=radius)
-        return self._exact(force, form), radius, form
+        return self._exact(force, params), radius, params
 
-    def _exact(self, depth: tuple[float, float], form: Any) -> tuple[float, float]:
+    def _exact(self, depth: tuple[float, float], params: Any) -> tuple[float, float]:
         """A natural depth with the digits that the fold needs."""
         if not (self.law.adhesive and self.law.curved) or self.adhesion.cohesive:
             return depth
-        return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, form)
+        return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, params)
 
     def _check(self, **scales: float) -> None:
         for quantity, scale in scales.items():
@@ -107,9 +107,9 @@ class Contact(NamedTuple):
         law = self.law
         onset = -self.depth[0] if law.adhesive else 0.0
         touching = (delta >= onset) if law.adhesive else (delta > 0.0)
-        state = apply(law.state, np.where(touching, self.reduced(delta, self.depth), 1.0), self.form)
+        state = apply(law.state, np.where(touching, self.reduced(delta, self.depth), 1.0), self.params)
         one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
-        off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, self.form), state)
+        off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, self.params), state)
         radius, force, _ = self._answers(state)
         results = {
             "force": force,
@@ -122,17 +122,17 @@ class Contact(NamedTuple):
     def at_force(self, force: Floats) -> Results:
         """The contact on the branch that is stable under dead load; OutOfRange where there is none."""
         law = self.law
-        scale, radius_there, form = self._under_load()
+        scale, radius_there, params = self._under_load()
         lowest = -scale[0] if law.adhesive else 0.0
         if (force < lowest).any():
             worst = float(force.min())
             raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
         touching = (force >= lowest) if law.adhesive else (force > 0.0)
         distance = np.where(touching, self.reduced(force, scale), 1.0)
-        state = apply(law.state_of_force, distance, form)
+        state = apply(law.state_of_force, distance, params)
         radius, _, stiffness = self._answers(state)
         if law.radius_of_force is not None:
-            radius = radius_there * apply(law.radius_of_force, distance, form)
+            radius = radius_there * apply(law.radius_of_force, distance, params)
         results = {
             "indentation": self._indentation(state),
             "contact_radius": radius,
@@ -161,10 +161,10 @@ class Contact(NamedTuple):
             )
         touching = radius > 0.0
         a = np.where(touching, radius, self.radius)
-        state = apply(law.state_of_radius, a, self.radius, self.form)
+        state = apply(law.state_of_radius, a, self.radius, self.params)
         off_the_fold = state
         if law.adhesive and not law.curved:  # the folds of rows lie between the floats
-            above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.form)
+            above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             off_the_fold = np.where(state == 0.0, above, state)
         results = {
             "indentation": self._indentation(state),
@@ -176,30 +176,30 @@ class Contact(NamedTuple):
 
     def _answers(self, state: Floats) -> tuple[Floats, Floats, Floats]:
         """Contact radius [m], force [N] and stiffness [N/m] of each state."""
-        law, form = self.law, self.form
+        law, params = self.law, self.params
         with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
             if law.answer is None:
-                parts = [apply(kernel, state, form) for kernel in (law.radius, law.force, law.stiffness)]
+                parts = [apply(kernel, state, params) for kernel in (law.radius, law.force, law.stiffness)]
             else:
-                parts = list(apply_all(law.answer, state, form))
+                parts = list(apply_all(law.answer, state, params))
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
     def _cohesive(self, state: Floats) -> Results:
         """The cohesive radius [m] of each state, where adhesion has a range."""
         if self.law.cohesive_radius is None:
             return {}
-        return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.form)}
+        return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.params)}
 
     def _indentation(self, state: Floats) -> Floats:
         """Indentation [m] of each state."""
-        distance = apply(self.law.distance, state, self.form)
+        distance = apply(self.law.distance, state, self.params)
         if not self.law.adhesive:
             return self.depth[0] * distance
         return self.depth[0] * (distance - 1.0) - self.depth[1]
 
 
 def _prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
-    width, rise, form = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
+    width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
     return law.own(
-        law.prepare(effective_modulus, adhesion.work, adhesion.strength, width, rise, form, 0, 1, control), 0
+        law.prepare(effective_modulus, adhesion.work, adhesion.strength, width, rise, params, 0, 1, control), 0
     )

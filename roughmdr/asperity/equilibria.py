@@ -65,14 +65,14 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
         return
     if law.branched and law.state_on is not None and law.rung is not None and delta > onset:
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
-        for number in range(1, int(contact.form[COUNT]) + 1):
+        for number in range(1, int(contact.params[COUNT]) + 1):
             # A way that begins on a branch ends there just where the branch reaches so far.
-            if law.rung(x, float(number), True, contact.form) == number:
-                state = law.state_on(x, float(number), contact.form)
+            if law.rung(x, float(number), True, contact.params) == number:
+                state = law.state_on(x, float(number), contact.params)
                 yield (
-                    contact.radius * law.radius(state, contact.form),
-                    contact.force * law.force(state, contact.form),
-                    contact.stiffness * law.stiffness(state, contact.form),
+                    contact.radius * law.radius(state, contact.params),
+                    contact.force * law.force(state, contact.params),
+                    contact.stiffness * law.stiffness(state, contact.params),
                 )
     else:
         results = contact.at_indentation(np.array([delta]))
@@ -115,12 +115,12 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
 def _falls(contact: Contact) -> Iterator[tuple[float, float]]:
     """Contact radii between which the indentation falls."""
     if contact.law.curved:
-        form = contact.form
+        params = contact.params
         radii: Floats = np.array(
             [
-                contact.radius * contact.law.radius(form[place + j], form)
-                for j in range(int(form[COUNT]))
-                for place in (FOOT, TOP)[: 1 + (j < form[COUNT] - 1)]
+                contact.radius * contact.law.radius(params[place + j], params)
+                for j in range(int(params[COUNT]))
+                for place in (FOOT, TOP)[: 1 + (j < params[COUNT] - 1)]
             ]
         )
     else:

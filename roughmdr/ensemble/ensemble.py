@@ -60,8 +60,8 @@ class Ensemble:
         if self.fixed is None:
             with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
                 return SHAPES[self.shape].nondimensionalise(self.parameters)
-        width, rise, form = self.fixed.nondimensional()
-        return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(form)[None]
+        width, rise, params = self.fixed.nondimensional()
+        return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(params)[None]
 
     def extremes(self, radius: Floats) -> ValidityLimits:
         """The most that contacts of these radii [m], 0 for none, come to."""

@@ -69,7 +69,7 @@ def curves_of(
     groups: dict[tuple[bytes, int], list[int]] = {}
     for number, (contact, (_, typical)) in enumerate(zip(contacts, ranges, strict=True)):
         decade = round(math.log(typical) / _ALIKE) if 0.0 < typical < math.inf else 0
-        groups.setdefault((np.asarray(contact.form).tobytes(), decade), []).append(number)
+        groups.setdefault((np.asarray(contact.params).tobytes(), decade), []).append(number)
     curves: dict[int, Curve] = {}
     for alike in groups.values():
         farthest, typical = max(ranges[number][0] for number in alike), min(ranges[number][1] for number in alike)
@@ -114,7 +114,7 @@ def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, .
 
 def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
     """x where each stable branch begins, and where each but the last ends."""
-    row = contact.form
+    row = contact.params
     if not contact.law.branched or row.size < -places.TOP_X:  # the row of a punch has no place for others
         return [0.0], []
     count = int(row[places.COUNT])
@@ -124,16 +124,16 @@ def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
 
 def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple[int, ...]) -> Floats:
     """The wanted quantities at s, the stiffness times 2 s: [row, s]."""
-    law, form = contact.law, contact.form
+    law, params = contact.law, contact.params
     x = foot + s * s
     if law.branched and law.state_on is not None:
-        state = apply(law.state_on, x, float(rung), form)
+        state = apply(law.state_on, x, float(rung), params)
     else:
-        state = apply(law.state, x, form)
+        state = apply(law.state, x, params)
     if law.answer is not None:
-        radius, force, stiffness = apply_all(law.answer, state, form)
+        radius, force, stiffness = apply_all(law.answer, state, params)
     else:
-        radius, force, stiffness = (apply(kernel, state, form) for kernel in (law.radius, law.force, law.stiffness))
+        radius, force, stiffness = (apply(kernel, state, params) for kernel in (law.radius, law.force, law.stiffness))
     found = {
         FORCE: force,
         RADIUS: radius,
@@ -142,5 +142,5 @@ def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple
         COUNT: np.where(radius > 0.0, 1.0, 0.0),
     }
     if ENERGY in rows:
-        found[ENERGY] = apply(law.energy, state, form)
+        found[ENERGY] = apply(law.energy, state, params)
     return np.array([found[row] for row in rows])

@@ -55,7 +55,7 @@ def _on_one(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
 
 def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
     """With branches: the heights are cut wherever a jump begins, and each interval moves as one."""
-    row, depth, reach = contact.form, contact.depth[0], contact.adhesion.range
+    row, depth, reach = contact.params, contact.depth[0], contact.adhesion.range
     law_rung = contact.law.rung
     if law_rung is None:
         raise AssertionError("a branched law has rungs")
@@ -98,7 +98,7 @@ def _within(low: float, high: float, depth: float) -> float:
 
 def lost(contact: Contact, moved: Intervals) -> Floats:
     """The energy over its natural scale that each of these jumps costs a contact."""
-    law, row = contact.law, contact.form
+    law, row = contact.law, contact.params
     if not law.adhesive:
         return np.zeros(moved.step.size)
     if law.branched and law.spent is not None:

@@ -45,7 +45,7 @@ class HalfSpace(NamedTuple):
     t: float
     width: float
     rise: float
-    row: Any
+    params: Any
     """The numbers of the shape."""
 
     @classmethod
@@ -71,23 +71,23 @@ class HalfSpace(NamedTuple):
         with np.errstate(all="ignore"):
             if control == "contact_radius":
                 radius, depth = wanted, contact.at_radius(wanted)["indentation"]
-                t = apply(law.state_of_radius, radius, contact.radius, contact.form)
+                t = apply(law.state_of_radius, radius, contact.radius, contact.params)
             else:
                 radius, depth = contact.at_indentation(wanted)["contact_radius"], wanted
                 distance = np.where(radius > 0.0, contact.reduced(wanted, contact.depth), 1.0)
-                t = apply(law.state, distance, contact.form)
+                t = apply(law.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
         if not (math.isfinite(a) and math.isfinite(delta)):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
-        width, rise, form = shape.nondimensional()
-        row = np.concatenate([np.atleast_1d(np.asarray(form, dtype=np.float64)), [0.0]])
+        width, rise, params = shape.nondimensional()
+        params = np.concatenate([np.atleast_1d(np.asarray(params, dtype=np.float64)), [0.0]])
         if isinstance(shape, FlatPunch):
             stretch = delta
         else:
-            profile_of(type(shape)).precompute(row)
+            profile_of(type(shape)).precompute(params)
             stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
         state = float(t[0]) if isinstance(shape, ProfileShape) else a / width
-        return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, row)
+        return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, params)
 
     @property
     def sharp(self) -> bool:
@@ -95,7 +95,7 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0 or isinstance(self.shape, FlatPunch):
             return False
         height = profile_of(type(self.shape)).f_and_slope
-        return bool(height(0.0, self.row)[1] > _ROUNDING * height(self.radius / self.width, self.row)[1])
+        return bool(height(0.0, self.params)[1] > _ROUNDING * height(self.radius / self.width, self.params)[1])
 
     def singular(self) -> dict[float, str]:
         """The radii [m] where the pressure is infinite, and what lies there."""
@@ -105,10 +105,12 @@ class HalfSpace(NamedTuple):
         if self.sharp:
             found[0.0] = "the sharp tip of the profile"
         if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).corner:
-            for index in range(profile.breakpoint_count(self.row)):
-                edge = profile.breakpoint(index, self.row)[0]
-                before, after = (profile.f_and_slope(math.nextafter(edge, to), self.row)[1] for to in (0.0, math.inf))
-                if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.row):
+            for index in range(profile.breakpoint_count(self.params)):
+                edge = profile.breakpoint(index, self.params)[0]
+                before, after = (
+                    profile.f_and_slope(math.nextafter(edge, to), self.params)[1] for to in (0.0, math.inf)
+                )
+                if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.params):
                     found[edge * self.width] = "a corner of the profile"
         if self.stretch != 0.0:
             found[self.radius] = "the edge of the contact"
@@ -127,7 +129,7 @@ class HalfSpace(NamedTuple):
         body = np.zeros_like(at)
         if not isinstance(self.shape, FlatPunch):
             kernel = integrals.build(type(self.shape))
-            body = apply(kernel, at, kind, self.radius, self.t, self.width, self.row)
+            body = apply(kernel, at, kind, self.radius, self.t, self.width, self.params)
             if np.isnan(body).any():
                 raise OutOfRange(
                     f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m asks for "
@@ -162,8 +164,10 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).breakpoint_count(self.row):
-            smallest = min(smallest, profile.breakpoint(0, self.row)[0] * self.width)
+        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).breakpoint_count(
+            self.params
+        ):
+            smallest = min(smallest, profile.breakpoint(0, self.params)[0] * self.width)
         decades = math.log10(_DEEP / _SHALLOW) + math.log10(self.radius / smallest)
         depths = np.geomspace(_SHALLOW * smallest, _DEEP * self.radius, int(_STEPS_A_DECADE * decades))
         depths = np.concatenate([[0.0], depths])

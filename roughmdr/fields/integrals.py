@@ -36,15 +36,15 @@ def leg(x: float, y: float, width: float) -> float:
     return math.sqrt((x - y) / width) * math.sqrt((x + y) / width)
 
 
-def rate_from(begin: float, base: float, end: float, row: Floats) -> float:
+def rate_from(begin: float, base: float, end: float, params: Floats) -> float:
     """dt/dv where t grows evenly with v = sqrt(x^2 - base^2) from ``begin`` on, else 0."""
     if begin != base or base == 0.0:
         return 0.0
     far = min(end, 1.5 * begin)
     near = 0.5 * (begin + far)
-    start = _place(begin, 1.0, row)
-    long = (_place(far, 1.0, row) - start) / leg(far, base, 1.0)
-    short = (_place(near, 1.0, row) - start) / leg(near, base, 1.0)
+    start = _place(begin, 1.0, params)
+    long = (_place(far, 1.0, params) - start) / leg(far, base, 1.0)
+    short = (_place(near, 1.0, params) - start) / leg(near, base, 1.0)
     return long if abs(long - short) <= _LINEAR * long else 0.0
 
 
@@ -82,20 +82,20 @@ def span(
     return EXP, math.log(v_low) if v_low > 0.0 else -math.inf, math.log(middle), 1.0
 
 
-def field(point: float, kind: int, a: float, t: float, width: float, row: Floats) -> float:
+def field(point: float, kind: int, a: float, t: float, width: float, params: Floats) -> float:
     """The integral of the weight ``kind`` with dg to the contact radius a, which is at t, for the radius r or depth z.
 
     NaN where floats cannot hold radii as finely as it needs them.
     """
     total, size, high, end, outermost = 0.0, 0.0, a, math.inf, True
-    for index in range(_edge_count(row) - 1, -1 if _FLAT else -2, -1):
-        edge, base = (0.0, 0.0) if index < 0 else _edge(index, row)
+    for index in range(_edge_count(params) - 1, -1 if _FLAT else -2, -1):
+        edge, base = (0.0, 0.0) if index < 0 else _edge(index, params)
         low = edge * width
         if kind == PRESSURE and high <= point:
             break
         if low <= a:
-            rate, begin = rate_from(edge, base, end, row), _place(edge, 1.0, row) if edge > 0.0 else 0.0
-            if outermost and rate == 0.0 and _EPSILON * a > _COARSE * _curve(t, row)[1] * t * width:
+            rate, begin = rate_from(edge, base, end, params), _place(edge, 1.0, params) if edge > 0.0 else 0.0
+            if outermost and rate == 0.0 and _EPSILON * a > _COARSE * _curve(t, params)[1] * t * width:
                 return math.nan
             v_high = (t - begin) / rate if outermost and rate > 0.0 else leg(high, base * width, width)
             v_low = leg(low, base * width, width)
@@ -104,7 +104,7 @@ def field(point: float, kind: int, a: float, t: float, width: float, row: Floats
                     way, bottom, top, scale = span(kind, inner, point, low, high, v_low, v_high, base, width)
                     if top > bottom:
                         far = point / width
-                        part, size = march(bottom, top, size, way, kind, scale, base, far, begin, rate, row)
+                        part, size = march(bottom, top, size, way, kind, scale, base, far, begin, rate, params)
                         total += part
             high, outermost = low, False
         end = edge

@@ -34,17 +34,17 @@ _TIP = 1e-12  # of the integral: what the power law may be wrong by that stands 
 _LEAST = -700.0  # e^-700 is a float
 
 
-def slope(v: float, base: float, begin: float, rate: float, row: Floats) -> tuple[float, float]:
+def slope(v: float, base: float, begin: float, rate: float, params: Floats) -> tuple[float, float]:
     """x and dg/dv at v, where t is ``begin`` + ``rate`` v; or, where ``rate`` is 0, the place of x."""
     x = math.hypot(v, base)
     if rate > 0.0:
-        return x, rate * _curve(begin + rate * v, row)[3]
-    _, da, _, dg = _curve(_place(x, 1.0, row), row)
+        return x, rate * _curve(begin + rate * v, params)[3]
+    _, da, _, dg = _curve(_place(x, 1.0, params), params)
     return x, (v / x) * dg / da
 
 
 def weighted(
-    u: float, way: int, kind: int, scale: float, base: float, far: float, begin: float, rate: float, row: Floats
+    u: float, way: int, kind: int, scale: float, base: float, far: float, begin: float, rate: float, params: Floats
 ) -> float:
     """The integrand over u; ``far`` is r or z."""
     if way == SINH:
@@ -56,7 +56,7 @@ def weighted(
         dv = v
     else:
         v, dv = scale * math.sin(u), scale * math.cos(u)
-    x, dg = slope(v, base, begin, rate, row)
+    x, dg = slope(v, base, begin, rate, params)
     if kind == PRESSURE:
         return dg  # dv/sqrt(x^2 - r^2) is du
     if kind == DISPLACEMENT:
@@ -72,9 +72,9 @@ def weighted(
     return dg * dv * cosine * sine * sine * sine / d / d
 
 
-def tip(u: float, row: Floats) -> float:
+def tip(u: float, params: Floats) -> float:
     """∫ g'/x dx from 0 to e^u, were g a power law: g g'/(x g' - g)."""
-    _, da, g, dg = _curve(_place(math.exp(u), 1.0, row), row)
+    _, da, g, dg = _curve(_place(math.exp(u), 1.0, params), params)
     rise = math.exp(u) * dg / da
     return rise / (rise - g) * (g / math.exp(u)) if rise > g else 0.0
 
@@ -90,7 +90,7 @@ def march(
     far: float,
     begin: float,
     rate: float,
-    row: Floats,
+    params: Floats,
 ) -> tuple[float, float]:
     """The integral from low to high (way EXP: from v = 0), begun from above, and ``size`` with its size added.
 
@@ -102,7 +102,7 @@ def march(
         panel, bulk, even, odd = 0.0, 0.0, 0.0, 0.0
         for i in range(_NODES.size):
             u = at - 0.5 * step * (1.0 - _NODES[i])
-            value = weighted(u, way, kind, scale, base, far, begin, rate, row)
+            value = weighted(u, way, kind, scale, base, far, begin, rate, params)
             panel += _WEIGHTS[i] * value
             bulk += _WEIGHTS[i] * abs(value)
             even += _TAIL[0, i] * value
@@ -113,8 +113,8 @@ def march(
             continue
         total, size = total + panel, size + bulk
         if way == EXP and kind == PRESSURE and base == 0.0:
-            rest = tip(at - step, row)
-            if abs(tip(at, row) - panel - rest) <= _TIP * size:
+            rest = tip(at - step, params)
+            if abs(tip(at, params) - panel - rest) <= _TIP * size:
                 return total + rest, size
         elif way == EXP and bulk <= _NOTHING * size and (kind <= DISPLACEMENT or at < math.log(far)):
             return total, size

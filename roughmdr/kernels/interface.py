@@ -21,8 +21,8 @@ class Kernels(NamedTuple):
     """The kernels of one asperity: scalars in, scalars out, reduced by the natural scales of the contact.
 
     ``x`` is the distance to the onset of contact over the natural depth (without adhesion delta/depth, with it
-    1 - delta/delta_c, delta_c where a slow retraction ends); ``form`` is one asperity's share of what ``prepare`` made
-    of the third result of ``Shape.stretch``: a number, or a row of numbers.
+    1 - delta/delta_c, delta_c where a slow retraction ends); ``params`` are one asperity's share of what ``prepare``
+    made of the third result of ``Shape.nondimensionalise``: a number, or a row of numbers.
     """
 
     name: str
@@ -141,15 +141,15 @@ _JKR = {
 }
 
 
-def choose(shape: str, adhesion: Adhesion, form: Floats) -> Kernels:
-    """The law of asperities of one shape; ``form`` as from ``Shape.stretch``.
+def choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:
+    """The law of asperities of one shape; ``params`` as from ``Shape.stretch``.
 
     OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
     two springs' laws are parallel.
     """
     kind = SHAPES[shape]
     if adhesion.work > 0.0:
-        lowest = kind.least_exponent(form)
+        lowest = kind.least_exponent(params)
         if not lowest > 0.5:
             raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
     if adhesion.cohesive:

@@ -80,7 +80,7 @@ class Shape(ABC):
         raise ShapeError(f"{cls.name}: got {got}; it takes {allowed}")
 
     @classmethod
-    def least_exponent(cls, form: Floats) -> float:
+    def least_exponent(cls, params: Floats) -> float:
         """The least n among the tips f ~ r^n of asperities, from the third column of ``nondimensionalise``."""
         return math.inf
 
@@ -100,8 +100,8 @@ class Shape(ABC):
         parameters = {name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()}
         with np.errstate(all="ignore"):  # what no float can hold is refused where a contact is looked for
             columns = self.nondimensionalise(parameters)
-        width, rise, form = (float(column[0]) for column in columns)
-        return width, rise, form
+        width, rise, params = (float(column[0]) for column in columns)
+        return width, rise, params
 
     def __post_init__(self) -> None:
         parameters = self.parameters
@@ -152,26 +152,26 @@ class ProfileShape(Shape):
         lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
         with mp.workdps(40 + int(4.0 * lost)):
             exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
-            width, rise, form = (column[0] for column in self.nondimensionalise(exact))
-            a, _, g, _ = remake(self.profile.mdr_profile)(mp.mpf(t), [form])
-            return width * a, rise * g, width * rise * remake(self.profile.reduced_load)(mp.mpf(t), [form])
+            width, rise, params = (column[0] for column in self.nondimensionalise(exact))
+            a, _, g, _ = remake(self.profile.mdr_profile)(mp.mpf(t), [params])
+            return width * a, rise * g, width * rise * remake(self.profile.reduced_load)(mp.mpf(t), [params])
 
     def g(self, x: ArrayLike) -> Floats:
-        return self._along(radii("x", x), lambda curve, swept, t, form: curve(t, form)[2])
+        return self._along(radii("x", x), lambda curve, swept, t, params: curve(t, params)[2])
 
     def G(self, a: ArrayLike) -> Floats:
         width = self.nondimensional()[0]
-        return width * self._along(radii("a", a), lambda curve, swept, t, form: swept(t, form))
+        return width * self._along(radii("a", a), lambda curve, swept, t, params: swept(t, params))
 
     def _along(self, radius: Floats, value: Callable[..., float]) -> Floats:
         """The rise times ``value`` at each contact radius; 0 on the flat."""
         from roughmdr.numerics.jit import compiled  # it alone needs the compiler
 
-        width, rise, form = self.nondimensional()
+        width, rise, params = self.nondimensional()
         curve, swept, place = (
             compiled(part) for part in (self.profile.mdr_profile, self.profile.mdr_integral, self.profile.t_of_radius)
         )
-        numbers = np.atleast_1d(np.asarray(form, dtype=np.float64))
+        numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
         begin = width if self.profile.flat else 0.0
         flat = [value(curve, swept, place(a, width, numbers), numbers) if a > begin else 0.0 for a in radius.flat]
         results = rise * np.array(flat, dtype=np.float64).reshape(radius.shape)

@@ -9,15 +9,15 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile, breakpoint_at_one, one_breakpoint, swung
+from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
 
 
-def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
     """g = c a^2 + (1 - c) a q with the flatness c = R2/R1 of the cap and q = sqrt(a^2 - 1), 0 below the blend.
 
     t is a on the cap and 1 + q/c beyond, so that it resolves the blend where the cap is nearly flat.
     """
-    c = form[0]
+    c = params[0]
     if t <= 1.0:
         return t, 1.0, c * t * t, 2.0 * c * t
     q = c * (t - 1.0)
@@ -25,8 +25,8 @@ def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
 
 
-def _reduced_load(t: float, form: Form) -> float:
-    c = form[0]
+def _reduced_load(t: float, params: Params) -> float:
+    c = params[0]
     if t <= 1.0:
         return 2.0 * c * t * t * t / 3.0
     q = c * (t - 1.0)
@@ -34,8 +34,8 @@ def _reduced_load(t: float, form: Form) -> float:
     return 2.0 * c * square * sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
 
 
-def _mdr_integral(t: float, form: Form) -> float:
-    c = form[0]
+def _mdr_integral(t: float, params: Params) -> float:
+    c = params[0]
     if t <= 1.0:
         return c * t * t * t / 3.0
     q = c * (t - 1.0)
@@ -43,28 +43,28 @@ def _mdr_integral(t: float, form: Form) -> float:
     return (c * square * sqrt(square) + (1.0 - c) * q * q * q) / 3.0
 
 
-def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
-    c = form[0]
+def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
+    c = params[0]
     return (0.5 * c * r * r, c * r) if r <= 1.0 else (0.5 * c + 0.5 * (r - 1.0) * (r + 1.0), r)
 
 
-def _t_of_radius(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, params: Params) -> float:
     if radius <= width:
         return radius / width
-    return 1.0 + swung(radius, width) / form[0]
+    return 1.0 + swung(radius, width) / params[0]
 
 
-def _t_of_q(q: float, form: Form) -> float:
-    return 1.0 + q / form[0]
+def _t_of_q(q: float, params: Params) -> float:
+    return 1.0 + q / params[0]
 
 
-def _one(form: Form) -> int:
+def _one(params: Params) -> int:
     return 1
 
 
-def _softening_interval(index: int, form: Form) -> tuple[float, float]:
+def _softening_interval(index: int, params: Params) -> tuple[float, float]:
     """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
-    c = form[0]
+    c = params[0]
     low, high = 0.0, 0.61575390344349083  # its place for c = 0
     for _ in range(60):
         q = 0.5 * (low + high)
@@ -76,7 +76,7 @@ def _softening_interval(index: int, form: Form) -> tuple[float, float]:
     return 1.0, 1.0 + high / c
 
 
-def _at_the_blend(low: float, high: float, form: Form) -> bool:
+def _at_the_blend(low: float, high: float, params: Params) -> bool:
     return low < 1.0 < high
 
 

@@ -93,8 +93,8 @@ class PowerLaw(_Power):
     )
 
     @classmethod
-    def least_exponent(cls, form: Floats) -> float:
-        return float(np.min(form, initial=np.inf))
+    def least_exponent(cls, params: Floats) -> float:
+        return float(np.min(params, initial=np.inf))
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:

@@ -7,84 +7,84 @@ from roughmdr.shapes import Shape
 from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.kappa import kappa
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
-from roughmdr.shapes.profile import Form, Profile
+from roughmdr.shapes.profile import Params, Profile
 
 
-def _t_of_radius(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, params: Params) -> float:
     return radius / width
 
 
-def _paraboloid_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
+def _paraboloid_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
     return a, 1.0, 2.0 * a * a, 4.0 * a
 
 
-def _paraboloid_reduced_load(a: float, form: Form) -> float:
+def _paraboloid_reduced_load(a: float, params: Params) -> float:
     return 4.0 / 3.0 * (a * a * a)
 
 
-def _paraboloid_mdr_integral(a: float, form: Form) -> float:
+def _paraboloid_mdr_integral(a: float, params: Params) -> float:
     return 2.0 / 3.0 * (a * a * a)
 
 
-def _paraboloid_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _paraboloid_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return r * r, 2.0 * r
 
 
-def _paraboloid_elastic_integral(a: float, form: Form) -> float:
+def _paraboloid_elastic_integral(a: float, params: Params) -> float:
     square = a * a
     return 32.0 / 15.0 * (square * square * a)
 
 
-def _cone_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
     return a, 1.0, 0.5 * math.pi * a, 0.5 * math.pi
 
 
-def _cone_reduced_load(a: float, form: Form) -> float:
+def _cone_reduced_load(a: float, params: Params) -> float:
     return 0.25 * math.pi * (a * a)
 
 
-def _cone_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return r, 1.0
 
 
-def _cone_elastic_integral(a: float, form: Form) -> float:
+def _cone_elastic_integral(a: float, params: Params) -> float:
     return math.pi * math.pi / 12.0 * (a * a * a)
 
 
-def _power_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
+def _power_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
     """The form is the exponent n, and kappa(n)."""
-    g = form[1] * a ** form[0]
-    return a, 1.0, g, form[0] * g / a
+    g = params[1] * a ** params[0]
+    return a, 1.0, g, params[0] * g / a
 
 
-def _power_reduced_load(a: float, form: Form) -> float:
-    return form[0] / (form[0] + 1.0) * form[1] * a ** form[0] * a
+def _power_reduced_load(a: float, params: Params) -> float:
+    return params[0] / (params[0] + 1.0) * params[1] * a ** params[0] * a
 
 
-def _power_mdr_integral(a: float, form: Form) -> float:
-    return form[1] * a ** form[0] * a / (form[0] + 1.0)
+def _power_mdr_integral(a: float, params: Params) -> float:
+    return params[1] * a ** params[0] * a / (params[0] + 1.0)
 
 
-def _power_f_and_slope(r: float, form: Form) -> tuple[float, float]:
-    n = form[0]
+def _power_f_and_slope(r: float, params: Params) -> tuple[float, float]:
+    n = params[0]
     if r > 0.0:
         f = r**n
         return f, n * f / r
     return 0.0, math.inf if n < 1.0 else (1.0 if n == 1.0 else 0.0)
 
 
-def _power_elastic_integral(a: float, form: Form) -> float:
-    n, g = form[0], form[1] * a ** form[0]
+def _power_elastic_integral(a: float, params: Params) -> float:
+    n, g = params[0], params[1] * a ** params[0]
     return 2.0 * n * n / (n + 1.0) / (2.0 * n + 1.0) * (g * g * a)
 
 
-def _power_roundings(form: Form) -> float:
+def _power_roundings(params: Params) -> float:
     """Those of any profile, and of t in its power."""
-    return 14.0 + form[0]
+    return 14.0 + params[0]
 
 
-def _power_precompute(form: Any) -> None:
-    form[1] = kappa(form[0])
+def _power_precompute(params: Any) -> None:
+    params[1] = kappa(params[0])
 
 
 _POWERS: dict[type[Shape], Profile] = {

@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile, breakpoint_at_one, one_breakpoint, swung
+from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
 from roughmdr.shapes.special import less_atan, less_atan_and_cube
 
 _CONE_DIP = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
 
-def _cone_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
     """g = a^2; beyond the blend g = a (a - q) + a atan q, q = sqrt(a^2 - 1)."""
     if a <= 1.0:
         return a, 1.0, a * a, 2.0 * a
@@ -24,37 +24,37 @@ def _cone_mdr_profile(a: float, form: Form) -> tuple[float, float, float, float]
     return a, 1.0, a / (a + q) + a * angle, 2.0 / (a + q) + angle
 
 
-def _cone_reduced_load(a: float, form: Form) -> float:
+def _cone_reduced_load(a: float, params: Params) -> float:
     if a <= 1.0:
         return 2.0 * a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
     return 0.5 * (a * a * atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
 
 
-def _cone_mdr_integral(a: float, form: Form) -> float:
+def _cone_mdr_integral(a: float, params: Params) -> float:
     if a <= 1.0:
         return a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
     return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - less_atan(q))
 
 
-def _cone_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return (0.5 * r * r, r) if r < 1.0 else (r - 0.5, 1.0)
 
 
-def _cone_t_of_radius(radius: float, width: float, form: Form) -> float:
+def _cone_t_of_radius(radius: float, width: float, params: Params) -> float:
     return radius / width
 
 
-def _one(form: Form) -> int:
+def _one(params: Params) -> int:
     return 1
 
 
-def _cone_softening_interval(index: int, form: Form) -> tuple[float, float]:
+def _cone_softening_interval(index: int, params: Params) -> tuple[float, float]:
     return 1.0, _CONE_DIP
 
 
-def _at_the_blend(low: float, high: float, form: Form) -> bool:
+def _at_the_blend(low: float, high: float, params: Params) -> bool:
     return low < 1.0 < high
 
 
@@ -96,34 +96,34 @@ class RoundedCone(ProfileShape):
         return blend, parameters["slope"] * blend, np.zeros_like(blend)
 
 
-def _punch_mdr_profile(q: float, form: Form) -> tuple[float, float, float, float]:
+def _punch_mdr_profile(q: float, params: Params) -> tuple[float, float, float, float]:
     """g = a (q - atan q), a = sqrt(1 + q^2)."""
     a, excess = sqrt(1.0 + q * q), less_atan(q)
     return a, q / a, a * excess, q * (excess + q) / a
 
 
-def _punch_reduced_load(q: float, form: Form) -> float:
+def _punch_reduced_load(q: float, params: Params) -> float:
     return q * q * q / 6.0 + 0.5 * (1.0 + q * q) * less_atan(q)
 
 
-def _punch_mdr_integral(q: float, form: Form) -> float:
+def _punch_mdr_integral(q: float, params: Params) -> float:
     return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
 
 
-def _punch_roundings(form: Form) -> float:
+def _punch_roundings(params: Params) -> float:
     """Those of any profile, and of q - atan q where that is not yet a series."""
     return 80.0
 
 
-def _punch_t_of_q(q: float, form: Form) -> float:
+def _punch_t_of_q(q: float, params: Params) -> float:
     return q
 
 
-def _punch_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _punch_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return (0.5 * (r - 1.0) * (r - 1.0), r - 1.0) if r > 1.0 else (0.0, 0.0)
 
 
-def _punch_t_of_radius(radius: float, width: float, form: Form) -> float:
+def _punch_t_of_radius(radius: float, width: float, params: Params) -> float:
     return swung(radius, width)
 
 

@@ -11,68 +11,68 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes.base import SharedProfile, check_one, check_positive, radii
-from roughmdr.shapes.profile import Form, Profile
+from roughmdr.shapes.profile import Params, Profile
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
 _STEEPEST = 1000.0  # exponent: of a steeper term floats hold radii within a factor of two only
 
 
-def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
     """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
     g, slope = 0.0, 0.0
-    for i in range(int(form[0])):
-        n, term = form[1 + 3 * i], form[2 + 3 * i] * t ** form[1 + 3 * i]
+    for i in range(int(params[0])):
+        n, term = params[1 + 3 * i], params[2 + 3 * i] * t ** params[1 + 3 * i]
         g += term
         slope += n * term
     return t, 1.0, g, slope / t
 
 
-def _reduced_load(t: float, form: Form) -> float:
+def _reduced_load(t: float, params: Params) -> float:
     total = 0.0
-    for i in range(int(form[0])):
-        n = form[1 + 3 * i]
-        total += n / (n + 1.0) * form[2 + 3 * i] * t**n
+    for i in range(int(params[0])):
+        n = params[1 + 3 * i]
+        total += n / (n + 1.0) * params[2 + 3 * i] * t**n
     return total * t
 
 
-def _mdr_integral(t: float, form: Form) -> float:
+def _mdr_integral(t: float, params: Params) -> float:
     total = 0.0
-    for i in range(int(form[0])):
-        n = form[1 + 3 * i]
-        total += form[2 + 3 * i] * t**n / (n + 1.0)
+    for i in range(int(params[0])):
+        n = params[1 + 3 * i]
+        total += params[2 + 3 * i] * t**n / (n + 1.0)
     return total * t
 
 
-def _elastic_integral(t: float, form: Form) -> float:
+def _elastic_integral(t: float, params: Params) -> float:
     total = 0.0
-    for i in range(int(form[0])):
-        for j in range(int(form[0])):
-            n, m = form[1 + 3 * i], form[1 + 3 * j]
-            total += n * m / (m + 1.0) / (n + m + 1.0) * (form[2 + 3 * i] * t**n) * (form[2 + 3 * j] * t**m)
+    for i in range(int(params[0])):
+        for j in range(int(params[0])):
+            n, m = params[1 + 3 * i], params[1 + 3 * j]
+            total += n * m / (m + 1.0) / (n + m + 1.0) * (params[2 + 3 * i] * t**n) * (params[2 + 3 * j] * t**m)
     return 2.0 * total * t
 
 
-def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
     f, slope = 0.0, 0.0
-    for i in range(int(form[0])):
-        n, term = form[1 + 3 * i], form[3 + 3 * i] * r ** form[1 + 3 * i]
+    for i in range(int(params[0])):
+        n, term = params[1 + 3 * i], params[3 + 3 * i] * r ** params[1 + 3 * i]
         f += term
         slope += n * term
-    return f, slope / r if r > 0.0 else (math.inf if form[1] < 1.0 else (form[3] if form[1] == 1.0 else 0.0))
+    return f, slope / r if r > 0.0 else (math.inf if params[1] < 1.0 else (params[3] if params[1] == 1.0 else 0.0))
 
 
-def _t_of_radius(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, params: Params) -> float:
     return radius / width
 
 
-def _roundings(form: Form) -> float:
+def _roundings(params: Params) -> float:
     """Those of any profile, of each sum, and of t in the steepest power."""
-    return 14.0 + form[0] + form[3 * int(form[0]) - 2]
+    return 14.0 + params[0] + params[3 * int(params[0]) - 2]
 
 
-def _kink(low: float, high: float, form: Form) -> bool:
+def _kink(low: float, high: float, params: Params) -> bool:
     """Where the steepest term grows by more than half, a few nodes do not integrate it to rounding."""
-    return form[3 * int(form[0]) - 2] * (high - low) > 0.5 * low
+    return params[3 * int(params[0]) - 2] * (high - low) > 0.5 * low
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,5 +184,5 @@ class PowerSeries(SharedProfile):
             return a, g, push
 
     @classmethod
-    def least_exponent(cls, form: Floats) -> float:
-        return float(form[0, 1])
+    def least_exponent(cls, params: Floats) -> float:
+        return float(params[0, 1])

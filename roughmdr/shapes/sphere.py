@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import expm1, tanh
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile
+from roughmdr.shapes.profile import Params, Profile
 from roughmdr.shapes.special import beyond_tanh
 
 
-def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
+def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
     """a = tanh t, g = a artanh a."""
     growth = expm1(2.0 * min(t, 300.0))
     a = growth / (growth + 2.0)
@@ -22,29 +22,29 @@ def _mdr_profile(t: float, form: Form) -> tuple[float, float, float, float]:
     return a, narrowing, a * t, a + t * narrowing
 
 
-def _reduced_load(t: float, form: Form) -> float:
+def _reduced_load(t: float, params: Params) -> float:
     """[(1 + a^2) artanh a - a]/2."""
     a = tanh(t)
     return 0.5 * (beyond_tanh(t, a) + a * a * t)
 
 
-def _mdr_integral(t: float, form: Form) -> float:
+def _mdr_integral(t: float, params: Params) -> float:
     """[(a^2 - 1) artanh a + a]/2."""
     a = tanh(t)
     return 0.5 * (a * a * t - beyond_tanh(t, a))
 
 
-def _roundings(form: Form) -> float:
+def _roundings(params: Params) -> float:
     """Those of any profile, and of t - tanh t where that is not yet a series."""
     return 40.0
 
 
-def _f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
     side = math.sqrt(max((1.0 - r) * (1.0 + r), 0.0))
     return r * r / (1.0 + side), r / side if side > 0.0 else math.inf
 
 
-def _t_of_radius(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, params: Params) -> float:
     return 0.5 * math.log1p(2.0 * radius / (width - radius)) if radius < width else math.inf
 
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
 from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Form, Profile, breakpoint_at_one, one_breakpoint, swung
+from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
 from roughmdr.shapes.special import less_atan
 
 # Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
@@ -17,37 +17,37 @@ _CONE_DIP = 1.0424561234141570
 _PARABOLOID_DIP = 0.61575390344349083
 
 
-def _one(form: Form) -> int:
+def _one(params: Params) -> int:
     return 1
 
 
-def _t_of_radius(radius: float, width: float, form: Form) -> float:
+def _t_of_radius(radius: float, width: float, params: Params) -> float:
     return swung(radius, width)
 
 
-def _t_of_q(q: float, form: Form) -> float:
+def _t_of_q(q: float, params: Params) -> float:
     return q
 
 
-def _cone_mdr_profile(q: float, form: Form) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(q: float, params: Params) -> tuple[float, float, float, float]:
     """g = a acos(1/a) = a atan q, a = sqrt(1 + q^2)."""
     a, angle = sqrt(1.0 + q * q), atan(q)
     return a, q / a, a * angle, (q * angle + 1.0) / a
 
 
-def _cone_reduced_load(q: float, form: Form) -> float:
+def _cone_reduced_load(q: float, params: Params) -> float:
     return 0.5 * ((1.0 + q * q) * atan(q) + q)
 
 
-def _cone_mdr_integral(q: float, form: Form) -> float:
+def _cone_mdr_integral(q: float, params: Params) -> float:
     return 0.5 * (q * q * atan(q) - less_atan(q))
 
 
-def _cone_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return (r - 1.0, 1.0) if r > 1.0 else (0.0, 0.0)
 
 
-def _cone_softening_interval(index: int, form: Form) -> tuple[float, float]:
+def _cone_softening_interval(index: int, params: Params) -> tuple[float, float]:
     return 0.0, _CONE_DIP
 
 
@@ -90,25 +90,25 @@ class TruncatedCone(ProfileShape):
         return flat, parameters["slope"] * flat, np.zeros_like(flat)
 
 
-def _paraboloid_mdr_profile(q: float, form: Form) -> tuple[float, float, float, float]:
+def _paraboloid_mdr_profile(q: float, params: Params) -> tuple[float, float, float, float]:
     """g = a q."""
     a = sqrt(1.0 + q * q)
     return a, q / a, a * q, (1.0 + 2.0 * q * q) / a
 
 
-def _paraboloid_reduced_load(q: float, form: Form) -> float:
+def _paraboloid_reduced_load(q: float, params: Params) -> float:
     return q + 2.0 * q * q * q / 3.0
 
 
-def _paraboloid_mdr_integral(q: float, form: Form) -> float:
+def _paraboloid_mdr_integral(q: float, params: Params) -> float:
     return q * q * q / 3.0
 
 
-def _paraboloid_f_and_slope(r: float, form: Form) -> tuple[float, float]:
+def _paraboloid_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     return (0.5 * (r - 1.0) * (r + 1.0), r) if r > 1.0 else (0.0, 0.0)
 
 
-def _paraboloid_softening_interval(index: int, form: Form) -> tuple[float, float]:
+def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, float]:
     return 0.0, _PARABOLOID_DIP
 
 

@@ -70,14 +70,14 @@ class Summits(NamedTuple):
     def _state(self, distance: Floats) -> Floats:
         """The state at a ``distance`` [m] of the indentation from the onset."""
         contact = self.contact
-        return apply(contact.law.state, np.maximum(distance.ravel() / contact.depth[0], 0.0), contact.form)
+        return apply(contact.law.state, np.maximum(distance.ravel() / contact.depth[0], 0.0), contact.params)
 
     def _force(self, distance: Floats) -> Floats:
         contact = self.contact
-        force = contact.force * apply(contact.law.force, self._state(distance), contact.form)
+        force = contact.force * apply(contact.law.force, self._state(distance), contact.params)
         return np.asarray(force.reshape(distance.shape) - self.attraction)
 
     def _area(self, distance: Floats) -> Floats:
         contact = self.contact
-        radius = contact.radius * apply(contact.law.radius, self._state(distance), contact.form)
+        radius = contact.radius * apply(contact.law.radius, self._state(distance), contact.params)
         return np.asarray(math.pi * radius.reshape(distance.shape) ** 2)

@@ -213,9 +213,9 @@ def test_the_stated_error_of_a_sum_of_unlike_asperities_holds() -> None:
             for shape, height in zip(shapes, z.tolist(), strict=True):
                 depth = float(mp.mpf(height) - mp.mpf(h))
                 a = float(rm.indent(shape, effective_modulus=1e8, work=1e-2, indentation=depth).contact_radius)
-                width, _, form = shape.nondimensional()
+                width, _, params = shape.nondimensional()
                 own = Exact(shape, 1e8, 1e-2)
-                begin = shape.profile.t_of_radius(a, width, [form])
+                begin = shape.profile.t_of_radius(a, width, [params])
                 exact += own.force(own.state(mp.mpf(height) - mp.mpf(h), begin, mp.mpf(0), mp.inf))
             largest = abs(float(law.force[0]))
             assert abs(float(law.force[0]) - exact) / largest <= float(law.numerical_error) < 1e-9

@@ -17,7 +17,7 @@ E, W, R = 4e6, 0.05, 5e-5
 
 def energy(contact: Contact, state: float) -> float:
     """U [J]."""
-    value = apply(contact.law.energy, np.array([state]), contact.form)[0]
+    value = apply(contact.law.energy, np.array([state]), contact.params)[0]
     return float(contact.force * contact.depth[0] * value)
 
 
@@ -40,9 +40,9 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
         except rm.OutOfRange:
             continue
         distance = 10.0 ** rng.uniform(-12.0, 3.0)
-        state = apply(contact.law.state, np.array([distance]), contact.form)
+        state = apply(contact.law.state, np.array([distance]), contact.params)
         elastic, surface = springs(
-            case.twin, mp.mpf(contact.radius) * apply(contact.law.radius, state, contact.form)[0]
+            case.twin, mp.mpf(contact.radius) * apply(contact.law.radius, state, contact.params)[0]
         )
         if not all(mp.mpf("1e-299") < abs(part) < mp.mpf("1e299") for part in (elastic, surface or elastic)):
             continue
@@ -72,6 +72,6 @@ def test_it_grows_by_the_work_of_the_force(shape: rm.Paraboloid, work: float) ->
     x, weights = np.polynomial.legendre.leggauss(40)
     delta = ends[0] + (ends[1] - ends[0]) * (x + 1.0) / 2.0
     force = rm.indent(shape, effective_modulus=E, work=work, indentation=delta).force.to_numpy()
-    states = apply(contact.law.state, contact.reduced(ends, contact.depth), contact.form)
+    states = apply(contact.law.state, contact.reduced(ends, contact.depth), contact.params)
     gained = energy(contact, states[1]) - energy(contact, states[0])
     assert gained == pytest.approx(float(np.sum(weights * force)) * (ends[1] - ends[0]) / 2.0, rel=1e-12)

@@ -25,10 +25,10 @@ def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
         try:
             with np.errstate(all="ignore"):
                 shape = DRAW[kind](rng)
-            width, rise, form = shape.nondimensional()
+            width, rise, params = shape.nondimensional()
         except rm.RoughmdrError:
             continue
-        numbers, exact = np.atleast_1d(np.asarray(form, dtype=np.float64)), profile(shape)
+        numbers, exact = np.atleast_1d(np.asarray(params, dtype=np.float64)), profile(shape)
         for t in 10.0 ** np.concatenate([rng.uniform(-4.0, 1.0, 8), rng.uniform(-0.5, 0.5, 8)]):
             _, _, g, _ = curve(t, numbers)
             pushed = push(t, numbers)

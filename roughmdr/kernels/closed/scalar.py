@@ -13,22 +13,22 @@ def prepare(
     strength: float,
     width: Floats,
     rise: Floats,
-    form: Floats,
+    params: Floats,
     start: int,
     stop: int,
     control: float,
 ) -> Floats:
     """The forms of the asperities from start to stop."""
-    return form[start:stop]
+    return params[start:stop]
 
 
 @njit
-def own(forms: Floats, i: int) -> float:
+def own(params: Floats, i: int) -> float:
     """The form of one asperity."""
-    return float(forms[i])
+    return float(params[i])
 
 
 @njit
-def mixed(forms: Floats) -> bool:
+def mixed(params: Floats) -> bool:
     """Whether the forms differ."""
-    return bool(np.any(forms != forms[0]))
+    return bool(np.any(params != params[0]))

@@ -1,6 +1,6 @@
 """The stable branches under adhesion of finite range: where the controlled quantity grows along the equilibria.
 
-Looked for at places ever further out, and between two of them where the slope changes its sign. Notation of ``row``.
+Looked for at places ever further out, and between two of them where the slope changes its sign. Notation of ``params``.
 """
 
 import math
@@ -43,12 +43,12 @@ def following(s: float) -> float:
     return begin + max(_STRIDE * (s - begin), _BEGIN)
 
 
-def turn(low: float, high: float, row: Floats) -> float:
+def turn(low: float, high: float, params: Floats) -> float:
     """Where the slope changes its sign between low and high, on the side where it is positive.
 
     By secants (the Illinois method) and halves, since the slope may jump.
     """
-    at_low, at_high = load(low, row)[1], load(high, row)[1]
+    at_low, at_high = load(low, params)[1], load(high, params)[1]
     rising = at_high > 0.0
     for i in range(_PATIENCE):
         if high - low <= _CLOSE * high:
@@ -57,7 +57,7 @@ def turn(low: float, high: float, row: Floats) -> float:
         if i % 3 != 2 and abs(at_low) < math.inf and abs(at_high) < math.inf:
             middle = low - at_low * (high - low) / (at_high - at_low)
             middle = min(max(middle, low + _CLOSE * high), high - _CLOSE * high)
-        slope = load(middle, row)[1]
+        slope = load(middle, params)[1]
         if (slope > 0.0) == rising:
             high, at_high, at_low = middle, slope, 0.5 * at_low
         else:
@@ -65,35 +65,35 @@ def turn(low: float, high: float, row: Floats) -> float:
     return high if rising else low
 
 
-def find_branches(row: Floats) -> None:
+def find_branches(params: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
-    row[COUNT], row[FOLD], row[DEPTH], row[ONSET] = 0.0, 0.0, 1.0, 0.0
-    if not find_junction(row):
+    params[COUNT], params[FOLD], params[DEPTH], params[ONSET] = 0.0, 0.0, 1.0, 0.0
+    if not find_junction(params):
         return
-    edge_count = _edge_count(row)
-    beyond = 2.0 * _edge(edge_count - 1, row)[0] if edge_count > 0 else 0.0
+    edge_count = _edge_count(params)
+    beyond = 2.0 * _edge(edge_count - 1, params)[0] if edge_count > 0 else 0.0
     count, s, foot = 0, 0.0, 0.0
-    stable = load(s, row)[1] > 0.0
+    stable = load(s, params)[1] > 0.0
     while True:
         before, was = s, stable
         s = following(s)
-        if s > 1.0 and _end < math.inf and _curve((s - 1.0) * row[UNIT], row)[0] > _LAST * _end:
+        if s > 1.0 and _end < math.inf and _curve((s - 1.0) * params[UNIT], params)[0] > _LAST * _end:
             if stable:
                 break
             return
-        stable = load(s, row)[1] > 0.0
+        stable = load(s, params)[1] > 0.0
         if stable and not was:
-            foot = turn(before, s, row)
+            foot = turn(before, s, params)
         elif was and not stable:
-            count = _branch(count, foot, turn(before, s, row), row)
+            count = _branch(count, foot, turn(before, s, params), params)
         if s > 1.0:
-            _, a, m, _, _, _, _ = margins(s, row)
+            _, a, m, _, _, _, _ = margins(s, params)
             if stable and m < _SHARP * a and a > beyond:
                 break
         if not s < _LARGEST or count >= MOST:
             return
-    measure_branches(_branch(count, foot, math.inf, row), row)
-    row[ONSET] = 1.0 - row[RANGE] / row[DEPTH]
+    measure_branches(_branch(count, foot, math.inf, params), params)
+    params[ONSET] = 1.0 - params[RANGE] / params[DEPTH]
 
 
 PARTS: tuple[Callable[..., Any], ...] = (following, turn, find_branches)

@@ -13,7 +13,7 @@ so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta
 zone does too, as on a flat punch: c stays, the gap there is at most w/sigma0, and B is without bound.
 
 The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
-grows with s. Notation of ``row``.
+grows with s. Notation of ``params``.
 """
 
 import math
@@ -36,110 +36,110 @@ _ZONE_ERROR = 1e-12  # of the force: as it is tested
 _ZONE_ROUNDINGS = 32.0  # of the zone's share of the indentation
 
 
-def along(s: float, row: Floats) -> tuple[float, float, float, float, float]:
+def along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
     """a over width, delta over rise and its slope over s, P over 2 E* width rise and its slope over s."""
-    beta = row[STRENGTH]
+    beta = params[STRENGTH]
     if s <= 1.0:
-        size = row[JUNCTION]
+        size = params[JUNCTION]
         c = s * size
-        f, slope = _height(c, row)
-        delta = f - 2.0 / math.pi * beta * c - row[RANGE]
+        f, slope = _height(c, params)
+        delta = f - 2.0 / math.pi * beta * c - params[RANGE]
         rise = size * (slope - 2.0 / math.pi * beta)
         return 0.0, delta, rise, -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * size
-    t, a, m, theta, g, da, dg = margins(s, row)
-    _, k, _ = zone(a, g, m, theta, row)
+    t, a, m, theta, g, da, dg = margins(s, params)
+    _, k, _ = zone(a, g, m, theta, params)
     square = a * a + m * m
     firm = k - beta * m * m / (math.sqrt(square) + a)  # B
     rise = (dg * m + beta * a * da) / (firm * m + beta * square * theta)
-    push = _push(t, row) - 0.5 * beta * (a * m + square * theta)
+    push = _push(t, params) - 0.5 * beta * (a * m + square * theta)
     return a, g - beta * m, rise * firm, push, rise * (a * firm - beta * theta * theta * square)
 
 
-def stretched(s: float, row: Floats) -> tuple[float, float]:
+def stretched(s: float, params: Floats) -> tuple[float, float]:
     """The indentation at s, and its slope over s."""
-    _, delta, rise, _, _ = along(s, row)
+    _, delta, rise, _, _ = along(s, params)
     return delta, rise
 
 
-def load(s: float, row: Floats) -> tuple[float, float]:
+def load(s: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over s."""
-    _, delta, rise, push, growth = along(s, row)
-    return (delta, rise) if row[CONTROL] == 0.0 else (push, growth)
+    _, delta, rise, push, growth = along(s, params)
+    return (delta, rise) if params[CONTROL] == 0.0 else (push, growth)
 
 
-def distance(s: float, row: Floats) -> float:
+def distance(s: float, params: Floats) -> float:
     """The controlled quantity from the lowest foot on, over its depth."""
-    return (load(s, row)[0] + row[DEPTH]) / row[DEPTH]
+    return (load(s, params)[0] + params[DEPTH]) / params[DEPTH]
 
 
-def answer(s: float, row: Floats) -> tuple[float, float, float]:
+def answer(s: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/B."""
-    a, _, rise, push, growth = along(s, row)
+    a, _, rise, push, growth = along(s, params)
     return a, push, growth / rise
 
 
-def radius(s: float, row: Floats) -> float:
+def radius(s: float, params: Floats) -> float:
     """a over width."""
-    return margins(s, row)[1] if s > 1.0 else 0.0
+    return margins(s, params)[1] if s > 1.0 else 0.0
 
 
-def cohesive_radius(s: float, row: Floats) -> float:
+def cohesive_radius(s: float, params: Floats) -> float:
     """c over width."""
     if s <= 1.0:
-        return s * row[JUNCTION]
-    _, a, m, _, _, _, _ = margins(s, row)
+        return s * params[JUNCTION]
+    _, a, m, _, _, _, _ = margins(s, params)
     return math.sqrt(a * a + m * m)
 
 
-def force(s: float, row: Floats) -> float:
+def force(s: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return answer(s, row)[1]
+    return answer(s, params)[1]
 
 
-def stiffness(s: float, row: Floats) -> float:
+def stiffness(s: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return answer(s, row)[2]
+    return answer(s, params)[2]
 
 
-def pulled(a: float, row: Floats) -> tuple[float, float]:
+def pulled(a: float, params: Floats) -> tuple[float, float]:
     """No less than beta m over rise, and beta/2 (a m + c^2 theta) over width rise.
 
     The gap at c is at most w/sigma0, so that beta (m theta - c + a) <= pi/2 RANGE; and the bracket is at least
     2/pi (pi/2 - 1) theta m, theta >= pi/4 min(m/a, 1).
     """
-    stretch = 1.33 * row[TENSION] * math.sqrt(a) + 5.5 * row[RANGE]
-    return stretch, stretch * (a + 0.25 * math.pi * stretch / row[STRENGTH])
+    stretch = 1.33 * params[TENSION] * math.sqrt(a) + 5.5 * params[RANGE]
+    return stretch, stretch * (a + 0.25 * math.pi * stretch / params[STRENGTH])
 
 
-def errors(row: Floats) -> tuple[float, float]:
+def errors(params: Floats) -> tuple[float, float]:
     """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
-    error = ROUNDING * (_roundings(row) + _ZONE_ROUNDINGS)
+    error = ROUNDING * (_roundings(params) + _ZONE_ROUNDINGS)
     return max(_ZONE_ERROR, error), error
 
 
-def energy(s: float, row: Floats) -> float:
+def energy(s: float, params: Floats) -> float:
     """U, elastic and of both surfaces, over 2 E* width rise^2 DEPTH; 0 where the surfaces do not attract each other.
 
     E* ∫ u1^2 dx - pi w c^2 + sigma0 ∫ gap dA, whose last integral is 4 ∫_a^c (g - delta + u1) sqrt(c^2 - x^2) dx.
     """
-    beta, t, a, m, theta, g = row[STRENGTH], 0.0, 0.0, s * row[JUNCTION], 0.5 * math.pi, 0.0
+    beta, t, a, m, theta, g = params[STRENGTH], 0.0, 0.0, s * params[JUNCTION], 0.5 * math.pi, 0.0
     if s == 0.0:
         return 0.0
     if s > 1.0:
-        t, a, m, theta, g, _, _ = margins(s, row)
-    stretch = beta * m if s > 1.0 else -stretched(s, row)[0]
+        t, a, m, theta, g, _, _ = margins(s, params)
+    stretch = beta * m if s > 1.0 else -stretched(s, params)[0]
     square = a * a + m * m
     c = math.sqrt(square)
-    bent, push = (strain(t, row), _push(t, row)) if s > 1.0 else (0.0, 0.0)
-    _, _, l = zone(a, g, m, theta, row)
+    bent, push = (strain(t, params), _push(t, params)) if s > 1.0 else (0.0, 0.0)
+    _, _, l = zone(a, g, m, theta, params)
     short = m * m / (c + a)
     elastic = bent - 2.0 * stretch * push + stretch * stretch * a
     cohesive = 2.0 * l + stretch * (square * theta - a * m) - beta * short * short * (2.0 * c + a) / 3.0
-    surface = 0.5 * math.pi * row[RANGE] * square
-    return (elastic + beta * (cohesive - surface)) / (2.0 * row[DEPTH])
+    surface = 0.5 * math.pi * params[RANGE] * square
+    return (elastic + beta * (cohesive - surface)) / (2.0 * params[DEPTH])
 
 
-def kink(low: float, high: float, row: Floats) -> bool:
+def kink(low: float, high: float, params: Floats) -> bool:
     """Whether the indentation may not be smooth from low to high."""
     return True
 

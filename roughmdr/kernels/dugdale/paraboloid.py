@@ -19,9 +19,9 @@ from roughmdr.shapes.special import less_atan
 extent: Callable[..., float]
 
 
-def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+def margins(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t = a, a, m, theta, g, and da/ds and dg/ds."""
-    beta, wanted = row[STRENGTH], math.pi * row[RANGE]
+    beta, wanted = params[STRENGTH], math.pi * params[RANGE]
     sigma = s - 1.0
     e = 1.0 + sigma * sigma
     root, q = math.sqrt(e), 1.0 / sigma
@@ -37,7 +37,7 @@ def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, f
     return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
 
 
-def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
+def zone(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L of ``zone``."""
     square = a * a + m * m
     beyond = less_atan(m / a) if a > 0.0 else 0.0
@@ -45,12 +45,12 @@ def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float
     return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
 
 
-def state_of_radius(radius: float, width: float, row: Floats) -> float:
+def state_of_radius(radius: float, width: float, params: Floats) -> float:
     """s at a contact radius [m]."""
-    if row[COUNT] == 0.0:
+    if params[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / extent(a, 2.0 * a * a, 4.0 * a, row)
+    return 1.0 + a / extent(a, 2.0 * a * a, 4.0 * a, params)
 
 
 PARTS: tuple[Callable[..., Any], ...] = (zone,)

@@ -47,15 +47,15 @@ def widest(a: float) -> float:
     return max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
 
 
-def onward(q: float, base: float, row: Floats) -> float:
+def onward(q: float, base: float, params: Floats) -> float:
     """t where q = sqrt(x^2 - base^2)."""
     if _beyond is not None and base > 0.0:
-        return _beyond(q, row)
-    return _place(min(math.sqrt(base * base + q * q), _BEFORE * _end), 1.0, row)
+        return _beyond(q, params)
+    return _place(min(math.sqrt(base * base + q * q), _BEFORE * _end), 1.0, params)
 
 
 def panel(
-    low: float, high: float, base: float, g: float, c: float, m: float, thin: bool, row: Floats
+    low: float, high: float, base: float, g: float, c: float, m: float, thin: bool, params: Floats
 ) -> tuple[float, float, float]:
     """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2). By parts where ``thin``."""
     reach = math.sqrt((c - base) * (c + base))
@@ -66,7 +66,7 @@ def panel(
         psi = end + (begin - end) * _NODES[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
-        _, da, value, dg = _curve(onward(q, base, row), row)
+        _, da, value, dg = _curve(onward(q, base, params), params)
         push = _WEIGHTS[i] * q * dg / da
         k += push
         if thin:
@@ -80,36 +80,36 @@ def panel(
     return (begin - end) * j, (begin - end) * k, (begin - end) * l
 
 
-def rise_begins(low: float, c: float, row: Floats) -> float:
+def rise_begins(low: float, c: float, params: Floats) -> float:
     """From where on the profile rises, to all digits, where it is as steep as x^n with a large n; else ``low``."""
-    a, da, g, dg = _curve(_place(c, 1.0, row), row)
+    a, da, g, dg = _curve(_place(c, 1.0, params), params)
     n = a * dg / (da * g) if 0.0 < g < math.inf else 0.0
     return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
 
 
-def zone(a: float, g: float, m: float, theta: float, row: Floats) -> tuple[float, float, float]:
+def zone(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
     c, thin = math.sqrt(a * a + m * m), m < _THIN * a
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m
-    count = _edge_count(row)
+    count = _edge_count(params)
     for i in range(count + 1):
-        begin, after = _edge(i, row) if i < count else (math.inf, 0.0)
+        begin, after = _edge(i, params) if i < count else (math.inf, 0.0)
         if begin > low:
             high = min(begin, c)
             while base > 0.0 and _FAR * low < high:  # at q << x as smooth as at q = x
-                parts = panel(low, _FAR * low, base, g, c, beside, thin, row)
+                parts = panel(low, _FAR * low, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _FAR * low
                 beside = math.sqrt((c - low) * (c + low))
             if base == 0.0 and not _flat and high == c:
-                middle = rise_begins(low, c, row)
+                middle = rise_begins(low, c, params)
                 if middle > low:
-                    parts = panel(low, middle, base, g, c, beside, thin, row)
+                    parts = panel(low, middle, base, g, c, beside, thin, params)
                     j, k, l = j + parts[0], k + parts[1], l + parts[2]
                     low, beside = middle, math.sqrt((c - middle) * (c + middle))
             if beside > 0.0 and (base > 0.0 or not _flat):
-                parts = panel(low, high, base, g, c, beside, thin, row)
+                parts = panel(low, high, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
             if begin >= c:
                 break

@@ -23,17 +23,17 @@ _PATIENCE = 100
 _LARGEST = 1e150  # its square, and that of its inverse, is a float
 
 
-def find_junction(row: Floats) -> bool:
+def find_junction(params: Floats) -> bool:
     """Find c where contact begins: f(c) + (1 - 2/pi) beta c = w/sigma0. False where the body ends before, or floats do
     not hold its square.
     """
-    wanted, per_c = row[RANGE], (1.0 - 2.0 / math.pi) * row[STRENGTH]
+    wanted, per_c = params[RANGE], (1.0 - 2.0 / math.pi) * params[STRENGTH]
     low, high = 0.0, min(wanted / per_c, _end)
-    if not (high > 0.0 and _height(high, row)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
+    if not (high > 0.0 and _height(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
         return False
     c = high if high < _end else 0.5 * high
     for _ in range(_PATIENCE):
-        f, slope = _height(c, row)
+        f, slope = _height(c, params)
         value = f + per_c * c
         low, high = (c, high) if value < wanted else (low, c)
         better = c * math.exp((math.log(wanted) - math.log(value)) * value / (c * (slope + per_c)))
@@ -41,28 +41,28 @@ def find_junction(row: Floats) -> bool:
             c = better
             break
         c = better if low < better < high else 0.5 * (low + high)
-    row[JUNCTION] = c
-    t = row[TENSION] if _flat else _place(c, 1.0, row)
-    row[UNIT] = t
+    params[JUNCTION] = c
+    t = params[TENSION] if _flat else _place(c, 1.0, params)
+    params[UNIT] = t
     return 1.0 / _LARGEST < c < _LARGEST and 0.0 < t < math.inf
 
 
-def opened(a: float, g: float, m: float, row: Floats) -> tuple[float, float]:
+def opened(a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
     """pi/2 times the gap at c, and its slope over m^2/2."""
     c, theta = math.sqrt(a * a + m * m), atan(m / a)
-    j, k, _ = zone(a, g, m, theta, row)
+    j, k, _ = zone(a, g, m, theta, params)
     short = m * m / (c + a)
-    return j + row[STRENGTH] * (m * theta - short), (k / c + row[STRENGTH] * (c * theta / m - short / c)) / c
+    return j + params[STRENGTH] * (m * theta - short), (k / c + params[STRENGTH] * (c * theta / m - short / c)) / c
 
 
-def extent(a: float, g: float, slope: float, row: Floats) -> float:
+def extent(a: float, g: float, slope: float, params: Floats) -> float:
     """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms.
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
-    beta, wanted, c0 = row[STRENGTH], 0.5 * math.pi * row[RANGE], row[JUNCTION]
+    beta, wanted, c0 = params[STRENGTH], 0.5 * math.pi * params[RANGE], params[JUNCTION]
     low, high = 0.0, widest(a)
-    if high < math.inf and not opened(a, g, high, row)[0] > wanted:
+    if high < math.inf and not opened(a, g, high, params)[0] > wanted:
         return high
     lone = wanted / beta
     most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
@@ -71,7 +71,7 @@ def extent(a: float, g: float, slope: float, row: Floats) -> float:
     if not m < high:
         m = 0.5 * high
     for _ in range(_PATIENCE):
-        value, growth = opened(a, g, m, row)
+        value, growth = opened(a, g, m, params)
         if not 0.0 < value < math.inf:  # so near to the end of the profile that floats do not tell c from a
             low, high = (m, high) if value <= 0.0 else (low, m)
             m = 0.5 * (low + high)
@@ -85,23 +85,23 @@ def extent(a: float, g: float, slope: float, row: Floats) -> float:
     return m
 
 
-def margins(s: float, row: Floats) -> tuple[float, float, float, float, float, float, float]:
+def margins(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
     if _flat and s < 2.0:
         a = s - 1.0
-        m = extent(a, 0.0, 0.0, row)
+        m = extent(a, 0.0, 0.0, params)
         return 0.0, a, m, atan(m / a), 0.0, 1.0, 0.0
-    t = (s - (2.0 if _flat else 1.0)) * row[UNIT]
-    a, da, g, dg = _curve(t, row)
-    m = extent(a, g, dg / da if da > 0.0 else math.inf, row)
-    return t, a, m, atan(m / a), g, da * row[UNIT], dg * row[UNIT]
+    t = (s - (2.0 if _flat else 1.0)) * params[UNIT]
+    a, da, g, dg = _curve(t, params)
+    m = extent(a, g, dg / da if da > 0.0 else math.inf, params)
+    return t, a, m, atan(m / a), g, da * params[UNIT], dg * params[UNIT]
 
 
-def state_of_radius(radius: float, width: float, row: Floats) -> float:
+def state_of_radius(radius: float, width: float, params: Floats) -> float:
     """s at a contact radius [m]."""
-    if row[COUNT] == 0.0:
+    if params[COUNT] == 0.0:
         return math.nan
-    return _place(radius, width, row) / row[UNIT] + (2.0 if _flat else 1.0)
+    return _place(radius, width, params) / params[UNIT] + (2.0 if _flat else 1.0)
 
 
 PARTS: tuple[Callable[..., Any], ...] = (find_junction, opened, extent, margins, state_of_radius)

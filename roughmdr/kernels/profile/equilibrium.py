@@ -1,6 +1,6 @@
 """The equilibrium of one curved asperity at a state t: its load, force, stiffness and energy (H 25, 32-33, 40-41).
 
-Notation of ``row``. All in units of the shape's width and rise.
+Notation of ``params``. All in units of the shape's width and rise.
 """
 
 import math
@@ -22,69 +22,69 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
-def stretched(t: float, row: Floats) -> tuple[float, float]:
+def stretched(t: float, params: Floats) -> tuple[float, float]:
     """The indentation at t > 0, and its slope over t."""
-    a, da, g, dg = _curve(t, row)
-    root, tension = math.sqrt(a), row[TENSION]
+    a, da, g, dg = _curve(t, params)
+    root, tension = math.sqrt(a), params[TENSION]
     return g - tension * root, dg - 0.5 * tension * da / root
 
 
-def load(t: float, row: Floats) -> tuple[float, float]:
+def load(t: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over t."""
-    tension = row[TENSION]
-    if row[CONTROL] == 0.0 and tension > 0.0:
-        return stretched(t, row)
-    a, da, g, dg = _curve(t, row)
-    if row[CONTROL] == 0.0:
+    tension = params[TENSION]
+    if params[CONTROL] == 0.0 and tension > 0.0:
+        return stretched(t, params)
+    a, da, g, dg = _curve(t, params)
+    if params[CONTROL] == 0.0:
         return g, dg
     root = math.sqrt(a)
     slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
-    return _push(t, row) - tension * a * root, a * slope
+    return _push(t, params) - tension * a * root, a * slope
 
 
-def distance(t: float, row: Floats) -> float:
+def distance(t: float, params: Floats) -> float:
     """The controlled quantity from the lowest foot on, over its depth; without adhesion from first touch on."""
-    value = load(t, row)[0]
-    return (value + row[DEPTH]) / row[DEPTH] if row[TENSION] > 0.0 else value
+    value = load(t, params)[0]
+    return (value + params[DEPTH]) / params[DEPTH] if params[TENSION] > 0.0 else value
 
 
-def radius(t: float, row: Floats) -> float:
+def radius(t: float, params: Floats) -> float:
     """a over width."""
-    return _curve(t, row)[0]
+    return _curve(t, params)[0]
 
 
-def answer(t: float, row: Floats) -> tuple[float, float, float]:
+def answer(t: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl)."""
-    a, da, _, dg = _curve(t, row)
-    root, tension = math.sqrt(a), row[TENSION]
+    a, da, _, dg = _curve(t, params)
+    root, tension = math.sqrt(a), params[TENSION]
     rising, pull = root * dg, 0.5 * tension * da
     k = a * (rising - 3.0 * pull) / (rising - pull) if tension > 0.0 else a
-    return a, _push(t, row) - tension * a * root, k
+    return a, _push(t, params) - tension * a * root, k
 
 
-def force(t: float, row: Floats) -> float:
+def force(t: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return answer(t, row)[1]
+    return answer(t, params)[1]
 
 
-def stiffness(t: float, row: Floats) -> float:
+def stiffness(t: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return answer(t, row)[2]
+    return answer(t, params)[2]
 
 
-def pulled(a: float, row: Floats) -> tuple[float, float]:
+def pulled(a: float, params: Floats) -> tuple[float, float]:
     """dl over rise, and a dl over width rise."""
-    stretch = row[TENSION] * math.sqrt(a)
+    stretch = params[TENSION] * math.sqrt(a)
     return stretch, a * stretch
 
 
-def errors(row: Floats) -> tuple[float, float]:
+def errors(params: Floats) -> tuple[float, float]:
     """Both from the roundings of the profile and of dl."""
-    error = ROUNDING * _roundings(row)
+    error = ROUNDING * _roundings(params)
     return error, error
 
 
-def strain(t: float, row: Floats) -> float:
+def strain(t: float, params: Floats) -> float:
     """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
     total, low = 0.0, 0.0
     while low < t:
@@ -92,17 +92,17 @@ def strain(t: float, row: Floats) -> float:
         for i in range(_NODES.size):
             z, weight = _NODES[i], _WEIGHTS[i]
             at = low + (high - low) * z * z * z * z
-            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, row)[3] * _push(at, row)
+            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, params)[3] * _push(at, params)
         low = high
     return total
 
 
-def energy(t: float, row: Floats) -> float:
+def energy(t: float, params: Floats) -> float:
     """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
-    tension = row[TENSION]
-    a = _curve(t, row)[0]
+    tension = params[TENSION]
+    a = _curve(t, params)[0]
     stretch = tension * math.sqrt(a)
-    return (strain(t, row) - 2.0 * stretch * _push(t, row) + 0.5 * stretch * stretch * a) / (2.0 * row[DEPTH])
+    return (strain(t, params) - 2.0 * stretch * _push(t, params) + 0.5 * stretch * stretch * a) / (2.0 * params[DEPTH])
 
 
 PARTS: tuple[Callable[..., Any], ...] = (

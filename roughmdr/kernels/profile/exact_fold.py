@@ -9,15 +9,15 @@ from roughmdr.numerics.double_double import Pair
 from roughmdr.shapes import ProfileShape
 
 
-def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, row: Floats) -> Pair:
+def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, params: Floats) -> Pair:
     """-delta [m] or -P [N] at the lowest foot of a row (H 40-41, 44), as two floats.
 
     The quantity is stationary there, so that the rounding of t does not matter.
     """
     from mpmath import mp
 
-    a, g, push = shape.precisely(float(row[FOLD]))
+    a, g, push = shape.precisely(float(params[FOLD]))
     with mp.workdps(40):
         stretch = mp.sqrt(2 * mp.pi * a * mp.mpf(work) / mp.mpf(effective_modulus))
-        depth = stretch - g if row[CONTROL] == 0.0 else 2 * mp.mpf(effective_modulus) * (a * stretch - push)
+        depth = stretch - g if params[CONTROL] == 0.0 else 2 * mp.mpf(effective_modulus) * (a * stretch - push)
         return float(depth), float(depth - mp.mpf(float(depth)))

@@ -1,7 +1,7 @@
 """The stable branches of one curved asperity: where each begins, at a fold or a corner, and where it ends.
 
 A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g'(a) > tension under fixed grips, and
-> 3 tension under dead load (H 32, 40). Notation of ``row``.
+> 3 tension under dead load (H 32, 40). Notation of ``params``.
 """
 
 import math
@@ -41,19 +41,19 @@ _NEAR, _SWING, _FARTHEST = 4e-3, 8.0, 0.1
 _NEXT = 2.0**-52
 
 
-def _steepness(t: float, row: Floats) -> float:
+def _steepness(t: float, params: Floats) -> float:
     """2 sqrt(a) g'(a)."""
-    a, da, _, dg = _curve(t, row)
+    a, da, _, dg = _curve(t, params)
     return 2.0 * math.sqrt(a) * dg / da if da > 0.0 else math.inf
 
 
-def _excess(t: float, tension: float, row: Floats) -> float:
+def _excess(t: float, tension: float, params: Floats) -> float:
     """ln(steepness/tension), within bounds."""
-    steepness = _steepness(t, row)
+    steepness = _steepness(t, params)
     return math.log(steepness / tension) if 0.0 < steepness < math.inf else (500.0 if steepness > 0.0 else -500.0)
 
 
-def _crossing(low: float, high: float, tension: float, row: Floats) -> float:
+def _crossing(low: float, high: float, tension: float, params: Floats) -> float:
     """The t between low (or 0) and high (or inf) where the steepness passes the tension; inf where none is found.
 
     By secants and halves in ln t, in which the steepness is nearly a power law.
@@ -61,26 +61,26 @@ def _crossing(low: float, high: float, tension: float, row: Floats) -> float:
     rising, factor = True, 16.0
     if high == math.inf:
         low, high = max(low, 1e-3), max(low, 1.0)
-        while not _steepness(high, row) >= tension:
+        while not _steepness(high, params) >= tension:
             if high > _LARGEST:
                 return math.inf
             low, high, factor = high, high * factor, min(factor * factor, 1e20)
     else:
-        rising = _steepness(high, row) >= tension
-    if low == 0.0 or (_steepness(low, row) >= tension) == rising:
+        rising = _steepness(high, params) >= tension
+    if low == 0.0 or (_steepness(low, params) >= tension) == rising:
         low, factor = min(0.5 * high, 1.0), 16.0
-        while (_steepness(low, row) >= tension) == rising:
+        while (_steepness(low, params) >= tension) == rising:
             if low < 1.0 / _LARGEST:
                 return math.inf
             high, low, factor = low, low / factor, min(factor * factor, 1e20)
     z_low, z_high = math.log(low), math.log(high)
-    e_low, e_high = _excess(low, tension, row), _excess(high, tension, row)
+    e_low, e_high = _excess(low, tension, params), _excess(high, tension, params)
     z = z_high
     for i in range(200):
         z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % 3 < 2 else 0.5 * (z_low + z_high)
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
-        excess = _excess(math.exp(z), tension, row)
+        excess = _excess(math.exp(z), tension, params)
         if abs(excess) < _CLOSE or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
@@ -90,60 +90,60 @@ def _crossing(low: float, high: float, tension: float, row: Floats) -> float:
     return math.exp(z)
 
 
-def _branch(count: int, foot: float, top: float, row: Floats) -> int:
+def _branch(count: int, foot: float, top: float, params: Floats) -> int:
     """Note one more branch; the new count, or more than MOST."""
     if count < MOST:
-        row[FOOT + count], row[TOP + count] = foot, top
+        params[FOOT + count], params[TOP + count] = foot, top
     return count + 1
 
 
-def _list_branches(tension: float, row: Floats) -> int:
+def _list_branches(tension: float, params: Floats) -> int:
     """Fill in where the stable branches begin and end; how many there are, 0 where it cannot be said."""
     count, low, foot, stable = 0, 0.0, 0.0, False
-    for i in range(_dip_count(row)):
-        peak, dip = _dip(i, row)
-        if not stable and peak > low and _steepness(peak, row) >= tension:
-            foot, stable = _crossing(low, peak, tension, row), True
+    for i in range(_dip_count(params)):
+        peak, dip = _dip(i, params)
+        if not stable and peak > low and _steepness(peak, params) >= tension:
+            foot, stable = _crossing(low, peak, tension, params), True
         elif not stable and _corner:
             foot, stable = peak, True
-        if stable and _steepness(dip, row) < tension:
+        if stable and _steepness(dip, params) < tension:
             beyond = peak * (1.0 + _NEXT) if _corner else peak
-            count = _branch(count, foot, _crossing(beyond, dip, tension, row), row)
+            count = _branch(count, foot, _crossing(beyond, dip, tension, params), params)
             stable = False
         low = dip
     if not stable:
-        foot = _crossing(low, math.inf, tension, row)
-    count = _branch(count, foot, math.inf, row)
+        foot = _crossing(low, math.inf, tension, params)
+    count = _branch(count, foot, math.inf, params)
     return count if count <= MOST and foot < math.inf else 0
 
 
-def find_branches(row: Floats) -> None:
+def find_branches(params: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
-    row[COUNT], row[FOLD], row[DEPTH], row[ONSET], row[NEAR] = 0.0, 0.0, 1.0, 1.0, _NEAR
-    if row[TENSION] == 0.0:
-        row[FOOT], row[TOP], row[FOOT_X], row[TOP_X], row[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
-        row[LAST], row[LAST_X] = 0.0, 0.0
+    params[COUNT], params[FOLD], params[DEPTH], params[ONSET], params[NEAR] = 0.0, 0.0, 1.0, 1.0, _NEAR
+    if params[TENSION] == 0.0:
+        params[FOOT], params[TOP], params[FOOT_X], params[TOP_X], params[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
+        params[LAST], params[LAST_X] = 0.0, 0.0
         return
-    measure_branches(_list_branches(row[TENSION] * (1.0 + 2.0 * row[CONTROL]), row), row)
-    if row[COUNT] > 0.0:
-        a = _curve(row[FOLD], row)[0]
-        swing = 2.0 * row[TENSION] * math.sqrt(a) * (a if row[CONTROL] > 0.0 else 1.0) / row[DEPTH]
-        row[NEAR] = min(_NEAR * max(swing / _SWING, 1.0), _FARTHEST)
+    measure_branches(_list_branches(params[TENSION] * (1.0 + 2.0 * params[CONTROL]), params), params)
+    if params[COUNT] > 0.0:
+        a = _curve(params[FOLD], params)[0]
+        swing = 2.0 * params[TENSION] * math.sqrt(a) * (a if params[CONTROL] > 0.0 else 1.0) / params[DEPTH]
+        params[NEAR] = min(_NEAR * max(swing / _SWING, 1.0), _FARTHEST)
 
 
-def measure_branches(count: int, row: Floats) -> None:
+def measure_branches(count: int, params: Floats) -> None:
     """Fill in the depth and the distances of the ``count`` branches that are listed."""
-    row[DEPTH] = -math.inf
+    params[DEPTH] = -math.inf
     for j in range(count):
-        depth = -load(row[FOOT + j], row)[0]
-        if depth > row[DEPTH]:
-            row[FOLD], row[DEPTH] = row[FOOT + j], depth
-    if not 0.0 < row[DEPTH] < math.inf:
+        depth = -load(params[FOOT + j], params)[0]
+        if depth > params[DEPTH]:
+            params[FOLD], params[DEPTH] = params[FOOT + j], depth
+    if not 0.0 < params[DEPTH] < math.inf:
         return
     for j in range(count):
-        row[FOOT_X + j] = load(row[FOOT + j], row)[0] / row[DEPTH] + 1.0
-        row[TOP_X + j] = load(row[TOP + j], row)[0] / row[DEPTH] + 1.0 if j < count - 1 else math.inf
-    row[COUNT], row[LAST], row[LAST_X] = float(count), row[FOOT + count - 1], row[FOOT_X + count - 1]
+        params[FOOT_X + j] = load(params[FOOT + j], params)[0] / params[DEPTH] + 1.0
+        params[TOP_X + j] = load(params[TOP + j], params)[0] / params[DEPTH] + 1.0 if j < count - 1 else math.inf
+    params[COUNT], params[LAST], params[LAST_X] = float(count), params[FOOT + count - 1], params[FOOT_X + count - 1]
 
 
 LISTING: tuple[Callable[..., Any], ...] = (_branch, measure_branches)

@@ -1,7 +1,7 @@
 """Where Newton's method begins on the last branch: cubics over octaves of y, or parts of them, and power laws outside.
 
 y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
-``row``.
+``params``.
 """
 
 import math
@@ -28,69 +28,69 @@ _CORNER = 1e-6  # of the depth over the foot: a fold has no slope
 _BEND = 1e-4  # of the foot: over it the slope at a fold is linear
 
 
-def scale(x: float, row: Floats) -> float:
+def scale(x: float, params: Floats) -> float:
     """y at the distance x to the lowest foot."""
-    side = 1.0 + math.sqrt(max(x - row[LAST_X], 0.0))
-    return side * side if row[TENSION] > 0.0 else x * _LOWEST
+    side = 1.0 + math.sqrt(max(x - params[LAST_X], 0.0))
+    return side * side if params[TENSION] > 0.0 else x * _LOWEST
 
 
-def guess(x: float, row: Floats) -> float:
+def guess(x: float, params: Floats) -> float:
     """t within the octaves; beyond them anything."""
-    node, u = octave(scale(x, row), SPLIT)
+    node, u = octave(scale(x, params), SPLIT)
     node = min(max(node, 0), (OCTAVES << SPLIT) - 1)
     at, parts = NODE + 2 * node, (1 << SPLIT) + (node & ((1 << SPLIT) - 1))  # parts in the y of the node
-    t, rise = row[at], row[at + 2] - row[at]
-    first, last = row[at + 1] / float(parts), row[at + 3] / float(parts + 1)
+    t, rise = params[at], params[at + 2] - params[at]
+    first, last = params[at + 1] / float(parts), params[at + 3] / float(parts + 1)
     return float(t + u * (first + u * ((3.0 * rise - 2.0 * first - last) + u * (first + last - 2.0 * rise))))
 
 
-def first_guess(x: float, row: Floats) -> float:
+def first_guess(x: float, params: Floats) -> float:
     """t anywhere."""
-    y = scale(x, row)
+    y = scale(x, params)
     if 1.0 <= y < _LARGEST:
-        return guess(x, row)
+        return guess(x, params)
     end = NODE if y < 1.0 else NODE + 2 * (OCTAVES << SPLIT)
-    return float(row[end] * math.pow(y if y < 1.0 else y / _LARGEST, row[end + 1] / row[end]))
+    return float(params[end] * math.pow(y if y < 1.0 else y / _LARGEST, params[end + 1] / params[end]))
 
 
-def place(y: float, row: Floats) -> tuple[float, float]:
+def place(y: float, params: Floats) -> tuple[float, float]:
     """The distance x to the lowest foot at y, and dx/dy times y."""
     side = math.sqrt(y)
-    if row[TENSION] > 0.0:
-        return row[LAST_X] + (side - 1.0) * (side - 1.0), (side - 1.0) * side
+    if params[TENSION] > 0.0:
+        return params[LAST_X] + (side - 1.0) * (side - 1.0), (side - 1.0) * side
     return y / _LOWEST, y / _LOWEST
 
 
-def extrapolated(node: int, interval: float, row: Floats) -> float:
+def extrapolated(node: int, interval: float, params: Floats) -> float:
     """About t at a node, from the one before with ln y less by ``interval``: the way from the foot is a power of y."""
-    foot, at = row[LAST], NODE + 2 * node
-    way, step = row[at - 2] - foot, row[at - 1] * interval
+    foot, at = params[LAST], NODE + 2 * node
+    way, step = params[at - 2] - foot, params[at - 1] * interval
     power = step / way if way > 0.0 else 0.0
-    return float(row[at - 2] + step * (1.0 + power * (0.5 + power / 6.0)))
+    return float(params[at - 2] + step * (1.0 + power * (0.5 + power / 6.0)))
 
 
-def find_first_node(row: Floats) -> None:
+def find_first_node(params: Floats) -> None:
     """Fill in the first node: the foot, or without adhesion a small contact."""
-    foot = row[LAST]
-    if row[TENSION] == 0.0:
-        find_node(0, 1.0, row)
+    foot = params[LAST]
+    if params[TENSION] == 0.0:
+        find_node(0, 1.0, params)
         return
-    row[NODE] = foot
-    if foot == 0.0 or load(foot, row)[1] > _CORNER * row[DEPTH] / foot:
-        row[NODE + 1] = 0.0
+    params[NODE] = foot
+    if foot == 0.0 or load(foot, params)[1] > _CORNER * params[DEPTH] / foot:
+        params[NODE + 1] = 0.0
     else:
-        bent = load(foot + _BEND * foot, row)[1] / (_BEND * foot)
-        row[NODE + 1] = math.sqrt(0.5 * row[DEPTH] / bent)
+        bent = load(foot + _BEND * foot, params)[1] / (_BEND * foot)
+        params[NODE + 1] = math.sqrt(0.5 * params[DEPTH] / bent)
 
 
-def find_node(node: int, y: float, row: Floats) -> None:
+def find_node(node: int, y: float, params: Floats) -> None:
     """Fill in a node by itself."""
-    foot, at = row[LAST], NODE + 2 * node
-    x, dx = place(y, row)
-    before = row[at - 2] if node > 0 else 0.0
+    foot, at = params[LAST], NODE + 2 * node
+    x, dx = place(y, params)
+    before = params[at - 2] if node > 0 else 0.0
     start = 2.0 * before - foot if before > foot else max(2.0 * foot, 1e-3)
-    row[at] = root(x * row[DEPTH], start, foot, math.inf, int(row[COUNT]) - 1, row)
-    row[at + 1] = dx * row[DEPTH] / load(row[at], row)[1]
+    params[at] = root(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
+    params[at + 1] = dx * params[DEPTH] / load(params[at], params)[1]
 
 
 def find_starts(rows: Floats) -> None:

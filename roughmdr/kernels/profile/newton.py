@@ -1,4 +1,4 @@
-"""The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``row``."""
+"""The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``params``."""
 
 import math
 from collections.abc import Callable
@@ -22,29 +22,29 @@ _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that w
 _PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
 
 
-def above(t: float, j: int, row: Floats) -> tuple[float, float]:
+def above(t: float, j: int, params: Floats) -> tuple[float, float]:
     """How far the controlled quantity lies above the lowest foot, and its slope; t on branch j."""
-    value, slope = load(t, row)
-    foot = row[FOOT + j]
+    value, slope = load(t, params)
+    foot = params[FOOT + j]
     step = t - foot
-    if row[TENSION] == 0.0:
+    if params[TENSION] == 0.0:
         return value, slope
-    lifted = value + row[DEPTH]
-    far = step > row[NEAR] * t and (foot > 0.0 or lifted > _LOST * row[DEPTH])
-    if far or _kink(foot, t, row):
+    lifted = value + params[DEPTH]
+    far = step > params[NEAR] * t and (foot > 0.0 or lifted > _LOST * params[DEPTH])
+    if far or _kink(foot, t, params):
         return lifted, slope
     middle = foot + 0.5 * step
-    inner = load(middle - _INNER * step, row)[1] + load(middle + _INNER * step, row)[1]
-    outer = load(middle - _OUTER * step, row)[1] + load(middle + _OUTER * step, row)[1]
-    mean = _MIDDLE * load(middle, row)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
-    return row[FOOT_X + j] * row[DEPTH] + step * mean, slope
+    inner = load(middle - _INNER * step, params)[1] + load(middle + _INNER * step, params)[1]
+    outer = load(middle - _OUTER * step, params)[1] + load(middle + _OUTER * step, params)[1]
+    mean = _MIDDLE * load(middle, params)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
+    return params[FOOT_X + j] * params[DEPTH] + step * mean, slope
 
 
-def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) -> float:
+def root(wanted: float, t: float, low: float, high: float, j: int, params: Floats) -> float:
     """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
-    foot, lift = row[FOOT + j], row[DEPTH] if row[TENSION] > 0.0 else 0.0
+    foot, lift = params[FOOT + j], params[DEPTH] if params[TENSION] > 0.0 else 0.0
     for i in range(200):
-        value, slope = above(t, j, row)
+        value, slope = above(t, j, params)
         if value < wanted:
             low = t
         elif value > wanted:
@@ -66,26 +66,26 @@ def root(wanted: float, t: float, low: float, high: float, j: int, row: Floats) 
     return math.nan
 
 
-def nearer(t: float, x: float, row: Floats) -> tuple[float, float, float]:
+def nearer(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     """One step of Newton's method on the last branch under fixed grips, not below its foot: t, how far it was away, and
     dt/dx.
 
     So far away is it as the step, or as the step makes of the value: that of a steep power changes more than t.
     """
-    value, slope = stretched(t, row)
-    lift = row[DEPTH] if row[TENSION] > 0.0 else 0.0
-    wanted, beyond = x * row[DEPTH], t - row[LAST]
+    value, slope = stretched(t, params)
+    lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0
+    wanted, beyond = x * params[DEPTH], t - params[LAST]
     rest = (value + lift) - wanted
     step = rest / slope
     away = max(abs(step), abs(rest) / (wanted + lift) * beyond)
-    return max(t - step, row[LAST] + _LEAST_WAY * beyond), away, row[DEPTH] / slope
+    return max(t - step, params[LAST] + _LEAST_WAY * beyond), away, params[DEPTH] / slope
 
 
-def arrived(t: float, away: float, x: float, rung: float, row: Floats) -> bool:
+def arrived(t: float, away: float, x: float, rung: float, params: Floats) -> bool:
     """Whether a step from so far ``away`` has come to the state on branch ``rung``: one lies beyond the last foot."""
-    beyond = t - row[LAST]
-    is_last = (rung == row[COUNT]) & (x > row[LAST_X])
-    return bool(is_last & (beyond > row[NEAR] * t) & (away <= _FINE * beyond))
+    beyond = t - params[LAST]
+    is_last = (rung == params[COUNT]) & (x > params[LAST_X])
+    return bool(is_last & (beyond > params[NEAR] * t) & (away <= _FINE * beyond))
 
 
 PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)

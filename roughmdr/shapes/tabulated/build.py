@@ -61,9 +61,11 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     parts = [piece for _, piece in done]
     far = _far(begins[-1], knots, coefficients)
     spline = np.column_stack([knots, _heights(knots, coefficients), coefficients])
-    form = np.concatenate([[len(dips)], np.ravel(dips), [len(done)], begins, *parts, far, [knots.size], spline.ravel()])
-    _add_strains(form)
-    return form
+    params = np.concatenate(
+        [[len(dips)], np.ravel(dips), [len(done)], begins, *parts, far, [knots.size], spline.ravel()]
+    )
+    _add_strains(params)
+    return params
 
 
 def _heights(knots: Floats, coefficients: Floats) -> Floats:
@@ -73,20 +75,20 @@ def _heights(knots: Floats, coefficients: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(h * (c0 + h * (c1 / 2.0 + h * c2 / 3.0)))])
 
 
-def _add_strains(form: Floats) -> None:
+def _add_strains(params: Floats) -> None:
     """Fill in the strain at the begin of each piece and of the far field."""
     from roughmdr.numerics.jit import compiled
 
     panel = compiled(strain_between)
-    first = 2 + 2 * int(form[0])
-    count = int(form[first - 1])
-    begins, total = form[first : first + count + 1], 0.0
+    first = 2 + 2 * int(params[0])
+    count = int(params[first - 1])
+    begins, total = params[first : first + count + 1], 0.0
     for i in range(count):
         at = first + count + 1 + PIECE * i
-        form[at + 3] = total
+        params[at + 3] = total
         # Just inside, where the piece itself is looked up.
-        total += panel(begins[i], np.nextafter(begins[i + 1], 0.0), form)
-    form[first + count + 1 + PIECE * count + 2] = total
+        total += panel(begins[i], np.nextafter(begins[i + 1], 0.0), params)
+    params[first + count + 1 + PIECE * count + 2] = total
 
 
 def _tip(knots: Floats, coefficients: Floats) -> tuple[float, Floats]:
