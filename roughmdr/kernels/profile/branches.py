@@ -54,6 +54,7 @@ def branch(x: float, before: float, touched: bool, params: Floats) -> float:
 
 def jump_energy(before: float, after: float, params: Floats) -> float:
     """The energy dissipated in jumps from one branch to another, each where its branch ends (unit as ``energy``)."""
+    j, last, lost = int(before), int(after), 0.0
     if j == 0 and last > 0:
         first = law.branch(params[ONSET], 0.0, True, params)
         lost -= law.energy(law.state_on_branch(params[ONSET], first, params), params) if first > 0.0 else 0.0
