@@ -23,7 +23,6 @@ from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.numerics.vector_math import atan, octave
 from roughmdr.shapes import Paraboloid, Shape
-from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.power_profiles import profile_of
 from roughmdr.shapes.special import less_atan
 
@@ -158,7 +157,7 @@ def _parts(shape: type[Shape], cohesive: bool) -> tuple[Callable[..., Any], ...]
 @cache
 def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
     """The kernels of a shape, by the names that ``Law`` has for them; ``cohesive`` where adhesion has a range."""
-    profile, shared = profile_of(shape), issubclass(shape, ProfileShape) and shape.common
+    profile, shared = profile_of(shape), shape.shared
     split = _SPLIT if shared else 0
     kernels: dict[str, Any] = {
         "_curve": compiled(profile.mdr_profile),
