@@ -69,7 +69,7 @@ class Ensemble:
         if self.fixed is None:
             kind = SHAPES[self.shape]
             with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
-                slopes = kind.slopes(self.parameters, radius)
+                slopes = kind.slopes(self.columns(), radius)
             return ValidityLimits.of(radius, slopes, kind.ends(self.parameters))
         return ValidityLimits.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
 
@@ -83,7 +83,7 @@ class Ensemble:
         if self.fixed is not None:
             for name, column in self.fixed.columns.items():
                 attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}, the same for all"}
-                variables[name] = Array((self.fixed.along,), column, attrs)
+                variables[name] = Array((self.fixed.dimension,), column, attrs)
         for name, column in self.positions.items():
             variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
         area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
@@ -118,10 +118,10 @@ class Ensemble:
 def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], SharedProfile | None]:
     """The parameters of each asperity, or the one profile of all."""
     if issubclass(kind, SharedProfile):
-        columns = {name: _column(dataset, name, unit, kind.along) for name, unit in kind.units.items()}
-        return {}, kind.of_columns(columns)
-    spelling = kind.spelling({name for name in kind.units if name in dataset})
-    parameters = {name: _column(dataset, name, kind.units[name]) for name in spelling}
+        columns = {name: _column(dataset, name, unit, kind.dimension) for name, unit in kind.units.items()}
+        return {}, kind.from_columns(columns)
+    names = kind.parameter_set({name for name in kind.units if name in dataset})
+    parameters = {name: _column(dataset, name, kind.units[name]) for name in names}
     kind.check(parameters)
     return parameters, None
 

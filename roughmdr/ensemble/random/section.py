@@ -49,7 +49,7 @@ class RandomAsperities(PatchSource):
     @model_validator(mode="after")
     def _parameters_describe_the_shape(self) -> "RandomAsperities":
         if self.fixed is None:
-            SHAPES[self.shape].spelling(set(self.distributions))
+            SHAPES[self.shape].parameter_set(set(self.distributions))
         if self.count is None and self.density is None:
             raise RoughmdrError("needs count, or a density from which the number in each realisation is drawn")
         if self.count is not None and self.density is not None:

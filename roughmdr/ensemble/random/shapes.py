@@ -76,7 +76,7 @@ class RandomTabulated(RandomAsperities):
 
 def _section(shape: type[Shape]) -> type[RandomAsperities]:
     """The section of one shape, with a key for each of its parameters."""
-    always = set.intersection(*(set(spelling) for spelling in shape.spellings))
+    always = set.intersection(*(set(names) for names in shape.parameter_sets))
     keys: dict[str, Any] = {}
     others: dict[str, Any] = {}
     together: dict[str, Any] = {}
@@ -108,7 +108,7 @@ else:
         Union[
             RandomPowerSeries,
             RandomTabulated,
-            *(_section(shape) for shape in SHAPES.values() if not issubclass(shape, SharedProfile)),
+            *(_section(shape) for shape in SHAPES.values() if not shape.shared),
         ],
         Field(discriminator="shape"),
     ]
