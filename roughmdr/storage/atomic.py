@@ -1,0 +1,102 @@
+"""Atomic replacement of files: an output appears whole or not at all, and nothing is left behind."""
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from roughmdr.errors import StoreError
+
+_TEMPORARY_PREFIX = ".roughmdr."
+
+
+def destination(path: Path) -> Path:
+    """Return the file that writing to ``path`` replaces: for a link its final target, even if that does not exist yet.
+
+    Everything that belongs to an output is kept beside the destination, so that it is found with and without the link.
+    StoreError if links form a circle.
+    """
+    with convert_os_errors(path):
+        if not path.is_symlink():
+            return path
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise StoreError(f"{path}: is a link in a circle of links, which leads to no file")
+        return target
+
+
+def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
+    """Raise StoreError if no file can be put at ``path``, or if that would replace one of the inputs."""
+    target = destination(path)
+    label = f"{path}" if target == path else f"{path} (a link to {target})"
+    try:
+        if target.is_dir():
+            raise StoreError(f"{label}: is a folder; the output must be a file")
+        if target.exists() and not target.is_file():
+            raise StoreError(f"{label}: is not a regular file; the output must be one")
+        if target.exists() and any(other.exists() and target.samefile(other) for other in inputs):
+            raise StoreError(f"{label}: is an input; the output must be another file")
+        if not target.parent.is_dir():
+            raise StoreError(f"{label}: the folder {target.parent} does not exist")
+        if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
+            raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
+        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY_PREFIX, dir=target.parent)
+    except OSError as error:
+        raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
+    os.close(descriptor)
+    Path(name).unlink()
+
+
+def _is_utf8(path: Path) -> bool:
+    return str(path).encode(errors="replace").decode() == str(path)
+
+
+@contextlib.contextmanager
+def convert_os_errors(path: Path) -> Iterator[None]:
+    """Convert an OSError raised inside to a StoreError that names ``path``."""
+    try:
+        yield
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+@contextlib.contextmanager
+def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary file to write to; it replaces ``path`` once everything is written and on disk.
+
+    The temporary file is in ``folder``, which must be on the same disk; by default beside ``path``. If ``path`` is a
+    link, its target is replaced.
+    """
+    check_writable(path)
+    path = destination(path)
+    with convert_os_errors(path):
+        with tempfile.NamedTemporaryFile(
+            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
+        ) as created:
+            temporary = Path(created.name)
+        try:
+            yield temporary
+            with temporary.open("rb") as written:
+                os.fsync(written.fileno())
+            temporary.chmod(0o666 & ~_umask())
+            temporary.replace(path)
+            sync_folder(path.parent)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def sync_folder(folder: Path) -> None:
+    """Write a folder's entries to disk, so that a new name survives a power cut; no effect if it cannot be opened."""
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
