@@ -27,7 +27,7 @@ from roughmdr.runner.local import Pool, Processes, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
-from roughmdr.storage.atomic import check_writable, destination
+from roughmdr.storage.file_checks import check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED

@@ -20,16 +20,11 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise ValueError(_TOO_DEEP) from None
     level: list[Any] = [table]
     for _ in range(_MAX_DEPTH):
-        level = [entry for outer in level for entry in _entries(outer)]
+        tables = [outer for outer in level if isinstance(outer, dict | list)]
+        level = [entry for outer in tables for entry in (outer.values() if isinstance(outer, dict) else outer)]
     if level:
         raise ValueError(_TOO_DEEP)
     return table
-
-
-def _entries(value: Any) -> list[Any]:
-    if isinstance(value, dict):
-        return list(value.values())
-    return value if isinstance(value, list) else []
 
 
 def key_lines(text: str) -> dict[str, int]:

@@ -3,62 +3,10 @@
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
-from roughmdr.errors import StoreError
-
-_TEMPORARY_PREFIX = ".roughmdr."
-
-
-def destination(path: Path) -> Path:
-    """Return the file that writing to ``path`` replaces: for a link its final target, even if that does not exist yet.
-
-    Everything that belongs to an output is kept beside the destination, so that it is found with and without the link.
-    StoreError if links form a circle.
-    """
-    with convert_os_errors(path):
-        if not path.is_symlink():
-            return path
-        target = Path(os.path.realpath(path))
-        if target.is_symlink():
-            raise StoreError(f"{path}: is a link in a circle of links, which leads to no file")
-        return target
-
-
-def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
-    """Raise StoreError if no file can be put at ``path``, or if that would replace one of the inputs."""
-    target = destination(path)
-    label = f"{path}" if target == path else f"{path} (a link to {target})"
-    try:
-        if target.is_dir():
-            raise StoreError(f"{label}: is a folder; the output must be a file")
-        if target.exists() and not target.is_file():
-            raise StoreError(f"{label}: is not a regular file; the output must be one")
-        if target.exists() and any(other.exists() and target.samefile(other) for other in inputs):
-            raise StoreError(f"{label}: is an input; the output must be another file")
-        if not target.parent.is_dir():
-            raise StoreError(f"{label}: the folder {target.parent} does not exist")
-        if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
-            raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
-        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY_PREFIX, dir=target.parent)
-    except OSError as error:
-        raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
-    os.close(descriptor)
-    Path(name).unlink()
-
-
-def _is_utf8(path: Path) -> bool:
-    return str(path).encode(errors="replace").decode() == str(path)
-
-
-@contextlib.contextmanager
-def convert_os_errors(path: Path) -> Iterator[None]:
-    """Convert an OSError raised inside to a StoreError that names ``path``."""
-    try:
-        yield
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
+from roughmdr.storage.file_checks import TEMPORARY_PREFIX, check_writable, convert_os_errors, destination
 
 
 @contextlib.contextmanager
@@ -72,7 +20,7 @@ def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]
     path = destination(path)
     with convert_os_errors(path):
         with tempfile.NamedTemporaryFile(
-            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
+            prefix=TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
         ) as created:
             temporary = Path(created.name)
         try:

@@ -22,7 +22,8 @@ from typing import Any
 
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
-from roughmdr.storage.atomic import convert_os_errors, sync_folder
+from roughmdr.storage.atomic import sync_folder
+from roughmdr.storage.file_checks import convert_os_errors
 
 # What disks say that know no locks, as some of those that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
