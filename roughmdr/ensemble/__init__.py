@@ -54,7 +54,7 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
 def make(section: Source, seed: int, realization: int) -> Ensemble:
     """The ensemble of a section for a user to keep: with positions where it says how to place them."""
     made = section.ensemble(seed, realization, placed="placement" in section.model_fields_set)
-    return replace(made, warnings=(*section.doubts, *made.warnings))
+    return replace(made, warnings=(*section.warnings, *made.warnings))
 
 
 def _whole(name: str, value: object) -> int:

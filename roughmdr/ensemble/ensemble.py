@@ -10,7 +10,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
-from roughmdr.schema.wording import shown
+from roughmdr.schema.wording import short_repr
 from roughmdr.shapes import SHAPES, Shape, SharedProfile
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
@@ -98,7 +98,7 @@ class Ensemble:
         """
         shape = dataset.attrs.get("shape")
         if not isinstance(shape, str) or shape not in SHAPES:
-            raise SceneError(f"ensemble: attribute shape is {shown(shape)}; it must be one of {', '.join(SHAPES)}")
+            raise SceneError(f"ensemble: attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
         kind = SHAPES[shape]
         height = _column(dataset, "height", "m")
         positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
@@ -109,7 +109,7 @@ class Ensemble:
         sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
         doubts = dataset.attrs.get("warnings", "")
         if not isinstance(doubts, str):
-            raise SceneError(f"ensemble: attribute warnings is {shown(doubts)}; it must be a text")
+            raise SceneError(f"ensemble: attribute warnings is {short_repr(doubts)}; it must be a text")
         area = _nominal_area(dataset.attrs, sides)
         found = cls.sorted(shape, height, parameters, area, positions, dict(sides), fixed)
         return replace(found, warnings=tuple(doubts.splitlines()))

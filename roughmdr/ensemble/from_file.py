@@ -12,12 +12,12 @@ from pydantic import AfterValidator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import SceneError
-from roughmdr.storage.files import check_ordinary
+from roughmdr.storage.file_checks import check_regular_file
 
 
 def _is_file(value: str) -> str:
     """The name of a file that is there; RoughmdrError where it is not, or is no ordinary one."""
-    check_ordinary(Path(value))
+    check_regular_file(Path(value))
     return value
 
 

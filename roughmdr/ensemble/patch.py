@@ -15,7 +15,7 @@ class PatchSource(Source):
     """A source whose asperities lie on a square of side ``patch``."""
 
     shape: str
-    patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
+    patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]  # its square is a float
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
 

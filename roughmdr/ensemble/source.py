@@ -46,7 +46,7 @@ class Source(Section):
         return ""
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Warn, in words, of the parts of the section that may not be as they were meant."""
         return ()
 

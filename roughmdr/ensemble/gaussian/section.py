@@ -36,7 +36,7 @@ class NayakAsperities(PatchSource):
     m0: Annotated[float, BeforeValidator(Quantity("m2", above=0.0))] | None = None
     m2: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
     m4: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
-    hurst: Annotated[float, BeforeValidator(Quantity("1", least=0.0, most=1.0))] | None = None
+    hurst: Annotated[float, BeforeValidator(Quantity("1", at_least=0.0, at_most=1.0))] | None = None
     long_wave: Length | None = None
     short_wave: Length | None = None
     rms_height: Length | None = None

@@ -9,7 +9,7 @@ from roughmdr.ensemble.random.families import Family, find_family, known_familie
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, quantity
-from roughmdr.schema.wording import near
+from roughmdr.schema.wording import close_matches
 
 _FRIENDLY = {
     "normal": "norm",
@@ -82,7 +82,7 @@ class DistributionReader:
         table = dict(value)
         given = table.pop("distribution", None)
         if given is None:
-            for meant in near("distribution", table):
+            for meant in close_matches("distribution", table):
                 raise EntryError(meant, table[meant], "unknown key; did you mean 'distribution'?")
             raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
         if not isinstance(given, str):
@@ -178,5 +178,5 @@ def _listed(numbers: dict[str, float]) -> str:
 
 
 def _suggestion(name: str) -> str:
-    meant = near(name, [*_FRIENDLY, *known_families()], count=3)
+    meant = close_matches(name, [*_FRIENDLY, *known_families()], count=3)
     return f"; did you mean {' or '.join(map(repr, meant))}?" if meant else ""

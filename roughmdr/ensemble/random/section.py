@@ -28,7 +28,7 @@ _Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0
 class Second(Section):
     """[asperities.second]: a second population, this share of all asperities; what it leaves out is as in the first."""
 
-    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, most=1.0))]
+    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))]
     height: _Height | None = None
 
 
@@ -128,7 +128,7 @@ class RandomAsperities(PatchSource):
         return self.density * self.patch * self.patch if self.density is not None else float(self.count or 0)
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Heights by scipy's own parameters whose place was left to scipy, and is not about z = 0."""
         second = None if self.second is None else self.second.height
         heights = {"height": self.height} | ({} if second is None else {"second.height": second})

@@ -80,7 +80,7 @@ def _section(shape: type[Shape]) -> type[RandomAsperities]:
     keys: dict[str, Any] = {}
     others: dict[str, Any] = {}
     together: dict[str, Any] = {}
-    rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, least=-1.0, most=1.0))]
+    rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=-1.0, at_most=1.0))]
     for name, unit in shape.units.items():
         kind = Annotated[Distribution, BeforeValidator(DistributionReader(unit, positive=True))]
         keys[name] = (kind, ...) if name in always else (kind | None, None)
