@@ -253,7 +253,7 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     for axis in asked.sweep.axes:
         if axis.key.startswith("asperities."):
             raise SceneError(f"sweep: changes {axis.key} from cell to cell; say which with --set {axis.key}=VALUE")
-    if realization > 0 and not asked.asperities.drawn:
+    if realization > 0 and not asked.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only one, 0; nothing here is drawn")
     check_writable(output, asked.inputs)
     if not fresh:

@@ -42,7 +42,7 @@ class Plan(NamedTuple):
     @property
     def doubts(self) -> list[str]:
         """Warn of asperities that may not be as they were meant; in how many cells, where not in all."""
-        return in_cells((text for cell in self.cells for text in cell.scene.asperities.doubts), len(self.cells))
+        return in_cells((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
 
     def name_of(self, cell: int, realization: int) -> str:
         """A run in words."""
@@ -133,7 +133,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.drawn:
+    if scene.asperities.is_random:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]

@@ -79,7 +79,7 @@ def _compare(plan: Plan, law: str, note: str, say: Callable[[Cell], dict[str, Fl
 
 
 def _expected(cell: Cell, names: list[str]) -> dict[str, Floats]:
-    if reason := cell.scene.asperities.unfit_for("expected"):
+    if reason := cell.scene.asperities.reason_against("expected"):
         raise RoughmdrError(reason)
     return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
 

@@ -189,24 +189,24 @@ class Scene(Section):
             _ = self.effective_modulus
         except OutOfRange as error:
             raise _misfit("material.modulus", str(error)) from None
-        if not self.asperities.drawn and self.batch.realizations > 1:
+        if not self.asperities.is_random and self.batch.realizations > 1:
             source = self.asperities.source
             raise _misfit("batch.realizations", f"must be 1 with source {source!r}: nothing of it is drawn")
-        if self.batch.estimator != "sampled" and (reason := self.asperities.unfit_for(self.batch.estimator)):
+        if self.batch.estimator != "sampled" and (reason := self.asperities.reason_against(self.batch.estimator)):
             raise _misfit("batch.estimator", f"cannot be {self.batch.estimator!r}: {reason}")
         self._accuracy_fits()
         if self.batch.estimator == "expected" and self.batch.realizations > 1:
             raise _misfit("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
-        if not self.asperities.drawn:
+        if not self.asperities.is_random:
             return self
         sigma = self.asperities.sigma
         if self.path.uses_sigma and not 0.0 < sigma < math.inf:
             raise _misfit(
                 "path.separation", f"cannot be given in sigma: the heights' standard deviation is {sigma:g} m"
             )
-        exponent = self.asperities.least_exponent
+        exponent = self.asperities.min_exponent
         if self.work > 0.0 and not exponent > 0.5:
-            key = "terms" if self.asperities.fixed is not None else "exponent"
+            key = "terms" if self.asperities.shared_profile is not None else "exponent"
             raise _misfit(
                 f"asperities.{key}",
                 f"can be as low as {exponent:g}; with adhesion it must be above 0.5",
@@ -216,7 +216,7 @@ class Scene(Section):
     def _accuracy_fits(self) -> None:
         if self.accuracy is None:
             return
-        if not self.asperities.drawn:
+        if not self.asperities.is_random:
             raise _misfit("accuracy", f"does not go with source {self.asperities.source!r}: nothing of it is drawn")
         if "estimator" in self.batch.model_fields_set:
             raise _misfit("batch.estimator", "is chosen by accuracy.method where there is an [accuracy]")
@@ -224,7 +224,7 @@ class Scene(Section):
             most = self.accuracy.max_realizations
             raise _misfit("batch.realizations", f"must be at most accuracy.max_realizations, {most}")
         method = self.accuracy.method
-        if method != "auto" and (reason := self.asperities.unfit_for(method)):
+        if method != "auto" and (reason := self.asperities.reason_against(method)):
             raise _misfit("accuracy.method", f"cannot be {method!r}: {reason}")
 
     @property
@@ -240,7 +240,7 @@ class Scene(Section):
         count = self.asperities.expected_count
         whole = abs(count - round(count)) <= _UNSEEN * self.accuracy.relative * count
         drawn = "stratified" if whole else "sampled"
-        return (drawn,) if self.asperities.unfit_for("expected") else (drawn, "expected")
+        return (drawn,) if self.asperities.reason_against("expected") else (drawn, "expected")
 
     @property
     def effective_modulus(self) -> float:
