@@ -167,7 +167,7 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
     ("a.npy", GOOD, {"unit": "furlong"}, "unknown unit 'furlong'"),
     ("a.npy", GOOD, {"detrend": "cubic"}, "asperities.detrend = 'cubic': not available"),
     ("a.npy", GOOD, {"periodic": 1}, "asperities.periodic = 1"),
-    ("a.npy", GOOD, {"periodic": True, "detrend": "plane"}, "a periodic map has no trend to take out"),
+    ("a.npy", GOOD, {"periodic": True, "detrend": "plane"}, "a periodic map has no trend to remove"),
     ("a.npy", GOOD, {"cutoff": "1.9 um"}, "cutoff 1.9e-06 m must lie between two spacings, 2e-06 m"),
     (
         "a.npy",

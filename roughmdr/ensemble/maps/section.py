@@ -51,7 +51,7 @@ class SurfaceAsperities(FromFile):
         try:
             if surface.periodic and trend in ("plane", "quadratic"):
                 raise SceneError(
-                    f'a periodic map has no trend to take out: detrend is {trend!r}; it must be "mean" or "none"'
+                    f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
                 )
             remove_trend(surface.height, trend)
             if self.cutoff is not None:

@@ -20,9 +20,9 @@ from roughmdr.numerics.arguments import Floats
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 _SCIPY_ERRORS = (ArithmeticError, RuntimeError, ValueError)
-_TAIL_FRACTIONS = np.array([1e-3, 1e-6, 1e-10])  # beyond quantiles that the moments must be compatible with
-_TAIL_MARGIN = 2.0  # factor by which they may be exceeded: quantiles may be rounded
-_WARNING_FILTERS = threading.Lock()  # they are those of all threads
+_TAIL_FRACTIONS = np.array([1e-3, 1e-6, 1e-10])  # beyond the quantiles that moments are checked against
+_TAIL_MARGIN = 2.0  # factor by which a bound may be violated: quantiles may be rounded
+_WARNING_FILTERS = threading.Lock()  # the filters are those of all threads
 
 ALIASES = {"normal": "norm", "lognormal": "lognorm", "exponential": "expon", "weibull": "weibull_min"}
 """Names of a scene -> names of families."""

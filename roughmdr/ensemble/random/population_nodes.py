@@ -10,8 +10,8 @@ from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.numerics.arguments import Floats
 
-# Normal scores of the first and last edges: of the first the farthest where the inverse of a distribution is finite, of
-# the second as many as are felt, where the upper tail is heavy.
+# Normal scores at which edges may lie: on each side the farthest of the first where the family's inverse is finite, and
+# above it those of the second that matter, if the upper tail is heavy.
 _LIGHT_TAIL_ENDS = (HEIGHT_END, 8.0, 6.5, 5.0)
 _HEAVY_TAIL_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)
 _BULK = 3.0  # normal scores between which most heights lie: 99.7 %
@@ -19,7 +19,9 @@ _QUARTILE = 0.6745  # normal score of the upper quartile
 _MAX_FORCE_EXPONENT = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
 _NEGLIGIBLE_FORCE = 1e-16  # of the force that the bulk bears
 _NEXT_TO_LOC = 1e-14  # of the scale
-_RESOLUTION = 2.0**-48  # of a height, or of the scale of the distribution: the narrowest that heights are taken for
+_RESOLUTION = (
+    2.0**-48
+)  # of a height, or of the scale of the distribution: the smallest width of a distribution of heights
 _MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
 
 
