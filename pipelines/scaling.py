@@ -71,7 +71,7 @@ def by_the_sum(
     ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = ROWS
 ) -> Cost:
     """What the package's sum costs, all included."""
-    columns = ensemble.columns()
+    columns = ensemble.nondimensional()
     law = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 
@@ -120,7 +120,7 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
         section = {**kept, "count": count, "shape": shape, **parameters}
         ensemble = Ensemble.from_dataset(rm.generate(section, seed=1))
         started = time.perf_counter()
-        ensemble.columns()  # for a table: its pieces
+        ensemble.nondimensional()  # for a table: its pieces
         profile = time.perf_counter() - started
         each, before, short = told_apart(ensemble, Adhesion(WORK), repeats)
         rows.append((each * 1e9, before * 1e9, short.each, profile, by_brentq_on(ensemble, MODULUS, WORK).each))

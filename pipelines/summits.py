@@ -22,7 +22,7 @@ from exact_summits import Series
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.ensemble.streams import independent
+from roughmdr.ensemble.streams import make_streams
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
 from roughmdr.storage.atomic import replace_atomically
@@ -100,7 +100,7 @@ def summits(count: int = 20, grids: tuple[int, ...] = GRIDS, drawn: int = DRAWN)
     What is drawn has no area of its own: its density is the law's.
     """
     law, area = law_of_maps(), SIZE * SIZE
-    draws = independent(1, 0)
+    draws = make_streams(1, 0)
     sampled = statistics(sums(law.draw(*(draws(stream, drawn) for stream in range(3)))), drawn / law.density)
     found, by_fit = [], []
     for seed in range(count):

@@ -274,7 +274,7 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     for axis in validated.sweep.axes:
         if axis.key.startswith("asperities."):
             raise SceneError(f"sweep: changes {axis.key} from cell to cell; choose one with --set {axis.key}=VALUE")
-    if realization > 0 and not validated.asperities.drawn:
+    if realization > 0 and not validated.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
     check_writable(output, validated.inputs)
     if not fresh:

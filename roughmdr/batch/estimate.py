@@ -109,7 +109,7 @@ def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], l
 def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
     """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
     scene, path = cell.scene, cell.path
-    section = scene.asperities.sampled(_SAMPLE)
+    section = scene.asperities.limited_to(_SAMPLE)
     steps = path.separation.size
     if steps > _STEPS:
         some = np.linspace(0, steps - 1, _STEPS).astype(int)

@@ -133,7 +133,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.drawn:
+    if scene.asperities.is_random:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]

@@ -5,7 +5,7 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator
 
-from roughmdr.ensemble.random.reader import DistributionReader
+from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.quantities import Reader

@@ -77,34 +77,34 @@ class Scene(Section):
         self._check_accuracy()
         if self.batch.estimator == "expected" and self.batch.realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
-        if not self.asperities.drawn:
+        if not self.asperities.is_random:
             return self
         if fault := self.path.sigma_fault(self.asperities.sigma):
             raise mismatch("path.separation", fault)
-        exponent = self.asperities.least_exponent
+        exponent = self.asperities.min_exponent
         if self.work > 0.0 and not exponent > 0.5:
-            key = "terms" if self.asperities.fixed is not None else "exponent"
+            key = "terms" if self.asperities.shared_profile is not None else "exponent"
             raise mismatch(f"asperities.{key}", f"can be as low as {exponent:g}; with adhesion it must be above 0.5")
         return self
 
     def _check_batch(self) -> None:
         estimator, source = self.batch.estimator, self.asperities.source
-        if not self.asperities.drawn and self.batch.realizations > 1:
+        if not self.asperities.is_random and self.batch.realizations > 1:
             raise mismatch("batch.realizations", f"must be 1 with source {source!r}: nothing in it is random")
-        if estimator != "sampled" and (reason := self.asperities.unfit_for(estimator)):
+        if estimator != "sampled" and (reason := self.asperities.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
 
     def _check_accuracy(self) -> None:
         if self.accuracy is None:
             return
-        if not self.asperities.drawn:
+        if not self.asperities.is_random:
             raise mismatch("accuracy", f"does not go with source {self.asperities.source!r}: nothing in it is random")
         if "estimator" in self.batch.model_fields_set:
             raise mismatch("batch.estimator", "is chosen by accuracy.method if there is an [accuracy]")
         maximum, method = self.accuracy.max_realizations, self.accuracy.method
         if self.batch.realizations > maximum:
             raise mismatch("batch.realizations", f"must be at most accuracy.max_realizations, {maximum}")
-        if method != "auto" and (reason := self.asperities.unfit_for(method)):
+        if method != "auto" and (reason := self.asperities.reason_against(method)):
             raise mismatch("accuracy.method", f"cannot be {method!r}: {reason}")
 
     @property
@@ -120,7 +120,7 @@ class Scene(Section):
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
         drawn = "stratified" if is_whole else "sampled"
-        return (drawn,) if self.asperities.unfit_for("expected") else (drawn, "expected")
+        return (drawn,) if self.asperities.reason_against("expected") else (drawn, "expected")
 
     @property
     def effective_modulus(self) -> float:

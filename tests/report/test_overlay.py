@@ -122,7 +122,7 @@ def test_named_law_and_expected_law_agree(adhesion: Any, height: dict[str, Any],
 def test_the_elliptic_law_of_greenwood_is_the_expected_one_of_a_gaussian_surface() -> None:
     plan = asked(asperities=SURFACE)
     section = plan.cells[0].scene.asperities
-    rounded = section.expected_count / (section.law.density * section.nominal_area)
+    rounded = section.expected_count / (section.summits.density * section.nominal_area)
     named, expected = overlay_theory(plan, EVERY), overlay_expected(plan, EVERY)
     for name, values in lines_of(expected, "expected").items():
         np.testing.assert_allclose(lines_of(named, "greenwood_elliptic")[name] * rounded, values, rtol=1e-8)

@@ -57,7 +57,7 @@ def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
 
 def _asperities(section: Source) -> str:
     """A section in words, with what is in its file in place of its name."""
-    return repr(section.model_copy(update={"file": section.content}) if section.inputs else section)
+    return repr(section.model_copy(update={"file": section.content_hash}) if section.inputs else section)
 
 
 @lru_cache(maxsize=16)

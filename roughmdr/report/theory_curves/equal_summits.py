@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble, RandomAsperities
-from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.theory_curves.base import TheoryCurve, check_no_adhesion
@@ -63,7 +63,9 @@ def _jkr_validity(scene: Scene, radius: float) -> JkrValidity:
     if scene.work == 0.0:
         raise RoughmdrError("the scene has no adhesion")
     one = Ensemble("paraboloid", np.zeros(1), {"radius": np.array([radius])})
-    return jkr_validity(one.shape, scene.asperities.sigma, one.columns(), scene.effective_modulus, scene.adhesion_model)
+    return jkr_validity(
+        one.shape, scene.asperities.sigma, one.nondimensional(), scene.effective_modulus, scene.adhesion_model
+    )
 
 
 def _greenwood_williamson(cell: Cell, variable: Variable) -> Floats:

@@ -41,14 +41,14 @@ def _surface(cell: Cell) -> NayakAsperities:
 
 
 def _evaluate_summits(theory: _SummitTheory, cell: Cell, variable: Variable) -> Floats:
-    m0, m2, m4 = _surface(cell).law.moments
+    m0, m2, m4 = _surface(cell).summits.moments
     separation, effective_modulus = cell.path.separation, cell.scene.effective_modulus
     return theory(separation=separation, effective_modulus=effective_modulus, m0=m0, m2=m2, m4=m4, variable=variable)
 
 
 def _asymptote(cell: Cell, variable: Variable) -> Floats:
     pressure = _evaluate_summits(bush_gibson_thomas, cell, "pressure")
-    slope = math.sqrt(2.0 * _surface(cell).law.moments.m2)
+    slope = math.sqrt(2.0 * _surface(cell).summits.moments.m2)
     return bush_gibson_thomas_asymptote(
         pressure=pressure, effective_modulus=cell.scene.effective_modulus, rms_slope=slope
     )
