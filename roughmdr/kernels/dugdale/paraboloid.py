@@ -13,7 +13,7 @@ from typing import Any
 
 from roughmdr.kernels.profile.layout import COUNT, RANGE, STRENGTH
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.special import less_atan
+from roughmdr.numerics.vector_math import q_minus_atan
 
 # The name that ``specialise`` fills with the function of ``margins``.
 extent: Callable[..., float]
@@ -25,7 +25,7 @@ def margins(s: float, params: Floats) -> tuple[float, float, float, float, float
     sigma = s - 1.0
     e = 1.0 + sigma * sigma
     root, q = math.sqrt(e), 1.0 / sigma
-    beyond = less_atan(q)
+    beyond = q_minus_atan(q)
     theta = q - beyond
     spread = (theta + sigma * sigma * beyond) / e
     pull = beta * (theta - 1.0 / (root + sigma)) / root
@@ -40,7 +40,7 @@ def margins(s: float, params: Floats) -> tuple[float, float, float, float, float
 def zone(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L of ``zone``."""
     square = a * a + m * m
-    beyond = less_atan(m / a) if a > 0.0 else 0.0
+    beyond = q_minus_atan(m / a) if a > 0.0 else 0.0
     l = 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
     return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
 

@@ -21,11 +21,10 @@ from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, RANGE, STRENG
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
-from roughmdr.numerics.vector_math import atan, octave
+from roughmdr.numerics.vector_math import atan, binade_cell, q_minus_atan
 from roughmdr.shapes import Paraboloid, Shape
 from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.power_profiles import profile_of
-from roughmdr.shapes.special import less_atan
 
 # Names that ``specialise`` fills.
 NODE: int
@@ -178,9 +177,9 @@ def build(shape: type[Shape], cohesive: bool) -> dict[str, Any]:
         "_flat": profile.flat,
         "_end": profile.end,
         "_STRIDE": 2.0 if shape is Paraboloid else math.sqrt(2.0),
-        "octave": compiled(octave, small=True),
+        "binade_cell": compiled(binade_cell, small=True),
         "atan": compiled(atan, small=True),
-        "less_atan": compiled(less_atan, small=True),
+        "q_minus_atan": compiled(q_minus_atan, small=True),
         "SPLIT": split,
         "NODE": first_node(split),
         "passes": _PASSES_OF_SPLIT if shared else _PASSES,

@@ -12,7 +12,7 @@ import numpy as np
 
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import octave
+from roughmdr.numerics.vector_math import binade_cell
 
 # Names that ``specialise`` fills with the functions of ``balance`` and ``root``, and with how fine the nodes are.
 SPLIT: int
@@ -36,7 +36,7 @@ def scale(x: float, params: Floats) -> float:
 
 def guess(x: float, params: Floats) -> float:
     """t within the octaves; beyond them anything."""
-    node, u = octave(scale(x, params), SPLIT)
+    node, u = binade_cell(scale(x, params), SPLIT)
     node = min(max(node, 0), (OCTAVES << SPLIT) - 1)
     at, parts = NODE + 2 * node, (1 << SPLIT) + (node & ((1 << SPLIT) - 1))  # parts in the y of the node
     t, rise = params[at], params[at + 2] - params[at]
