@@ -14,8 +14,8 @@ import roughmdr as rm
 from roughmdr.aggregate import LoadingPath
 from roughmdr.asperity.contact import Contact
 from roughmdr.expected import converge, panels
-from roughmdr.expected.intervals import remember
-from roughmdr.expected.table import Table
+from roughmdr.expected.intervals import contact_intervals
+from roughmdr.expected.table import AdaptiveTable
 from roughmdr.kernels.adhesion import Adhesion
 
 UM = 1e-6
@@ -147,8 +147,8 @@ def test_the_error_is_honest_where_contacts_let_go(radius: dict[str, object], mo
     asked["path"] = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 60}, "unload": True}
     asked["batch"] = {"estimator": "expected"}
     law = rm.run(asked)
-    monkeypatch.setattr(converge, "DOUBTFUL", 0.0)
-    monkeypatch.setattr(converge, "_KINKED", 1e-9)
+    monkeypatch.setattr(converge, "WARNED_ERROR", 0.0)
+    monkeypatch.setattr(converge, "_RTOL_KINKED", 1e-9)
     monkeypatch.setattr(panels, "_ORDER", 14)
     fine = rm.run(asked)
     largest = float(np.abs(fine.force).max())
@@ -215,10 +215,12 @@ def test_intervals_remember_what_asperities_do(turns: list[float], corners: bool
     if corners:
         shape, work = rm.TruncatedCone(slope=0.1, flat_radius=0.25 * UM), 0.02  # two branches
     path = np.array(turns) * UM
-    held, _ = remember(Contact.of(shape, 4e6, Adhesion(work)), LoadingPath.along(path, unload=False, adhesive=True))
-    inside = (heights > held.begin[:, None]) & (heights < held.end[:, None])
+    in_contact, _ = contact_intervals(
+        Contact.of(shape, 4e6, Adhesion(work)), LoadingPath.along(path, unload=False, adhesive=True)
+    )
+    inside = (heights > in_contact.begin[:, None]) & (heights < in_contact.end[:, None])
     counted = np.zeros(path.size)
-    np.add.at(counted, held.step, inside.sum(axis=1))
+    np.add.at(counted, in_contact.step, inside.sum(axis=1))
     data = ensemble(heights, shape=shape.name, **shape.parameters)
     law = rm.load_separation(data, separation=path, effective_modulus=4e6, work=work, variables="contact_count")
     edge = np.isin(np.round(heights / UM, 12), np.round(path / UM, 12)).any()
@@ -229,8 +231,8 @@ def test_intervals_remember_what_asperities_do(turns: list[float], corners: bool
     ("function", "worst"),
     [(np.sqrt, 1e-7), (np.cos, 1e-14), (lambda x: np.where(x < 0.3, 1.0, 2.0), 1e-14), (lambda x: x**3.3, 1e-13)],
 )
-def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> None:
-    table = Table.of(
+def test_a_table_is_as_right_as_its_error_bound(function: object, worst: float) -> None:
+    table = AdaptiveTable.of(
         lambda x: function(x)[None],
         np.array([0.0, 4.0]),
         np.array([1e-13]),
@@ -243,7 +245,7 @@ def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> Non
     u = (2.0 * points - table.low[piece] - table.high[piece]) / (table.high[piece] - table.low[piece])
     values = [np.polynomial.chebyshev.chebval(at, table.coefficients[i, 0]) for at, i in zip(u, piece, strict=True)]
     off = np.abs(np.array(values) - function(points))
-    assert (off <= 20.0 * table.slack[piece, 0] + 4e-15 * np.abs(function(points))).all()
+    assert (off <= 20.0 * table.error_bound[piece, 0] + 4e-15 * np.abs(function(points))).all()
     assert off.max() <= worst * np.abs(function(points)).max()
     assert table.low.size < 200
 
@@ -251,7 +253,7 @@ def test_a_table_is_as_right_as_its_slack(function: object, worst: float) -> Non
 def test_what_a_function_does_at_the_end_of_a_piece_alone_is_seen() -> None:
     """The nodes of a piece lie within it: a kink between the last of them and the end is outside all of them."""
     for kink in (0.999, 0.9999):
-        table = Table.of(
+        table = AdaptiveTable.of(
             lambda x, kink=kink: (x**3 + np.maximum(x - kink, 0.0))[None],
             np.array([0.0, 1.0]),
             np.array([1e-13]),
@@ -260,7 +262,7 @@ def test_what_a_function_does_at_the_end_of_a_piece_alone_is_seen() -> None:
         )
         u = 2.0 * (1.0 - table.low[-1]) / (table.high[-1] - table.low[-1]) - 1.0
         at_end = np.polynomial.chebyshev.chebval(u, table.coefficients[-1, 0])
-        assert abs(at_end - (2.0 - kink)) <= table.slack[-1, 0] + 1e-15
+        assert abs(at_end - (2.0 - kink)) <= table.error_bound[-1, 0] + 1e-15
 
 
 def test_cohesive_contacts_that_begin_to_touch_on_the_way_in() -> None:
