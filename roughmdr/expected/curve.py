@@ -124,16 +124,11 @@ def _quantities(contact: Contact, s: Floats, foot: float, branch: int, rows: tup
     """Return the quantities at s, the stiffness times 2 s: [row, s]."""
     kernels, params = contact.law, contact.params
     x = foot + s * s
-    if kernels.branched and kernels.state_on is not None:
-        state = apply(kernels.state_on, x, float(branch), params)
+    if kernels.branched:
+        state = apply(kernels.state_on_branch, x, float(branch), params)
     else:
         state = apply(kernels.state, x, params)
-    if kernels.answer is not None:
-        radius, force, stiffness = apply_all(kernels.answer, state, params)
-    else:
-        radius, force, stiffness = (
-            apply(kernel, state, params) for kernel in (kernels.radius, kernels.force, kernels.stiffness)
-        )
+    radius, force, stiffness = apply_all(kernels.radius_force_stiffness, state, params)
     quantities = {
         FORCE: force,
         RADIUS: radius,

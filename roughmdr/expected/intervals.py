@@ -61,9 +61,6 @@ def _without_branches(contact: Contact, path: LoadingPath) -> tuple[Intervals, I
 def _with_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
     """Divide the heights wherever a jump begins, and follow the branch of each interval from step to step."""
     params, depth, adhesion_range = contact.params, contact.depth[0], contact.adhesion.range
-    next_branch = contact.law.rung
-    if next_branch is None:
-        raise AssertionError("kernels with branches tell the next one")
     feet, tops = branch_ends(contact)
     offsets = [*((x - 1.0) * depth for x in (*feet, *tops, float(params[ONSET]))), -adhesion_range]
     bounds, branches = [-math.inf, math.inf], [0]
@@ -78,7 +75,7 @@ def _with_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Int
             z = _inside(low, high, depth)
             x = max(((z - h) + depth) / depth, 0.0)
             befores.append(branches[number])
-            afters.append(int(next_branch(x, float(branches[number]), z >= h - adhesion_range, params)))
+            afters.append(int(contact.law.branch(x, float(branches[number]), z >= h - adhesion_range, params)))
         bounds, branches = [-math.inf], []
         for (low, high), before, after in zip(pairwise(cuts), befores, afters, strict=True):
             if before != after:
@@ -105,8 +102,8 @@ def jump_energies(contact: Contact, jumped: Intervals) -> Floats:
     kernels, params = contact.law, contact.params
     if not kernels.adhesive:
         return np.zeros(jumped.step.size)
-    if kernels.branched and kernels.spent is not None:
+    if kernels.branched:
         jumps = zip(jumped.branch_before.astype(float), jumped.branch.astype(float), strict=True)
-        return np.array([kernels.spent(before, after, params) for before, after in jumps])
+        return np.array([kernels.jump_energy(before, after, params) for before, after in jumps])
     made, lost = (kernels.energy(kernels.state(x, params), params) for x in (1.0, 0.0))
     return np.where(jumped.branch > 0, -made, lost)
