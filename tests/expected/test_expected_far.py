@@ -259,7 +259,7 @@ def test_many_random_distributions_of_scipy(seed: int) -> None:
     "radius", [{"distribution": "pareto", "b": 0.8}, {"distribution": "beta", "a": 0.05, "b": 0.05}]
 )
 def test_the_steps_of_the_path_do_not_change_the_force(radius: dict[str, object]) -> None:
-    """Without adhesion contacts have no memory; a large force at one step among many is as accurate as at most of them."""
+    """Contacts have no memory; a large force at one step among many is as accurate as at most of them."""
     height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
     paths = [[2 * UM, 0.0], [2 * UM, 0.0] * 4 + [2 * UM], [2 * UM, 1.9 * UM, 1.8 * UM, 1.7 * UM, 0.0, 2 * UM]]
     laws = [expected(height, path, asperities={"radius": {**radius, "loc": 0.0, "scale": "50 um"}}) for path in paths]
