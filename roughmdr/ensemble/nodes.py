@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 
 HEIGHT_END = 10.0
 """Normal score beyond which heights with light tails are left out: a fraction of 1e-23."""
@@ -85,8 +86,7 @@ class Rule(NamedTuple):
         root of the distance to each cut.
         """
         ends = np.unique(np.clip([-PARAMETER_END, *cuts, PARAMETER_END], -PARAMETER_END, PARAMETER_END))
-        nodes, weights = np.polynomial.legendre.leggauss(order)
-        y, weights = 0.5 * (1.0 + nodes), 0.5 * weights
+        y, weights = unit_gauss(order)
         all_scores, all_weights = [], []
         for low, high in pairwise(ends):
             cut_below, cut_above = low > -PARAMETER_END, high < PARAMETER_END

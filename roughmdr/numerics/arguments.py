@@ -1,4 +1,4 @@
-"""Numbers that callers hand in, checked: each error names the argument, its value and what is allowed."""
+"""Checks of numbers that callers hand in: each error names the argument, its value and what is allowed."""
 
 import math
 
@@ -11,7 +11,7 @@ Floats = NDArray[np.float64]
 
 
 def check_number(name: str, value: float, unit: str, *, zero: bool = False) -> float:
-    """``value`` as a float; OutOfRange unless it is finite and above 0 (or 0, where that is allowed)."""
+    """Return ``value`` as a float; OutOfRange unless it is finite and above 0 (or 0, where that is allowed)."""
     allowed = f"a finite number {'of at least' if zero else 'above'} 0 {unit}"
     try:
         number = float(value)
@@ -23,15 +23,14 @@ def check_number(name: str, value: float, unit: str, *, zero: bool = False) -> f
 
 
 def check_values(name: str, raw: ArrayLike) -> Floats:
-    """A number or a one-dimensional array of numbers as floats; OutOfRange unless all are finite."""
+    """Return a number or a one-dimensional array of numbers as floats; OutOfRange unless all are finite."""
     try:
         values = np.asarray(raw, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise OutOfRange(f"{name} is {raw!r}; it must be a number or a one-dimensional array") from None
     if values.ndim > 1:
         raise OutOfRange(f"{name} has {values.ndim} dimensions; it must be a number or a one-dimensional array")
-    undefined = ~np.isfinite(np.atleast_1d(values))
-    if undefined.any():
-        worst = np.atleast_1d(values)[undefined][0]
-        raise OutOfRange(f"{name} is {worst}; it must be finite")
+    not_finite = values[~np.isfinite(values)]
+    if not_finite.size:
+        raise OutOfRange(f"{name} is {not_finite.flat[0]}; it must be finite")
     return values

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import expm1, tanh
+from roughmdr.numerics.vector_math import expm1, t_minus_tanh, tanh
 from roughmdr.shapes.base import ProfileShape, check_radii
 from roughmdr.shapes.profile import Params, Profile
-from roughmdr.shapes.special import beyond_tanh
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
@@ -25,7 +24,7 @@ def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
 def _reduced_load(t: float, params: Params) -> float:
     """[(1 + a^2) artanh a - a]/2."""
     a = tanh(t)
-    return 0.5 * (beyond_tanh(t, a) + a * a * t)
+    return 0.5 * (t_minus_tanh(t, a) + a * a * t)
 
 
 def _roundings(params: Params) -> float:

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats, check_number, check_values
-from roughmdr.numerics.quadrature import gauss
-from roughmdr.spectrum import Spectrum, levels, wave_numbers
+from roughmdr.numerics.gauss import gauss
+from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
 
 
@@ -67,7 +67,7 @@ def line_heights(*, spectrum: Spectrum, length: float, points: int, seed: int) -
     spectrum C(q) [m4] between ``long_wave`` and ``short_wave``. OutOfRange where the length is below the longest wave,
     or the points are not more than two in the shortest; where seed is not a whole number of at least 0.
     """
-    q0, q1 = wave_numbers(spectrum)
+    q0, q1 = wave_number_range(spectrum)
     length = check_number("length", length, "m")
     points, seed = _whole("points", points), _whole("seed", seed)
     step = 2.0 * math.pi / length
@@ -80,7 +80,7 @@ def line_heights(*, spectrum: Spectrum, length: float, points: int, seed: int) -
     low, high = np.maximum(q0, (waves - 0.5) * step), np.minimum(q1, (waves + 0.5) * step)
     half = 0.5 * np.maximum(high - low, 0.0)[:, None]
     q = np.clip(low[:, None] + half * (1.0 + nodes), q0, q1)
-    share = half[:, 0] * ((math.pi * q * levels(spectrum, q)) @ weights)
+    share = half[:, 0] * ((math.pi * q * spectral_density(spectrum, q)) @ weights)
     phase = 2.0 * math.pi * 2.0**-64 * np.random.Philox(np.random.SeedSequence(seed)).random_raw(len(waves))
     coefficients = np.zeros(points // 2 + 1, dtype=np.complex128)
     coefficients[1 : len(waves) + 1] = np.sqrt(share) * points * np.exp(1j * phase)

@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats, check_number, check_values
-from roughmdr.numerics.quadrature import Table, panels, refined, running
-from roughmdr.spectrum import Spectrum, levels, wave_numbers
+from roughmdr.numerics.chebyshev import PiecewiseChebyshev
+from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
+from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
 
 # Fourfold shorter intervals of log(q/q0) down to q0, where few waves are in play and the load flattens them all.
@@ -48,7 +49,7 @@ def persson_separation(
 
 def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
     """Wave numbers q, w(q)^-2 = pi ∫_q0^q q'^3 C dq', and how it changes over what each q stands for."""
-    q0, q1 = wave_numbers(spectrum)
+    q0, q1 = wave_number_range(spectrum)
     octaves = math.log(q1 / q0)
     near = min(octaves, 1.0)
     far = np.linspace(near, octaves, 1 + math.ceil(octaves - near))[1:]
@@ -60,14 +61,14 @@ def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
 
     def slope(v: Floats) -> Floats:
         q = wave_number(v)
-        return np.asarray(2.0 * math.pi * v * q * q * (q * q * levels(spectrum, q)))
+        return np.asarray(2.0 * math.pi * v * q * q * (q * q * spectral_density(spectrum, q)))
 
-    edges = refined(slope, edges)
-    v, share = panels(edges)
+    edges = refine_edges(slope, edges)
+    v, share = panel_rule(edges)
     change = slope(v)
     if not change.flat[0] > 0.0:
         raise OutOfRange("spectrum is 0 at its longest wave; it must be above 0")
-    return wave_number(v).ravel(), running(change, edges).ravel(), (change * share).ravel()
+    return wave_number(v).ravel(), running_integral(change, edges).ravel(), (change * share).ravel()
 
 
 def _over_pressure(x: Floats, gamma: float) -> Floats:
@@ -82,14 +83,14 @@ def _over_pressure(x: Floats, gamma: float) -> Floats:
 
 
 @cache
-def _second() -> Table:
+def _second() -> PiecewiseChebyshev:
     """2 exp(x^2) ∫_x^∞ erf^2(t) exp(-t^2)/t dt, with t^2 = x^2 + s."""
     from scipy.special import erf
 
-    s, share = (part.ravel() for part in panels(np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0])))
+    s, share = (part.ravel() for part in panel_rule(np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0])))
 
     def value(x: Floats) -> Floats:
         square = x[:, None] ** 2 + s
         return np.asarray((erf(np.sqrt(square)) ** 2 / square) @ (np.exp(-s) * share))
 
-    return Table.of(value, np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]), 20)
+    return PiecewiseChebyshev.of(value, np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]), 20)

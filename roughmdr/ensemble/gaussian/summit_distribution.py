@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike
 from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.numerics.arguments import Floats
-from roughmdr.spectrum import RING, Moments
+from roughmdr.numerics.gauss import unit_gauss
+from roughmdr.spectrum import MIN_ALPHA, Moments
 
 _TAIL_WIDTH = 12.0  # in sqrt(v): a negligible fraction lies farther above
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
@@ -64,12 +65,12 @@ class SummitDistribution(NamedTuple):
     @property
     def _c2(self) -> float:
         """c^2 = 3/(2 alpha), the part of the surface's variance that goes with the mean curvature."""
-        return RING / self.moments.alpha
+        return MIN_ALPHA / self.moments.alpha
 
     @property
     def _residual(self) -> float:
         """1 - c^2, without cancellation."""
-        return (self.moments.alpha - RING) / self.moments.alpha
+        return (self.moments.alpha - MIN_ALPHA) / self.moments.alpha
 
     @property
     def height_spread(self) -> float:
@@ -93,7 +94,7 @@ class SummitDistribution(NamedTuple):
 
     def radius(self, v: ArrayLike) -> Floats:
         """Return 1/sqrt(k1 k2) = 1/sqrt((2 m4/3) v) [m]."""
-        return np.asarray(math.sqrt(RING / self.moments.m4) / np.sqrt(np.asarray(v, dtype=np.float64)))
+        return np.asarray(math.sqrt(MIN_ALPHA / self.moments.m4) / np.sqrt(np.asarray(v, dtype=np.float64)))
 
     def height_density(self, z: ArrayLike, v: ArrayLike) -> Floats:
         """Return the density [1/m] of the heights z [m] of summits with v [1], at least 0.
@@ -122,11 +123,11 @@ def product_of_score(scores: Floats) -> Floats:
     """
     from scipy.special import ndtri
 
-    nodes, weights = np.polynomial.legendre.leggauss(40)
+    nodes, weights = unit_gauss(40)
 
     def score(y: Floats) -> Floats:
-        below = _root_density(0.5 * y[:, None] * (1.0 + nodes)) @ weights * 0.5 * y
-        above = _root_density(y[:, None] + 0.5 * _TAIL_WIDTH * (1.0 + nodes)) @ weights * 0.5 * _TAIL_WIDTH
+        below = _root_density(y[:, None] * nodes) @ weights * y
+        above = _root_density(y[:, None] + _TAIL_WIDTH * nodes) @ weights * _TAIL_WIDTH
         return np.where(below < above, ndtri(below), -ndtri(above))
 
     grid = np.concatenate([np.geomspace(1e-9, 0.05, 300), np.linspace(0.05, 12.0, 700)[1:]])

@@ -12,9 +12,9 @@ from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.numerics.vector_math import octave
+from roughmdr.numerics.vector_math import binade_cell
 
-_octave = compiled(octave, small=True)
+_octave = compiled(binade_cell, small=True)
 
 _LOWEST = 2.0 ** (OCTAVES // 2)  # without adhesion the octaves begin at 1/_LOWEST of the depth
 _LARGEST = 2.0**OCTAVES

@@ -14,9 +14,8 @@ The params hold, one after another,
 
 import math
 
-import numpy as np
-
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.profile import Params, Profile
 
@@ -26,8 +25,7 @@ PIECE = HEAD + 3 * (DEGREE + 1)
 FAR = 3 + DEGREE + 1
 KNOT = 5
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+_NODES, _WEIGHTS = unit_gauss(20)
 
 
 def beginnings(params: Params | Floats) -> tuple[int, int]:
