@@ -203,7 +203,7 @@ def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Cur
         visits.append(found.visits)
         return found
 
-    with patch.object(tasks, "law_of", counted):
+    with patch.object(tasks, "simulate_realization", counted):
         started = time.perf_counter()
         found = execute(plan, None, workers=1, quiet=True)
         spent = time.perf_counter() - started

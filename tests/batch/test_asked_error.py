@@ -383,14 +383,14 @@ def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path)
 def test_a_cell_with_a_failure_is_left_as_it_is(
     fails: Sequence[int], keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    law_of = tasks.law_of
+    simulate_realization = tasks.simulate_realization
 
     def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
         if cell.asperities.expected_count == 30 and realization in fails:
             raise rm.OutOfRange("it must fail")
-        return law_of(cell, route, realization, *others)
+        return simulate_realization(cell, route, realization, *others)
 
-    monkeypatch.setattr(tasks, "law_of", failing)
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
     out = tmp_path / "out.nc"
     found = go(asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), out)
     assert found.realization_count[0] == FIRST

@@ -58,7 +58,7 @@ class Calls:
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
-    counted, run, law_of = Calls(), tasks._run, tasks.law_of
+    counted, run, simulate_realization = Calls(), tasks._run, tasks.simulate_realization
 
     def counting(part: tasks.TaskPart, realization: int, names: Any) -> Any:
         counted.done.append((part.cell.scene.work, realization))
@@ -67,10 +67,10 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
         if counted.fails(cell.work, realization):
             raise rm.OutOfRange("it must fail")
-        return law_of(cell, route, realization, *others)
+        return simulate_realization(cell, route, realization, *others)
 
     monkeypatch.setattr(tasks, "_run", counting)
-    monkeypatch.setattr(tasks, "law_of", failing)
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
     return counted
 
 

@@ -359,11 +359,11 @@ def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
 def test_a_failure_that_has_gone_away_is_repaired(folder: Path, curves: xr.Dataset) -> None:
     short_of_memory = """
 import roughmdr.batch.tasks as tasks
-def law_of(scene, route, realization, *more, law_of=tasks.law_of):
+def simulate_realization(scene, route, realization, *more, simulate_realization=tasks.simulate_realization):
     if realization in (3, 70):
         raise MemoryError
-    return law_of(scene, route, realization, *more)
-tasks.law_of = law_of
+    return simulate_realization(scene, route, realization, *more)
+tasks.simulate_realization = simulate_realization
 """
     with running(Batch(folder, code=short_of_memory)) as batch:
         status, said = batch.end()
@@ -380,7 +380,9 @@ tasks.law_of = law_of
 
 
 def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
-    with running(Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.law_of = lambda *_: [][0]")) as batch:
+    with running(
+        Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.simulate_realization = lambda *_: [][0]")
+    ) as batch:
         status, said = batch.end()
     assert status == 1
     assert "realisation 0: IndexError: list index out of range" in said
