@@ -79,7 +79,7 @@ def batch(plan: Plan, pool: Pool, scheduler: int | None = None) -> Batch:
 
     def sink(shard: TaskResult) -> None:
         own = math.nan if scheduler is None else _processor_seconds(scheduler)
-        inside = float(shard.run_time.sum())
+        inside = float(shard.diagnostics["run_time"].sum())
         rows.append((time.perf_counter() - started, inside, time.process_time(), own))
 
     pool.compute(map(task, groups), threading.Event(), sink)

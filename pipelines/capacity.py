@@ -14,12 +14,14 @@ from statistics import median
 import numpy as np
 from batch_child import tiny
 
+from roughmdr.batch.diagnostics import row_of
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import RunDiagnostics, TaskResult, table_of
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.variables import DONE
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; threads of a cluster."""
@@ -93,10 +95,9 @@ def writing(rows: int) -> tuple[float, float]:
     """Seconds to keep a shard of tallies safely, and its bytes; by the thread that writes."""
     steps, variables = 400, ("force", "contact_area", "contact_count", "stiffness")
     values = np.random.default_rng(1).normal(size=(2, len(variables), steps))
-    tally = Moments.of(values[0]).joined(Moments.of(values[1]))
-    shard: TaskResult = table_of(
-        ["0" * 32], variables, [(0, 2 * row, tally, RunDiagnostics(1.0)) for row in range(rows)], steps
-    )
+    tally = Moments.of(values[0]).merged(Moments.of(values[1]))
+    rows_of_task = [(0, 2 * row, tally, row_of(run_time=1.0, status=DONE)) for row in range(rows)]
+    shard = TaskResult.of(["0" * 32], variables, rows_of_task, steps)
     times = []
     with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as parts:
         parts.begin("", "", "")
@@ -105,7 +106,7 @@ def writing(rows: int) -> tuple[float, float]:
             parts.put(shard)
             times.append(time.perf_counter() - started)
         parts.remove()
-    return median(times), float(len(shard.dumped()))
+    return median(times), float(len(shard.to_bytes()))
 
 
 def gathering() -> float:

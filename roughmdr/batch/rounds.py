@@ -110,9 +110,9 @@ class Rounds:
         """The same choice with its error where that is small enough or nothing is better; else a better one."""
         if way.choice.estimator != "expected":
             return self._after_draws(cell, way, gathered, accuracy)
-        row = gathered.beside(way.choice.key)
-        law = way.choice._replace(error=row.numerical_error)
-        if accuracy.method == "expected" or (row.status == DONE and law.error <= accuracy.relative):
+        row = gathered.diagnostics(way.choice.key)
+        law = way.choice._replace(error=float(row["numerical_error"]))
+        if accuracy.method == "expected" or (row["status"] == DONE and law.error <= accuracy.relative):
             return way._replace(choice=law)
         if way.draws is None:
             draws = self._choice(cell, self._plan.cells[cell].scene.estimators[0], self._few(accuracy))

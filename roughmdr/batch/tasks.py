@@ -7,14 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.aggregate import LoadSeparation
 from roughmdr.batch.costs import seconds
+from roughmdr.batch.diagnostics import Row, merge_rows, row_of
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan, simulate_realization
 from roughmdr.batch.resume.keys import check_versions
-from roughmdr.batch.task_result import RunDiagnostics, TaskResult, table_of
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.variables import ADHESION_CODES, FAILED
+from roughmdr.scene import Scene
+from roughmdr.variables import ADHESION_CODES, DONE, FAILED
 
 _AT_ONCE = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
 _LEAST, _USUAL, _MOST = 0.05, 0.1, 3.0  # what a task takes [s]
@@ -83,73 +86,78 @@ def split_into_tasks(
 
 
 def compute(task: Task) -> TaskResult:
-    """The results of a task; a run that cannot be computed is marked, and says why."""
+    """Compute a task; a run that cannot be computed is marked as failed, and its remark says why."""
     check_versions(task.versions)
-    keys = [part.key for part in task.parts]
     steps = task.parts[0].cell.path.separation.size
-    rows: list[tuple[int, int, Moments, RunDiagnostics]] = []
+    rows: list[tuple[int, int, Moments, Row]] = []
     for number, part in enumerate(task.parts):
-        found = _tallied(part, task.variables) if task.tallied else _curves(part, task.variables)
-        rows += [(number, first, tally, row) for first, tally, row in found]
-    return table_of(keys, task.variables, rows, steps)
+        results = _moments(part, task.variables) if task.tallied else _curves(part, task.variables)
+        rows += [(number, *result) for result in results]
+    return TaskResult.of([part.key for part in task.parts], task.variables, rows, steps)
 
 
-def _curves(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, RunDiagnostics]]:
+def _curves(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
     for realization in range(part.first, part.last):
-        values, row = _run(part, realization, names)
-        yield realization, Moments.of(values), row
+        values, diagnostics = _run(part, realization, names)
+        yield realization, Moments.of(values), diagnostics
 
 
-def _tallied(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, RunDiagnostics]]:
-    """What the realisations come to; those that fail stand for themselves."""
-    tallies, rows = MomentTree(), dict[int, RunDiagnostics]()
+def _moments(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
+    """Yield blocks of merged realisations: the first, moments and diagnostics; realisations that fail stand alone."""
+    tree, rows = MomentTree(), dict[int, Row]()
     for first in range(part.first, part.last, BLOCK_SIZE):
-        begin, kept = first, list[Floats]()
+        begin, curves = first, list[Floats]()
         for realization in range(first, min(first + BLOCK_SIZE, part.last)):
-            values, row = _run(part, realization, names)
-            if row.status == FAILED:
-                yield realization, Moments.of(values), row
-                tallies.add_all(begin, np.array(kept).reshape(-1, *values.shape))
-                begin, kept = realization + 1, []
+            values, rows[realization] = _run(part, realization, names)
+            if rows[realization]["status"] == FAILED:
+                yield realization, Moments.of(values), rows[realization]
+                tree.add_all(begin, np.array(curves).reshape(-1, *values.shape))
+                begin, curves = realization + 1, []
             else:
-                kept.append(values)
-                rows[realization] = row
-        if kept:
-            tallies.add_all(begin, np.array(kept))
-    for first, tally in tallies.held.items():
-        whole = rows[first]
-        for realization in range(first + 1, first + tally.size):
-            whole = whole.joined(rows[realization])
-        yield first, tally, whole
+                curves.append(values)
+        if curves:
+            tree.add_all(begin, np.array(curves))
+    for first, moments in tree.blocks.items():
+        yield first, moments, merge_rows([rows[realization] for realization in range(first, first + moments.size)])
 
 
-def _run(part: TaskPart, realization: int, names: Sequence[str]) -> tuple[Floats, RunDiagnostics]:
-    """The variables [variable, step] of one realisation, and what else there is to say."""
+def _run(part: TaskPart, realization: int, names: Sequence[str]) -> tuple[Floats, Row]:
+    """Return the variables [variable, step] and the diagnostics of one realisation."""
     (scene, path), started = part.cell, time.perf_counter()
     try:
-        found = simulate_realization(scene, path, realization, list(names), part.estimator)
+        result = simulate_realization(scene, path, realization, list(names), part.estimator)
     except Exception as error:  # whatever it is, the other runs go on
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         values = np.full((len(names), path.separation.size), math.nan)
-        return values, RunDiagnostics(time.perf_counter() - started, status=FAILED, remark=what)
-    law = ADHESION_CODES.index(found.model if scene.work > 0.0 else "none")
-    values = np.array([found.variables[name] for name in names])
-    slope, extent, _ = found.extremes
-    row = RunDiagnostics(0.0, found.numerical_error, found.tabor, law, slope, extent, remark="\n".join(found.doubts))
-    return values, row._replace(run_time=time.perf_counter() - started)
+        remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        return values, row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
+    values = np.array([result.variables[name] for name in names])
+    known = diagnostics_of(result, scene)
+    return values, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
+
+
+def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
+    """Return the diagnostics of a realisation that its result tells, by their names in ``RUN_DIAGNOSTICS``."""
+    return {
+        "numerical_error": result.numerical_error,
+        "edge_slope": result.extremes.slope,
+        "profile_extent": result.extremes.extent,
+        "tabor_number": result.tabor if result.tabor < math.inf else math.nan,
+        "adhesion_law": ADHESION_CODES.index(result.model if scene.work > 0.0 else "none"),
+        "remark": "\n".join(result.doubts),
+    }
 
 
 def failed(task: Task, remark: str) -> TaskResult:
-    """The shard of a task that could not be computed at all."""
+    """Return the result of a task that could not be computed at all."""
     steps = task.parts[0].cell.path.separation.size
-    nothing = Moments.of(np.full((len(task.variables), steps), math.nan))
-    row = RunDiagnostics(0.0, math.nan, status=FAILED, remark=remark)
+    moments = Moments.of(np.full((len(task.variables), steps), math.nan))
+    diagnostics = row_of(run_time=0.0, status=FAILED, remark=remark)
     rows = [
-        (number, realization, nothing, row)
+        (number, realization, moments, diagnostics)
         for number, part in enumerate(task.parts)
         for realization in range(part.first, part.last)
     ]
-    return table_of([part.key for part in task.parts], task.variables, rows, steps)
+    return TaskResult.of([part.key for part in task.parts], task.variables, rows, steps)
 
 
 def first_error(remark: str) -> Exception:

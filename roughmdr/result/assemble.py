@@ -16,15 +16,22 @@ from roughmdr.result.statistics import summarise
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.store import provenance
-from roughmdr.variables import ADHESION_CODES, CURVE_VARIABLES, DONE, FAILED, RUN_VARIABLES, STATUSES
+from roughmdr.variables import (
+    ADHESION_CODES,
+    CURVE_VARIABLES,
+    DONE,
+    ESTIMATORS,
+    FAILED,
+    RUN_DIAGNOSTICS,
+    RUN_VARIABLES,
+    Variable,
+)
 
 _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
-_ESTIMATORS = ("sampled", "stratified", "expected")
 _MOSTLY_MET = 0.9  # of an error, what the draws alone show, where nothing need be said of what they have not met
-_ALWAYS = ("run_time", "numerical_error", "edge_slope", "profile_extent")
 
 
 def assemble(
@@ -42,7 +49,7 @@ def assemble(
     for name in scene.output.variables:
         row = list(variables).index(name)
         if statistics:
-            of_variable, sem = found.tally.picked(np.s_[:, row]), found.sem[:, row]
+            of_variable, sem = found.moments.select(np.s_[:, row]), found.sem[:, row]
             over = summarise(name, (*dims, "step"), of_variable, sem, snaps)
             data |= {key: array._replace(values=array.values.reshape(*cells, -1)) for key, array in over.items()}
         else:
@@ -52,25 +59,16 @@ def assemble(
     if statistics or scene.accuracy is not None:
         count = np.array([choice.realizations for choice in choices], dtype=float).reshape(cells)
         data["realization_count"] = Array(swept, count, RUN_VARIABLES["realization_count"].attrs)
-    done = found.beside["status"] == DONE
-    extremes = {"edge_slope": found.beside["slope"], "profile_extent": found.beside["extent"]}
-    beside = found.beside | {name: np.where(done, values, np.nan) for name, values in extremes.items()}
-    for name in _ALWAYS:
-        data[name] = Array(dims, beside[name].reshape(shape), RUN_VARIABLES[name].attrs)
-    data["status"] = _flags("status", dims, beside["status"].reshape(shape), STATUSES)
-    if any(cell.scene.adhesion_model.tabor_known for cell in plan.cells):
-        tabor = np.where(np.isfinite(beside["tabor"]), beside["tabor"], np.nan)
-        data["tabor_number"] = Array(dims, tabor.reshape(shape), RUN_VARIABLES["tabor_number"].attrs)
-        data["adhesion_law"] = _flags("adhesion_law", dims, beside["law"].reshape(shape), ADHESION_CODES)
-    # Texts are coordinates, so that one can reckon with the rest.
+    for declared in RUN_DIAGNOSTICS.values():
+        if declared.dtype is not str and any(declared.in_result(cell.scene) for cell in plan.cells):
+            data[declared.name] = _array(declared, dims, found.diagnostics[declared.name].reshape(shape))
+    # Texts are coordinates, so that one can calculate with the variables.
     keys = np.array([choice.key for choice in choices], dtype=object).reshape(cells)
-    coordinates = {
-        **plan.coordinates(),
-        "cell_key": Array(swept, keys, {"long_name": RUN_VARIABLES["cell_key"].long_name}),
-    }
-    if (beside["remark"] != "").any():
-        remarks = beside["remark"].reshape(shape)
-        coordinates["remark"] = Array(dims, remarks, {"long_name": RUN_VARIABLES["remark"].long_name})
+    coordinates = {**plan.coordinates(), "cell_key": _array(RUN_VARIABLES["cell_key"], swept, keys)}
+    for declared in RUN_DIAGNOSTICS.values():
+        texts = found.diagnostics[declared.name].reshape(shape)
+        if declared.dtype is str and (texts != "").any():
+            coordinates[declared.name] = _array(declared, dims, texts)
     attrs: dict[str, Any] = {
         "references": _REFERENCES,
         "seed": scene.seed,
@@ -82,7 +80,7 @@ def assemble(
     if scene.accuracy is not None:
         data |= _reached(swept, cells, choices)
         attrs["accuracy"] = _in_words(scene.accuracy, choices)
-        failed = (beside["status"].reshape(len(choices), -1) == FAILED).any(axis=1)
+        failed = (found.diagnostics["status"].reshape(len(choices), -1) == FAILED).any(axis=1)
         warnings += _missed(scene.accuracy, choices, failed)
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
@@ -90,33 +88,38 @@ def assemble(
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
 
 
-def _flags(name: str, dims: tuple[str, ...], values: NDArray[Any], meanings: tuple[str, ...]) -> Array:
-    flags = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
-    return Array(dims, values.astype(np.int8), {"long_name": RUN_VARIABLES[name].long_name, **flags})
+def _array(variable: Variable, dims: tuple[str, ...], values: NDArray[Any]) -> Array:
+    """Return values with the attributes of a variable: texts have no units, and codes have flags in place of them."""
+    if variable.codes:
+        flags = {
+            "flag_values": np.arange(len(variable.codes), dtype=np.int8),
+            "flag_meanings": " ".join(variable.codes),
+        }
+        return Array(dims, values.astype(np.int8), {"long_name": variable.long_name, **flags})
+    return Array(dims, values, variable.attrs if variable.units else {"long_name": variable.long_name})
 
 
 def _warnings(plan: Plan, found: CollectedResults) -> list[str]:
-    """Warn of numbers that are doubtful: for the scene, for the ensembles, or for the most that contacts come to."""
-    beside = found.beside
-    done = beside["status"] == DONE
-    said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]
+    """Return warnings of numbers that are doubtful: because of the scene, its ensembles, or the largest contacts."""
+    done = found.diagnostics["status"] == DONE
+    diagnostics = {name: column[done] for name, column in found.diagnostics.items()}
+    remarks = [line for text in diagnostics["remark"] for line in text.split("\n") if line]
+    warnings = [*plan.doubts, *dict.fromkeys(remarks)]
     if not done.any():
-        return said
-    jkr = done & (beside["law"] == ADHESION_CODES.index("jkr"))
-    tabor = float(np.min(beside["tabor"][jkr])) if jkr.any() else math.inf
-    return [
-        *said,
-        *ValidityLimits(float(beside["slope"][done].max()), float(beside["extent"][done].max()), tabor).warnings,
-    ]
+        return warnings
+    jkr = diagnostics["adhesion_law"] == ADHESION_CODES.index("jkr")
+    tabor = float(np.fmin.reduce(diagnostics["tabor_number"][jkr], initial=math.inf))
+    slope, extent = (float(diagnostics[name].max()) for name in ("edge_slope", "profile_extent"))
+    return [*warnings, *ValidityLimits(slope, extent, tabor).warnings]
 
 
 def _reached(swept: tuple[str, ...], cells: tuple[int, ...], choices: Sequence[CellMethod]) -> dict[str, Array]:
     """Which error each cell came to, and by which method."""
     error = np.array([choice.error for choice in choices]).reshape(cells)
-    method = np.array([_ESTIMATORS.index(choice.estimator) for choice in choices]).reshape(cells)
+    method = np.array([ESTIMATORS.index(choice.estimator) for choice in choices]).reshape(cells)
     return {
-        "accuracy_reached": Array(swept, error, RUN_VARIABLES["accuracy_reached"].attrs),
-        "accuracy_method": _flags("accuracy_method", swept, method, _ESTIMATORS),
+        "accuracy_reached": _array(RUN_VARIABLES["accuracy_reached"], swept, error),
+        "accuracy_method": _array(RUN_VARIABLES["accuracy_method"], swept, method),
     }
 
 

@@ -5,22 +5,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.moments import Moments, moments_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CURVE_VARIABLES
 
 _INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"
-
-
-def tally_of(values: Floats) -> Moments:
-    """Of the realisations along the first axis."""
-    tallies = MomentTree()
-    tallies.add_all(0, values)
-    whole = tallies.total(len(values))
-    if whole is None:
-        raise AssertionError("there is at least one realisation")
-    return whole
 
 
 def summarise(
@@ -43,8 +33,8 @@ def summarise(
     return {
         f"{name}_mean": array(tally.mean, "mean", {"ancillary_variables": f"{name}_sem"}),
         f"{name}_sem": array(sem, "standard error of the mean", remark),
-        f"{name}_min": array(tally.least, "least", {}),
-        f"{name}_max": array(tally.greatest, "greatest", {}),
+        f"{name}_min": array(tally.minimum, "least", {}),
+        f"{name}_max": array(tally.maximum, "greatest", {}),
     }
 
 
@@ -57,12 +47,12 @@ def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Flo
     cells = done.shape[:-1]
     values = np.moveaxis(values, len(cells), 0)
     if done.all():
-        whole = tally_of(values)
+        whole = moments_of(values)
         return whole.mean, whole.standard_error
     mean, error = (np.full(values.shape[1:], math.nan) for _ in range(2))
     for cell in np.ndindex(cells):
         kept = values[(done[cell], *cell)]
         if len(kept):
-            whole = tally_of(kept)
+            whole = moments_of(kept)
             mean[cell], error[cell] = whole.mean, whole.standard_error
     return mean, error

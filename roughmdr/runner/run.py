@@ -169,7 +169,7 @@ class _Batch:
         self._tallied = plan.scene.output.keep == "statistics"
         watched = None if plan.scene.accuracy is None else _FORCE
         steps = plan.cells[0].path.separation.size
-        self._gathered = Collector(self._variables, steps, tallied=self._tallied, watched=watched)
+        self._gathered = Collector(self._variables, steps, keep_moments=self._tallied, watched=watched)
 
     def run(self, command: str, old: Labelled | None) -> Labelled:
         """All rounds; the result, whose history goes on from that of the ``old`` one that it may take the place of."""
@@ -184,12 +184,12 @@ class _Batch:
     def _finished(self, command: str, old: Labelled | None) -> Labelled:
         """The result, put together and written."""
         choices = self._rounds.choices
-        nothing = self._gathered.nothing  # asked first: what was gathered is given away then
-        found = self._gathered.found([(choice.key, choice.realizations) for choice in choices])
-        failed = found.beside["status"] == FAILED
-        if nothing:
+        none_done = self._gathered.none_done
+        found = self._gathered.collected([(choice.key, choice.realizations) for choice in choices])
+        failed = found.diagnostics["status"] == FAILED
+        if none_done:
             cell = int(np.argwhere(failed)[0, 0])
-            error = first_error(str(found.beside["remark"][failed][0]))
+            error = first_error(str(found.diagnostics["remark"][failed][0]))
             name = self._plan.name_of(cell, 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
         result = assemble(self._plan, choices, found, self._variables, command)
@@ -218,7 +218,7 @@ class _Batch:
         ]
         for shard in self._held.shards(picks):
             self._gathered.add(shard)
-            display.use_again(int(shard.size.sum()))
+            display.use_again(shard.realizations)
         tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers)
         if not tasks:
             return
@@ -233,7 +233,7 @@ class _Batch:
             if self._keeper is not None:
                 self._keeper.put(shard)
             self._gathered.add(shard)
-            display.advance(int(shard.size.sum()))
+            display.advance(shard.realizations)
 
         pool.compute(map(self._task, tasks), stop, sink)
         if stop.is_set():

@@ -11,15 +11,11 @@ from numpy.typing import NDArray
 
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN
+from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN, RUN_DIAGNOSTICS
 
 _TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _MORE_TEXTS = ("accuracy", "warnings", "versions", "checksum")
 _ALWAYS = ("status", "run_time", "numerical_error")
-_OF_RUNS = {
-    **dict.fromkeys(("run_time", "numerical_error", "tabor_number", "edge_slope", "profile_extent"), "f"),
-    **dict.fromkeys(("status", "adhesion_law"), "i"),
-}
 _OF_CELLS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i"}
 """Kinds of numbers: f and i as NumPy has them."""
 _STATISTICS = ("mean", "sem", "min", "max")
@@ -72,10 +68,12 @@ def _dimensions(data: Labelled) -> Iterator[str]:
 
 def _arrays(data: Labelled) -> Iterator[str]:
     runs, cells = data.variables["status"].dims, _cells(data)
-    for declared, dims in ((_OF_RUNS, runs), (_OF_CELLS, cells)):
+    of_runs = {name: _KIND_OF[declared.dtype] for name, declared in RUN_DIAGNOSTICS.items()}
+    for declared, dims in ((of_runs, runs), (_OF_CELLS, cells)):
         for name in declared.keys() & data.variables.keys():
             yield from _misfit(name, data.variables[name], dims, declared[name])
-    for name, dims in (("cell_key", cells), ("remark", runs), ("branch", ("step",))):
+    texts = {"cell_key": cells, "branch": ("step",)} | {name: runs for name, kind in of_runs.items() if kind == "text"}
+    for name, dims in texts.items():
         if name in data.coordinates:
             yield from _misfit(name, data.coordinates[name], dims, "text")
     separation = data.coordinates["separation"]
@@ -151,6 +149,7 @@ def _misfit(name: str, array: Array, dims: tuple[str, ...], kind: str) -> Iterat
         yield f"{name} is of type {array.values.dtype}; it must be {_KINDS[kind]}"
 
 
+_KIND_OF = {float: "f", int: "i", str: "text"}
 _KINDS = {"text": "texts", "f": "floating-point numbers", "i": "whole numbers"}
 
 

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.batch.moments import Moments, MomentTree, moments_of, spans
-from roughmdr.result.statistics import tally_of
+from roughmdr.batch.moments import Moments, MomentTree, block_moments, dyadic_blocks, moments_of
 
 ORDINARY = st.floats(-1e3, 1e3, allow_subnormal=False)
 EXTREME = st.one_of(
@@ -33,7 +32,7 @@ def gathered(values: np.ndarray, cuts: list[int], order: random.Random, *, singl
         if singles and number % 2:
             pieces += [(place, Moments.of(values[place])) for place in range(first, last)]
         else:
-            pieces += moments_of(first, values[first:last])
+            pieces += block_moments(first, values[first:last])
     order.shuffle(pieces)
     tallies = MomentTree()
     for first, tally in pieces:
@@ -54,7 +53,7 @@ def test_the_bits_depend_on_no_cut_and_no_order(
     array = np.array(values)[:, None] * [1.0, -0.5]
     whole = gathered(array, cuts, order, singles=singles).total(len(array))
     assert whole is not None
-    assert bits(whole) == bits(tally_of(array))
+    assert bits(whole) == bits(moments_of(array))
 
 
 @settings(deadline=None, max_examples=100)
@@ -62,7 +61,7 @@ def test_the_bits_depend_on_no_cut_and_no_order(
 def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
     """Against sums of fractions, which are exact; without a warning of numpy's."""
     with np.errstate(all="raise", under="ignore"):
-        found = tally_of(np.array(values)[:, None])
+        found = moments_of(np.array(values)[:, None])
     exact = [Fraction(value) for value in values]
     mean = sum(exact) / len(exact)
     variance = sum((value - mean) ** 2 for value in exact) / len(exact)
@@ -72,8 +71,8 @@ def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
         assert abs(mpmath.mpf(float(found.spread[0])) - spread) <= 4e-15 * scale
     largest = max(abs(value) for value in exact)
     assert abs(Fraction(float(found.mean[0])) - mean) <= Fraction(2e-15) * largest + Fraction(5e-324)
-    assert found.least[0] == min(values)
-    assert found.greatest[0] == max(values)
+    assert found.minimum[0] == min(values)
+    assert found.maximum[0] == max(values)
     if len(values) > 1:
         expected = float(found.spread[0]) / math.sqrt(len(values) - 1)
         assert found.standard_error[0] == expected
@@ -84,7 +83,7 @@ def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
 def test_a_small_spread_about_a_large_mean_keeps_its_digits(offset: float, seed: int, count: int) -> None:
     """The error is of the size of a rounding of the values, not of their squares."""
     values = offset + np.random.default_rng(seed).standard_normal(count)
-    found = tally_of(values[:, None])
+    found = moments_of(values[:, None])
     exact = [Fraction(value) for value in values.tolist()]
     mean = sum(exact) / count
     spread = math.sqrt(sum((value - mean) ** 2 for value in exact) / count)
@@ -95,15 +94,15 @@ def test_a_small_spread_about_a_large_mean_keeps_its_digits(offset: float, seed:
 @settings(deadline=None, max_examples=60)
 @given(value=EXTREME, count=st.integers(1, 200))
 def test_realisations_that_are_all_equal_have_no_spread(value: float, count: int) -> None:
-    found = tally_of(np.full((count, 1), value))
+    found = moments_of(np.full((count, 1), value))
     assert found.size == count
-    for array in (found.mean, found.least, found.greatest):
+    for array in (found.mean, found.minimum, found.maximum):
         assert array[0] == value
     assert found.spread[0] == 0.0
 
 
 def test_one_realisation_has_no_standard_error() -> None:
-    single = tally_of(np.array([[1.0, -2.0]]))
+    single = moments_of(np.array([[1.0, -2.0]]))
     assert single.size == 1
     assert single.mean.tolist() == [1.0, -2.0]
     assert single.spread.tolist() == [0.0, 0.0]
@@ -132,8 +131,8 @@ def test_few_tallies_are_held(last: int) -> None:
     tallies = MomentTree()
     for count in range(1, last + 1):
         tallies.add(count - 1, Moments.of(np.array([float(count)])))
-        assert len(tallies.held) == count.bit_count() <= math.log2(count) + 1
-        assert sum(tally.size for tally in tallies.held.values()) == count
+        assert len(tallies.blocks) == count.bit_count() <= math.log2(count) + 1
+        assert sum(tally.size for tally in tallies.blocks.values()) == count
 
 
 @settings(deadline=None)
@@ -141,7 +140,7 @@ def test_few_tallies_are_held(last: int) -> None:
 def test_the_places_fill_a_stretch_and_never_overlap(first: int, size: int) -> None:
     last = first + size
     at = first
-    for begin, count in spans(first, last):
+    for begin, count in dyadic_blocks(first, last):
         assert begin == at
         assert count.bit_count() == 1
         assert begin % count == 0

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
@@ -15,7 +14,7 @@ from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import table_of
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.store import read
-from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED
+from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED, RUN_DIAGNOSTICS
 
 _MOST_CHANGES = 5
 _SHAPING = ("title", "output", "batch", "accuracy", "sweep")
@@ -66,8 +65,8 @@ def reuse(target: Path, old: Labelled | None, parts: ShardStore | None, plan: Pl
         if less := _what_would_go(old, plan, held):
             raise StoreError(f"{target}: holds {less}, which this scene does not ask for: {_WAYS_OUT}")
         if "realization" in old.sizes:
-            shard = _shard_of(old)
-            held.add(lambda: shard)
+            result = _task_result_of(old)
+            held.add(lambda: result)
     elif old is not None:  # kept runs that would take its place are no excuse
         matches = False
         there += _what_changed(old.attrs["scene"], old.attrs.get("versions", "other versions"), plan)
@@ -139,42 +138,30 @@ def _what_changed(scene: str, made_with: str, plan: Plan) -> list[str]:
     return changed or ["a file that it reads holds something else" if reads else "its cells are others"]
 
 
-def _shard_of(old: Labelled) -> TaskResult:
-    """The curves of a result that were computed, as a shard."""
-    status = old.variables["status"]
-    cells = status.values.reshape(-1, status.values.shape[-1])
-    cell, first = np.nonzero(cells == DONE)
+def _task_result_of(old: Labelled) -> TaskResult:
+    """Return the curves of a result that were computed, as if one task had."""
+    status = old.variables["status"].values
+    shape = -1, status.shape[-1]
+    cell, first = np.nonzero(status.reshape(shape) == DONE)
+    arrays = old.variables | old.coordinates
     names = [name for name in CURVE_VARIABLES if name in old.variables]
-
-    def column(name: str, default: float) -> np.ndarray:
-        if name not in old.variables:
-            return np.full(cell.size, default)
-        return old.variables[name].values.reshape(cells.shape)[cell, first]
-
-    tabor = column("tabor_number", np.inf)
-    nothing = np.empty((cell.size, 0, 0))
+    empty = np.empty((cell.size, 0, 0))
     return TaskResult(
         keys=tuple(_keys(old)),
         variables=tuple(names),
         cell=cell,
         first=first,
         size=np.ones(cell.size, dtype=np.int64),
-        values=np.stack([old.variables[name].values.reshape(*cells.shape, -1)[cell, first] for name in names], axis=1),
-        spread=nothing,
-        least=nothing,
-        greatest=nothing,
-        run_time=column("run_time", 0.0),
-        numerical_error=column("numerical_error", 0.0),
-        tabor=np.where(np.isnan(tabor), np.inf, tabor),
-        law=column("adhesion_law", 0).astype(np.int64),
-        slope=column("edge_slope", 0.0),
-        extent=column("profile_extent", 0.0),
-        status=np.full(cell.size, DONE, dtype=np.int64),
-        remark=_remarks(old)[cell, first],
+        values=np.stack(
+            [arrays[name].values.reshape(*status.reshape(shape).shape, -1)[cell, first] for name in names], axis=1
+        ),
+        spread=empty,
+        minimum=empty,
+        maximum=empty,
+        diagnostics={
+            name: arrays[name].values.astype(declared.dtype).reshape(shape)[cell, first]
+            if name in arrays
+            else np.full(cell.size, declared.unstated, dtype=declared.dtype)
+            for name, declared in RUN_DIAGNOSTICS.items()
+        },
     )
-
-
-def _remarks(old: Labelled) -> NDArray[np.str_]:
-    shape = old.variables["status"].values.shape
-    remarks = old.coordinates["remark"].values if "remark" in old.coordinates else np.full(shape, "")
-    return remarks.astype(str).reshape(-1, shape[-1])

@@ -73,4 +73,4 @@ class ReusableRows:
             shard = None if whole is None else self._fitting(whole)
             if shard is None:
                 raise StoreError("a shard that was whole is so no longer: is another program at work in its folder?")
-            yield shard.rows(np.array(rows, dtype=np.int64))
+            yield shard.select_rows(np.array(rows, dtype=np.int64))

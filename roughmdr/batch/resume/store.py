@@ -76,12 +76,12 @@ class ShardStore:
             if _ordinary(path):
                 content = path.read_bytes()
                 if hashlib.sha256(content).hexdigest() == sha256:
-                    return TaskResult.loaded(content)
+                    return TaskResult.from_bytes(content)
         return None
 
     def put(self, shard: TaskResult) -> None:
         """Keep a shard for good; StoreError where that fails, and then nothing is changed."""
-        content, file = shard.dumped(), _SHARD.format(self._next)
+        content, file = shard.to_bytes(), _SHARD.format(self._next)
         temporary = self.folder / f"{file}.tmp"
         with cannot_be_written(self.folder):
             try:
@@ -99,8 +99,8 @@ class ShardStore:
                 "file": file,
                 "sha256": hashlib.sha256(content).hexdigest(),
                 "rows": len(shard.first),
-                "realizations": int(shard.size.sum()),
-                "run_time": float(shard.run_time.sum()),
+                "realizations": shard.realizations,
+                "run_time": float(shard.diagnostics["run_time"].sum()),
             }
         )
         self._next += 1

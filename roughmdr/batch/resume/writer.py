@@ -53,7 +53,7 @@ class CheckpointWriter:
 
     def put(self, shard: TaskResult) -> None:
         """Keep a shard, if shards are kept, without the runs of it that failed; StoreError where that cannot be."""
-        done = shard.rows((shard.status != FAILED).nonzero()[0])
+        done = shard.select_rows((shard.diagnostics["status"] != FAILED).nonzero()[0])
         if self._writer is None or self.parts is None or not len(done.first):
             return
         self._pending.append(self._writer.submit(self.parts.put, done))
