@@ -101,18 +101,17 @@ def run(
 
         asked = read(scene, changes)  # before anything heavy is loaded
         from roughmdr.batch.plan import make_plan
+        from roughmdr.runner.backend import Backend
         from roughmdr.runner.run import execute
 
         planned = make_plan(asked)
     result = execute(
         planned,
         output,
-        workers=workers,
-        scheduler=scheduler,
+        Backend(scheduler, workers, _tls(tls_ca, tls_cert, tls_key)),
         resume=resume,
         quiet=quiet,
         command=_command(),
-        tls=_tls(tls_ca, tls_cert, tls_key),
     )
     if not quiet:
         say(describe_result(result, time.perf_counter() - started))

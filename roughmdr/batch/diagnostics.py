@@ -15,6 +15,8 @@ Columns = dict[str, NDArray[Any]]
 
 def row_of(**known: Any) -> Row:
     """Return the diagnostics of a run: those that are known, and what stands for the others."""
+    if undeclared := known.keys() - RUN_DIAGNOSTICS.keys():
+        raise AssertionError(f"not declared in RUN_DIAGNOSTICS: {', '.join(undeclared)}")
     return {name: known.get(name, declared.missing) for name, declared in RUN_DIAGNOSTICS.items()}
 
 

@@ -80,7 +80,7 @@ def block_moments(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
 def moments_of(values: Floats) -> Moments:
     """Return the moments of the realisations along the first axis, of which there is at least one."""
     tree = MomentTree()
-    tree.add_all(0, values)
+    tree.add_curves(0, values)
     total = tree.total(len(values))
     if total is None:
         raise AssertionError("there is at least one realisation")
@@ -102,7 +102,7 @@ class MomentTree:
             first &= ~(moments.size >> 1)
         self.blocks[first] = moments
 
-    def add_all(self, first: int, values: Floats) -> None:
+    def add_curves(self, first: int, values: Floats) -> None:
         """Add single realisations along the first axis."""
         for begin, moments in block_moments(first, values):
             self.add(begin, moments)

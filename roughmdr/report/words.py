@@ -11,8 +11,8 @@ from roughmdr.result.layout import (
     cells_of,
     done_of,
     estimator_of,
-    held_variables,
     realizations_of,
+    stored_variables,
     swept_sizes,
 )
 from roughmdr.result.pull_off import PullOff, pull_off_force
@@ -39,7 +39,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("time", f"about {seconds_in_words(estimate.seconds)}, of them {seconds_in_words(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
     ]
-    lines += [*_several("warning", tuple(plan.doubts)), *_several("cannot run", estimate.failures)]
+    lines += [*_several("warning", tuple(plan.warnings)), *_several("cannot run", estimate.failures)]
     return _table([*lines, *_several("left out", plan.left_out)])
 
 
@@ -68,7 +68,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     realizations, steps = realizations_of(result), result.sizes["step"]
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(swept_sizes(result), realizations, steps)}"),
-        ("variables", ", ".join(held_variables(result))),
+        ("variables", ", ".join(stored_variables(result))),
         *_pull_off(result),
         *_open_ends(result),
         *_adhesion(result),
@@ -133,7 +133,7 @@ def _error(result: Labelled) -> str:
 
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
     """The pull-off force of each cell, and what it is."""
-    if "force" not in held_variables(result):
+    if "force" not in stored_variables(result):
         return
     if "unloading" not in result.coordinates["branch"].values:
         yield "pull-off", "none: the flat never retracts"

@@ -96,3 +96,5 @@ def test_diagnostics_are_merged_as_declared() -> None:
     assert (failed["numerical_error"], failed["tabor_number"]) == (1e-9, 5.0)
     assert np.isnan(failed["edge_slope"])  # the largest is not known
     assert row_of()["status"] == NOT_RUN
+    with pytest.raises(AssertionError, match="not declared in RUN_DIAGNOSTICS: visit_count"):
+        row_of(visit_count=1.0)

@@ -1,4 +1,4 @@
-"""Tallies: the same bits however realisations are cut up and ordered, and right to the last digits."""
+"""Moments: the same bits however realisations are cut up and ordered, and right to the last digits."""
 
 import math
 import random
@@ -20,12 +20,12 @@ EXTREME = st.one_of(
 )
 
 
-def bits(tally: Moments) -> tuple[int, ...]:
-    return tally.size, *(np.asarray(array).tobytes() for array in tally[1:])  # type: ignore[return-value]
+def bits(moments: Moments) -> tuple[int, ...]:
+    return moments.size, *(np.asarray(array).tobytes() for array in moments[1:])  # type: ignore[return-value]
 
 
 def gathered(values: np.ndarray, cuts: list[int], order: random.Random, *, singles: bool) -> MomentTree:
-    """Realisations cut into stretches, which come as singles or as tallies, in some order."""
+    """Realisations cut into ranges, which come as singles or as moments, in some order."""
     edges = sorted({0, len(values), *(cut % len(values) for cut in cuts)})
     pieces: list[tuple[int, Moments]] = []
     for number, (first, last) in enumerate(pairwise(edges)):
@@ -34,10 +34,10 @@ def gathered(values: np.ndarray, cuts: list[int], order: random.Random, *, singl
         else:
             pieces += block_moments(first, values[first:last])
     order.shuffle(pieces)
-    tallies = MomentTree()
-    for first, tally in pieces:
-        tallies.add(first, tally)
-    return tallies
+    tree = MomentTree()
+    for first, moments in pieces:
+        tree.add(first, moments)
+    return tree
 
 
 @settings(deadline=None, max_examples=150)
@@ -114,25 +114,25 @@ def test_one_realisation_has_no_standard_error() -> None:
 def test_there_is_no_total_where_one_is_missing(count: int, missing: int) -> None:
     missing %= count
     values = np.arange(float(count))[:, None]
-    tallies = MomentTree()
-    tallies.add_all(0, values[:missing])
-    tallies.add_all(missing + 1, values[missing + 1 :])
-    assert tallies.total(count) is None
-    assert tallies.total(count + 1) is None
-    tallies.add(missing, Moments.of(values[missing]))
-    assert (whole := tallies.total(count)) is not None
+    tree = MomentTree()
+    tree.add_curves(0, values[:missing])
+    tree.add_curves(missing + 1, values[missing + 1 :])
+    assert tree.total(count) is None
+    assert tree.total(count + 1) is None
+    tree.add(missing, Moments.of(values[missing]))
+    assert (whole := tree.total(count)) is not None
     assert whole.size == count
-    assert tallies.total(count + 1) is None
+    assert tree.total(count + 1) is None
 
 
 @pytest.mark.parametrize("last", [1, 2, 255, 256, 1000])
-def test_few_tallies_are_held(last: int) -> None:
+def test_few_blocks_are_held(last: int) -> None:
     """As many as the number has binary digits, where realisations come in order."""
-    tallies = MomentTree()
+    tree = MomentTree()
     for count in range(1, last + 1):
-        tallies.add(count - 1, Moments.of(np.array([float(count)])))
-        assert len(tallies.blocks) == count.bit_count() <= math.log2(count) + 1
-        assert sum(tally.size for tally in tallies.blocks.values()) == count
+        tree.add(count - 1, Moments.of(np.array([float(count)])))
+        assert len(tree.blocks) == count.bit_count() <= math.log2(count) + 1
+        assert sum(moments.size for moments in tree.blocks.values()) == count
 
 
 @settings(deadline=None)

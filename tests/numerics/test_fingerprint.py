@@ -20,8 +20,8 @@ import sys
 from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.cli import main
 used = []
-whole = ReusableRows.shards
-ReusableRows.shards = lambda self, picks: [used.append(int(shard.size.sum())) or shard for shard in whole(self, picks)]
+read = ReusableRows.read
+ReusableRows.read = lambda self, rows: [used.append(each.realizations) or each for each in read(self, rows)]
 try:
     main({arguments!r})
 except SystemExit as end:
