@@ -9,13 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, compute
+from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import START_UP, file_bytes, result_bytes
-from roughmdr.batch.plan import Cell, Plan, simulate_realization
+from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realization
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.memory import room
 
 _MAX_ASPERITIES = 10_000  # beyond, time and memory grow in proportion
@@ -48,11 +49,6 @@ class Estimate(NamedTuple):
     """Which of the cells that were tried cannot be computed, and why."""
 
 
-class _Cost(NamedTuple):
-    seconds: float
-    memory: float
-
-
 def estimate(plan: Plan, workers: int) -> Estimate:
     """Return the cost of a plan, from single runs of a few of its cells; RoughmdrError where none can be run."""
     rounds = Rounds(plan)
@@ -68,13 +64,13 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
     if plan.keeps_statistics:
         memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
-    computing = float(np.mean([cost.seconds for cost in costs])) * runs / busy
+    computing = float(costs[:, 0].mean()) * runs / busy
     return Estimate(
         runs=runs,
         tasks=tasks,
         seconds=START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps,
         start_up=START_UP,
-        memory=resident + memory + busy * max(cost.memory for cost in costs),
+        memory=resident + memory + busy * float(costs[:, 1].max()),
         resident=resident,
         room=room()[0],
         file=file,
@@ -82,8 +78,11 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     )
 
 
-def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], list[str]]:
-    """Return the costs of those cells that can be run, and why the others cannot; RoughmdrError where none can."""
+def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[Floats, list[str]]:
+    """Return [cell, time and memory] of one run of those cells that can be run, and why the others cannot.
+
+    RoughmdrError where none can.
+    """
     costs, failures = [], []
     for cell in cells:
         try:
@@ -92,11 +91,11 @@ def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], l
             failures.append(f"{plan.name_of(cell, 0)}: {error}")
     if not costs:
         raise RoughmdrError(failures[0])
-    return costs, failures
+    return np.array(costs), failures
 
 
-def _cost(cell: Cell, estimator: str, variables: list[str]) -> _Cost:
-    """Measure one run of a cell; of a large ensemble or a long path a part."""
+def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, float]:
+    """Measure time [s] and memory [byte] of one run of a cell; of a large ensemble or a long path a part."""
     scene, path = cell.scene, cell.path
     section = scene.asperities.sampled(_MAX_ASPERITIES)
     if cell.steps > _MAX_STEPS:
@@ -110,13 +109,7 @@ def _cost(cell: Cell, estimator: str, variables: list[str]) -> _Cost:
             return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
         drawn = time.perf_counter()
-        compute(
-            ensemble,
-            path,
-            effective_modulus=scene.effective_modulus,
-            adhesion=scene.adhesion_model,
-            variables=variables,
-        )
+        simulate_ensemble(scene, path, ensemble, variables)
         return drawn - started, time.perf_counter() - drawn
 
     tracemalloc.start()
@@ -125,7 +118,7 @@ def _cost(cell: Cell, estimator: str, variables: list[str]) -> _Cost:
     tracemalloc.stop()
     drawing, summing = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
     ratio = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
-    return _Cost(ratio * (drawing + summing * cell.steps / path.separation.size), ratio * memory)
+    return ratio * (drawing + summing * cell.steps / path.separation.size), ratio * memory
 
 
 def _resident() -> float:

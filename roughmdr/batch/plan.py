@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
+from roughmdr.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
@@ -110,19 +111,25 @@ def _cells(scene: Scene) -> Iterator[Cell]:
         yield Cell(cell, paths[key])
 
 
+def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
+    """Return the load-separation curve of an ensemble with the material and the adhesion of a scene."""
+    effective_modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
+
+
 def simulate_realization(
     scene: Scene, path: LoadingPath, realization: int, variables: list[str], estimator: str
 ) -> LoadSeparation:
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
-    effective_modulus, adhesion, section = scene.effective_modulus, scene.adhesion_model, scene.asperities
     if estimator == "expected":
         from roughmdr import expected
 
+        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
         return expected.compute(
-            section, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables
+            scene.asperities, path, effective_modulus=modulus, adhesion=adhesion, variables=variables
         )
-    ensemble = section.ensemble(scene.seed, realization, stratified=estimator == "stratified")
-    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
+    ensemble = scene.asperities.ensemble(scene.seed, realization, stratified=estimator == "stratified")
+    return simulate_ensemble(scene, path, ensemble, variables)
 
 
 def left_out(scene: Scene) -> list[str]:

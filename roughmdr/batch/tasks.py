@@ -61,9 +61,8 @@ def split_into_tasks(
         costs = [seconds(runs.cell, runs.estimator) for runs in ranges]
         total = sum(cost * (runs.last - runs.first) for cost, runs in zip(costs, ranges, strict=True))
         usual = max(_USUAL_SECONDS, min(total / _MANY, _MAX_SECONDS))
-        size = (
-            max(_MIN_SECONDS, min(total / (_TASKS_PER_WORKER * workers), usual)) if total > _SINGLE_TASK else math.inf
-        )
+        size = max(_MIN_SECONDS, min(total / (_TASKS_PER_WORKER * workers), usual))
+        size = size if total > _SINGLE_TASK else math.inf
     else:
         costs, size = [1.0] * len(ranges), float(runs_per_task)
     curve_bytes = 8 * len(variables) * plan.steps
@@ -76,8 +75,8 @@ def split_into_tasks(
             if filled >= size or count >= max_runs:
                 groups.append([])
                 filled, count = 0.0, 0
-            fitting = runs.last if size == math.inf else math.ceil((size - filled) / cost)
-            added = min(max(fitting, 1), max_runs - count, runs.last - first)
+            fitting = math.ceil(min((size - filled) / cost, runs.last - first))
+            added = min(max(fitting, 1), max_runs - count)
             groups[-1].append(runs._replace(first=first, last=first + added))
             first, filled, count = first + added, filled + added * cost, count + added
     return [Task(tuple(group), tuple(variables), plan.keeps_statistics, versions()) for group in groups if group]

@@ -10,8 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from roughmdr.aggregate import compute
-from roughmdr.batch.plan import Cell
+from roughmdr.batch.plan import Cell, simulate_ensemble
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
@@ -73,10 +72,7 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     one = slice(number, number + 1)
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
-    scene, path = cell
     try:
-        return compute(
-            alone, path, effective_modulus=scene.effective_modulus, adhesion=scene.adhesion_model, variables=["force"]
-        ).variables["force"]
+        return simulate_ensemble(*cell, alone, ["force"]).variables["force"]
     except RoughmdrError:
         return np.zeros(cell.steps)

@@ -112,7 +112,10 @@ def execute(
     quiet: bool = True,
     command: str = "roughmdr.run",
 ) -> Labelled:
-    """Carry out a plan; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
+    """Carry out a plan; ``command`` goes into the file's history.
+
+    StoreError, before computing, for a bad target or too little memory.
+    """
     backend.check()
     if target is not None:
         check_writable(target, plan.scene.inputs)
@@ -121,14 +124,16 @@ def execute(
     with checkpointing(target) as writer:
         reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
-        if target is not None and writer is not None and resume:
-            old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
+        if writer is not None and resume:
+            old = None if writer.may_replace(plan.scene.toml) else find_previous(writer.target)
             if old is not None and is_finished(old, plan, rounds.keys):
                 if writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
                     writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
-            reuse(target, old, writer.store, plan, reusable)
-        _check_memory(plan, rounds)
+            reuse(writer.target, old, writer.store, plan, reusable)
+        runs = sum(method.realizations for method in rounds.methods)  # of the first round
+        remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
+        check_room(result_bytes(plan, runs), "the run", remedy)
         try:
             with backend.pool() as pool:
                 if writer is not None and not resume:
@@ -148,14 +153,6 @@ def computed_variables(plan: Plan) -> tuple[str, ...]:
     """Return the variables that are computed: those asked for and, where an error is asked for, the force."""
     asked = plan.scene.output.variables
     return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
-
-
-def _check_memory(plan: Plan, rounds: Rounds) -> None:
-    """StoreError, before computing, where this process may not have the memory that the first round takes at least."""
-    runs = sum(method.realizations for method in rounds.methods)
-    check_room(
-        result_bytes(plan, runs), "the run", "fewer steps or realizations, or output.keep = 'statistics', take less"
-    )
 
 
 class _Batch:

@@ -58,7 +58,7 @@ def test_batches_in_threads_of_one_process_do_not_mix() -> None:
 
 _FORKED = """
 import os, sys
-sys.path.insert(0, {tests!r})
+sys.path[:0] = {tests!r}
 from test_batch_hostile import few, forces
 before = forces(few(output={{"keep": "statistics"}}))
 child = os.fork()
@@ -71,7 +71,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_a_forked_process_computes_too() -> None:
-    code = _FORKED.format(tests=str(Path(__file__).parent.parent))
+    code = _FORKED.format(tests=[str(folder) for folder in Path(__file__).parents[:2]])
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.strip() == "0", done.stderr
 
