@@ -45,22 +45,19 @@ class Collector:
         if not self._keep_moments and self._watched is None:
             return
         part = np.s_[:] if self._keep_moments else np.s_[self._watched]
-        if not result.cell.size:
-            return
-        order = np.argsort(result.cell, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(result.cell[order])) + 1):
-            key = result.keys[result.cell[rows[0]]]
-            columns = {name: column[rows] for name, column in result.diagnostics.items()}
-            for row, first, status, remark in zip(
-                rows, result.first[rows].tolist(), columns["status"], columns["remark"].tolist(), strict=True
-            ):
-                if status != FAILED:
-                    self._trees.setdefault(key, MomentTree()).add(first, result.moments(row).select(part))
-                if remark:  # of the realisation that comes first, whichever is done first
-                    self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
-            merged = merge(columns)
-            known = self._diagnostics.get(key)
-            self._diagnostics[key] = merged if known is None else merge_rows([known, merged])
+        rows_of: dict[str, list[int]] = {}
+        columns = result.cell, result.first, result.diagnostics["status"], result.diagnostics["remark"]
+        for row, (cell, first, status, remark) in enumerate(zip(*(each.tolist() for each in columns), strict=True)):
+            key = result.keys[cell]
+            rows_of.setdefault(key, []).append(row)
+            if status != FAILED:
+                self._trees.setdefault(key, MomentTree()).add(first, result.moments(row).select(part))
+            if remark:  # of the realisation that comes first, whichever is done first
+                self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
+        for key, rows in rows_of.items():
+            merged = merge({name: column[rows] for name, column in result.diagnostics.items()})
+            before = self._diagnostics.get(key)
+            self._diagnostics[key] = merged if before is None else merge_rows([before, merged])
 
     @property
     def none_done(self) -> bool:

@@ -60,7 +60,8 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     variables = plan.scene.output.variables
     runs = sum(each.last - each.first for each in first)
     tasks = len(split_into_tasks(plan, first, variables, workers))
-    busy = min(workers, tasks, _cores())
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    busy = min(workers, tasks, cores)
     memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
     if plan.keeps_statistics:
         memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
@@ -131,9 +132,3 @@ def _resident() -> float:
 
         return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
     return 0.0
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -127,7 +127,7 @@ class _ProcessGroup:
                 return
             self.end()
         raise RoughmdrError(
-            "scheduler is 'processes': none can be started; in a script, what is called must stand under "
+            "scheduler is 'processes': no process can be started; a script must make its calls under "
             "if __name__ == '__main__':"
         )
 
@@ -196,8 +196,8 @@ def _batches(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
         yield batch
 
 
-def _compute_unless(stop: threading.Event, task: Task) -> TaskResult | None:
-    return None if stop.is_set() else compute(task)
+def _compute_unless(stop: threading.Event | Event | None, task: Task) -> TaskResult | None:
+    return None if stop is not None and stop.is_set() else compute(task)
 
 
 _halt: Event | None = None
@@ -221,4 +221,4 @@ def _end_with_parent() -> None:
 
 
 def _compute_unless_halted(task: Task) -> TaskResult | None:
-    return None if _halt is not None and _halt.is_set() else compute(task)
+    return _compute_unless(_halt, task)
