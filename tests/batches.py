@@ -31,9 +31,9 @@ from roughmdr.storage.store import destination
 _CLI = "from roughmdr.cli import main; main()"
 _OF_SMALL_TASKS = """
 import sys
-from functools import partial
 import roughmdr.batch.tasks as tasks
-tasks.split_into_tasks = partial(tasks.split_into_tasks, runs_per_task=int(sys.argv.pop(1)))
+runs_per_task, split_into_tasks = int(sys.argv.pop(1)), tasks.split_into_tasks
+tasks.split_into_tasks = lambda *given: split_into_tasks(*given[:4], runs_per_task)
 """
 PATIENCE = 120.0
 """After so long [s] something hangs."""

@@ -225,7 +225,7 @@ def test_more_parameters_make_the_expected_law_dearer() -> None:
 def test_the_expected_law_alone_says_where_it_is_not_right_enough() -> None:
     found = go(asking(1e-16, "expected"))
     assert "was not reached in 1 of 1 cells" in found.attrs["warnings"]
-    assert "the expected law is not right enough" in found.attrs["warnings"]
+    assert "the expected law is not accurate enough" in found.attrs["warnings"]
     assert "max_realizations" not in found.attrs["warnings"]
 
 
