@@ -84,10 +84,10 @@ class Law(NamedTuple):
 
     def taken(self, draws: np.ndarray, error: float) -> int:
         """How many of these draws a batch makes until it has come to an error."""
-        asked, tallies, count, now = Accuracy(relative=error, max_realizations=len(draws)), MomentTree(), 0, FIRST
+        asked, tree, count, now = Accuracy(relative=error, max_realizations=len(draws)), MomentTree(), 0, FIRST
         while count < now:
-            tallies.add_all(count, self.force[draws[count:now]])
-            whole = tallies.total(now)
+            tree.add_curves(count, self.force[draws[count:now]])
+            whole = tree.total(now)
             if whole is None:
                 raise AssertionError("none is missing")
             count, now = now, next_count(now, relative_error(whole), asked)

@@ -109,7 +109,7 @@ def by_asperity(count: int, repeats: int) -> xr.Dataset:
     """Time and memory of an asperity in ensembles of ``count`` and of a tenth of it, and what it takes to keep one."""
     counts = [count // 10, count]
     rows = [medians(lambda of=number: child("ensemble", of), repeats) for number in counts]  # type: ignore[misc]
-    seconds, shard = writing(1)
+    seconds, stored = writing(1)
     each = [[row[name] / number for number, row in zip(counts, rows, strict=True)] for name in ("making", "visiting")]
     more = (rows[1]["size"] - rows[0]["size"]) / (counts[1] - counts[0])
     return xr.Dataset(
@@ -117,8 +117,8 @@ def by_asperity(count: int, repeats: int) -> xr.Dataset:
             "making_time": ("asperities", each[0], s("time to draw and sort an asperity")),
             "visiting_time": ("asperities", each[1], s("time to visit an asperity, 200 steps in and out")),
             "asperity_memory": ((), more, size("memory of one more asperity")),
-            "writing_time": ((), seconds, s("time to keep a shard")),
-            "shard_size": ((), shard, size("a shard of one row of statistics, 400 steps")),
+            "writing_time": ((), seconds, s("time to store a task result")),
+            "task_result_size": ((), stored, size("a task result of one row of statistics, 400 steps")),
         },
         coords={"asperities": counts},
     )
@@ -135,7 +135,7 @@ def large(result: xr.Dataset) -> Capacity:
             "caller": float(task["task_caller"]),
             "scheduler": float(task["task_scheduler"]),
             "writer": float(result["writing_time"]),
-            "shard": float(result["shard_size"]),
+            "result": float(result["task_result_size"]),
         },
     )
 
@@ -183,7 +183,8 @@ def said(result: xr.Dataset) -> str:
     making, visiting = (1e9 * float(result[name][-1]) for name in ("making_time", "visiting_time"))
     lines.append(
         f"an asperity: made in {making:.0f} ns, visited in {visiting:.0f} ns, {float(result['asperity_memory']):.0f} "
-        f"bytes; a shard: {1e-3 * float(result['shard_size']):.0f} kB, {1e3 * float(result['writing_time']):.1f} ms"
+        f"bytes; a task result: {1e-3 * float(result['task_result_size']):.0f} kB, "
+        f"{1e3 * float(result['writing_time']):.1f} ms"
     )
     lines.append(f"{CELLS} cells of {ASPERITIES:,} asperities on {WORKERS} workers, extrapolated")
     return "\n".join([*lines, result.attrs["extrapolated"]])

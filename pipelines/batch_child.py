@@ -17,6 +17,7 @@ from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import Plan, make_plan, simulate_realization
 from roughmdr.batch.resume.keys import keys_of
 from roughmdr.batch.rounds import Rounds
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 from roughmdr.storage.labelled import Labelled
@@ -63,18 +64,18 @@ def run_time(result: Labelled) -> float:
     return float(result.variables["run_time"].values.sum())
 
 
-def carried_out(plan: Plan, target: Path | None, workers: int) -> tuple[float, float]:
+def carried_out(plan: Plan, target: Path | None, workers: int, runs_per_task: int | None = None) -> tuple[float, float]:
     """Seconds of a plan over threads, and those of them in its realisations."""
     started = time.perf_counter()
-    result = execute(plan, target, workers=workers, quiet=True)
+    result = execute(plan, target, Backend(workers=workers, runs_per_task=runs_per_task))
     return time.perf_counter() - started, run_time(result)
 
 
 def cells(count: int, folder: Path) -> dict[str, float]:
     """Seconds of overhead of a sweep of so many tiny cells with one worker, by what they are spent on."""
-    few = make_plan(swept(4), chunk=1)
+    few = make_plan(swept(4))
     prepare_all(few, Rounds(few).begin())
-    wall, inside = carried_out(few, folder / "few.nc", 1)
+    wall, inside = carried_out(few, folder / "few.nc", 1, runs_per_task=1)
     loading = wall - inside
     started = time.perf_counter()
     scene = swept(count)

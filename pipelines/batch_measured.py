@@ -18,10 +18,9 @@ import numpy as np
 from batch_child import tiny
 
 from roughmdr.batch.plan import Plan, make_plan
-from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
-from roughmdr.batch.tasks import RunRange, Task, TaskPart, split_into_tasks
+from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.cluster import connected
 from roughmdr.runner.local import Pool, Processes, Threads
@@ -65,24 +64,19 @@ class Batch(NamedTuple):
         return float(column[-1] - column[skipped]) / (len(column) - 1 - skipped)
 
 
-def batch(plan: Plan, pool: Pool, scheduler: int | None = None) -> Batch:
+def batch(plan: Plan, pool: Pool, scheduler: int | None = None, runs_per_task: int | None = None) -> Batch:
     """Compute the tasks of a plan by a pool; ``scheduler`` is the process of a cluster's."""
-    rounds, variables = Rounds(plan), tuple(plan.scene.output.variables)
-    groups = split_into_tasks(plan, rounds.begin(), variables, pool.workers)
-
-    def task(group: list[RunRange]) -> Task:
-        parts = (TaskPart(rounds.key(one), plan.cells[one.cell], *one[1:]) for one in group)
-        return Task(tuple(parts), variables, False, versions())
-
+    variables = plan.scene.output.variables
+    tasks = split_into_tasks(plan, Rounds(plan).begin(), variables, pool.workers, runs_per_task)
     rows: list[tuple[float, float, float, float]] = []
     started = time.perf_counter()
 
-    def sink(shard: TaskResult) -> None:
+    def sink(result: TaskResult) -> None:
         own = math.nan if scheduler is None else _processor_seconds(scheduler)
-        inside = float(shard.run_time.sum())
+        inside = float(result.diagnostics["run_time"].sum())
         rows.append((time.perf_counter() - started, inside, time.process_time(), own))
 
-    pool.compute(map(task, groups), threading.Event(), sink)
+    pool.compute(tasks, threading.Event(), sink)
     return Batch(*np.array(rows).T)
 
 
@@ -92,15 +86,15 @@ def speed_ups(count: int, tasks: int, repeats: int) -> dict[str, dict[str, list[
     Taken in turn, on tasks of one large realisation. Threads count from the start on; processes once all have begun,
     which the first four tasks a worker are left out for.
     """
-    plan = make_plan(tiny(count=count, steps=200, batch={"realizations": tasks}), chunk=1)
+    plan = make_plan(tiny(count=count, steps=200, batch={"realizations": tasks}))
     pools: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
-    batch(plan, Threads(2))
+    batch(plan, Threads(2), runs_per_task=1)
     found: dict[str, dict[str, list[float]]] = {name: {} for name in pools}
     for _ in range(repeats):
         for name, figures in found.items():
             taken = {}
             for workers in (1, 2):
-                done = batch(plan, pools[name](workers))
+                done = batch(plan, pools[name](workers), runs_per_task=1)
                 threads = name == "threads"
                 taken[workers] = done.arrival[-1] / tasks if threads else done.steady(done.arrival, 4 * workers)
                 figures.setdefault(f"inside_{workers}", []).append(float(done.inside.mean()))
@@ -123,7 +117,7 @@ class Overhead(NamedTuple):
 
 def overheads(tasks: int, workers: int, repeats: int) -> dict[str, Overhead]:
     """Of each scheduler, in turn; the first tenth of the tasks is left out."""
-    plan = make_plan(tiny(batch={"realizations": tasks}), chunk=1)
+    plan = make_plan(tiny(batch={"realizations": tasks}))
     rows: dict[str, list[Overhead]] = {name: [] for name in SCHEDULERS}
     with cluster(workers) as (address, number), connected(address, None) as there:
         pools: dict[str, Pool] = {
@@ -131,10 +125,10 @@ def overheads(tasks: int, workers: int, repeats: int) -> dict[str, Overhead]:
             "processes": Processes(workers),
             "distributed": there,
         }
-        batch(plan, there)  # the workers load what they need
+        batch(plan, there, runs_per_task=1)  # the workers load what they need
         for _ in range(repeats):
             for name, pool in pools.items():
-                done = batch(plan, pool, number if name == "distributed" else None)
+                done = batch(plan, pool, number if name == "distributed" else None, runs_per_task=1)
                 skipped = tasks // 10
                 inside = float(done.inside[skipped + 1 :].mean())
                 each = done.steady(done.arrival, skipped) - inside / workers

@@ -14,12 +14,14 @@ from statistics import median
 import numpy as np
 from batch_child import tiny
 
+from roughmdr.batch.diagnostics import row_of
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import RunDiagnostics, TaskResult, table_of
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.variables import DONE
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; threads of a cluster."""
@@ -47,7 +49,7 @@ class Capacity:
     curves: float
     """Bytes, where curves are; the process that calls holds them about twice."""
     parts: float
-    """Bytes of the shards that are kept until the result is written, one file a task."""
+    """Bytes of the task results that are kept until the result is written, one file a task."""
     ensemble: float
     """Bytes on a worker, for ensembles of ``ENSEMBLE``."""
     whole: float
@@ -90,54 +92,53 @@ def large() -> Plan:
 
 
 def writing(rows: int) -> tuple[float, float]:
-    """Seconds to keep a shard of tallies safely, and its bytes; by the thread that writes."""
+    """Seconds to store a task result of moments safely, and its bytes; by the thread that writes."""
     steps, variables = 400, ("force", "contact_area", "contact_count", "stiffness")
     values = np.random.default_rng(1).normal(size=(2, len(variables), steps))
-    tally = Moments.of(values[0]).joined(Moments.of(values[1]))
-    shard: TaskResult = table_of(
-        ["0" * 32], variables, [(0, 2 * row, tally, RunDiagnostics(1.0)) for row in range(rows)], steps
-    )
+    moments = Moments.of(values[0]).merged(Moments.of(values[1]))
+    rows_of_task = [(0, 2 * row, moments, row_of(run_time=1.0, status=DONE)) for row in range(rows)]
+    result = TaskResult.of(["0" * 32], variables, rows_of_task, steps)
     times = []
     with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as parts:
         parts.begin("", "", "")
         for _ in range(_REPEATS):
             started = time.perf_counter()
-            parts.put(shard)
+            parts.write(result)
             times.append(time.perf_counter() - started)
-        parts.remove()
-    return median(times), float(len(shard.dumped()))
+        parts.clear()
+    return median(times), float(len(result.to_bytes()))
 
 
 def gathering() -> float:
-    """Seconds that the calling process takes to put one more tally to the others of its cell."""
-    tallies, values = MomentTree(), np.ones((4, 400))
+    """Seconds that the calling process takes to add the moments of one more realisation to the others of its cell."""
+    tree, values = MomentTree(), np.ones((4, 400))
     count = 2048
     started = time.perf_counter()
     for first in range(count):
-        tallies.add(first, Moments.of(values))
+        tree.add(first, Moments.of(values))
     return (time.perf_counter() - started) / count
 
 
 def capacity(making: float, visiting: float, size: float, task: Mapping[str, float]) -> Capacity:
     """From seconds of making and visiting an asperity, its bytes, and seconds of a task by who spends them.
 
-    ``task`` has "caller", "scheduler" and "writer", and "shard", the bytes that are written.
+    ``task`` has "caller", "scheduler" and "writer", and "result", the bytes that are written.
     """
     plan = large()
     variables = plan.scene.output.variables
-    groups = split_into_tasks(plan, Rounds(plan).begin(), variables, WORKERS)
-    runs = sum(last - first for group in groups for _, first, last, _ in group)
-    curve = 8.0 * len(variables) * plan.cells[0].path.separation.size
+    tasks = split_into_tasks(plan, Rounds(plan).begin(), variables, WORKERS)
+    runs = sum(each.last - each.first for one in tasks for each in one.ranges)
+    curve = 8.0 * len(variables) * plan.steps
     return Capacity(
         runs=runs,
-        tasks=len(groups),
+        tasks=len(tasks),
         computing=runs * ENSEMBLE * (making + visiting),
-        caller=len(groups) * (task["caller"] + gathering()),
-        scheduler=len(groups) * task["scheduler"],
-        writer=len(groups) * task["writer"],
+        caller=len(tasks) * (task["caller"] + gathering()),
+        scheduler=len(tasks) * task["scheduler"],
+        writer=len(tasks) * task["writer"],
         result=4.0 * curve * CELLS,
         curves=curve * runs,
-        parts=len(groups) * task["shard"],
+        parts=len(tasks) * task["result"],
         ensemble=ENSEMBLE * size,
         whole=ASPERITIES * size,
     )

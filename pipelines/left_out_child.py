@@ -27,6 +27,7 @@ from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.numerics.arguments import Floats
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.variables import DEFAULT_VARIABLES
 
@@ -72,9 +73,10 @@ def along(way: Way) -> Done:
 def kept(size: Size, keep: str) -> Done:
     """All realisations as a batch, with their curves kept or their statistics."""
     scene = scene_of(size, keep=keep, variables=list(DEFAULT_VARIABLES))
-    plan = make_plan(scene, chunk=size.realizations // 2)  # two tasks at least, so that they go the way of many
+    plan = make_plan(scene)
     prepare_all(plan, Rounds(plan).begin())
-    result = execute(plan, None, workers=1, quiet=True).variables
+    two_tasks = Backend(workers=1, runs_per_task=size.realizations // 2)  # at least, as larger batches are computed
+    result = execute(plan, None, two_tasks).variables
     force = result["force"].values.mean(axis=0) if keep == "curves" else result["force_mean"].values
     numbers = sum(array.values.size for name, array in result.items() if name.startswith(DEFAULT_VARIABLES))
     return Done(force, float(result["numerical_error"].values.max()), numbers)

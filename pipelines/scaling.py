@@ -25,6 +25,7 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.atomic import replace_atomically
@@ -154,12 +155,12 @@ def over_workers(count: int, realizations: int, repeats: int) -> dict[int, float
         }
     )
     plan = make_plan(scene)
-    execute(plan, None, workers=1, quiet=True)
+    execute(plan, None, Backend(workers=1))
     times: dict[int, list[float]] = {1: [], 2: []}
     for _ in range(repeats):
         for workers, seconds in times.items():
             started = time.perf_counter()
-            execute(plan, None, workers=workers, quiet=True)
+            execute(plan, None, Backend(workers=workers))
             seconds.append(time.perf_counter() - started)
     return {workers: float(np.median(seconds)) for workers, seconds in times.items()}
 

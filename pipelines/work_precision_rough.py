@@ -19,6 +19,7 @@ from roughmdr.batch.plan import Cell, make_plan, simulate_realization
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Problem, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
@@ -203,9 +204,9 @@ def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Cur
         visits.append(found.visits)
         return found
 
-    with patch.object(tasks, "law_of", counted):
+    with patch.object(tasks, "simulate_realization", counted):
         started = time.perf_counter()
-        found = execute(plan, None, workers=1, quiet=True)
+        found = execute(plan, None, Backend(workers=1))
         spent = time.perf_counter() - started
     force, area = (found.variables[name].values for name in ("force_mean", "contact_area_mean"))
     return _curve(force, area, sum(visits)), spent

@@ -103,18 +103,17 @@ def run(
 
         validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.plan import make_plan
+        from roughmdr.runner.backend import Backend
         from roughmdr.runner.run import execute
 
         planned = make_plan(validated)
     result = execute(
         planned,
         output,
-        workers=workers,
-        scheduler=scheduler,
+        Backend(scheduler, workers, _tls(**tls_files)),
         resume=resume,
         quiet=quiet,
         command=_command_line(),
-        tls=_tls(**tls_files),
     )
     if not quiet:
         print_text(describe_result(result, time.perf_counter() - started))

@@ -1,14 +1,20 @@
 """All variables of datasets and files, declared once: name, unit and description."""
 
-from typing import NamedTuple
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
 
 
-class Variable(NamedTuple):
+@dataclass(frozen=True)
+class Variable:
     """A variable of a dataset or a file, in SI units."""
 
     name: str
     units: str
     long_name: str
+    codes: tuple[str, ...] = ()
+    """Meanings of its values 0, 1, ..., where these are codes."""
 
     @property
     def attrs(self) -> dict[str, str]:
@@ -16,8 +22,23 @@ class Variable(NamedTuple):
         return {"units": self.units, "long_name": self.long_name}
 
 
-def _declare(*declarations: tuple[str, str, str]) -> dict[str, Variable]:
-    return {declaration[0]: Variable(*declaration) for declaration in declarations}
+@dataclass(frozen=True)
+class Diagnostic(Variable):
+    """A number or text that describes one run beside its curves, and the rule that merges those of several runs."""
+
+    dtype: type = float
+    merge: Literal["add", "maximum", "fmax", "fmin", "first"] = "fmax"
+    """A ufunc of NumPy (``fmax`` and ``fmin`` ignore NaN, which ``maximum`` keeps); of texts the ``first`` one."""
+    missing: Any = math.nan
+    """Value of a run that did not run, or that failed."""
+    unstated: Any = math.nan
+    """Value of a run that is done, in a result or checkpoint without this diagnostic."""
+    in_result: Callable[[Any], bool] = lambda scene: True
+    """Whether a result with a cell of this scene has it; a text is there only if some run has one."""
+
+
+def _declare(*rows: tuple[str, str, str] | tuple[str, str, str, tuple[str, ...]]) -> dict[str, Variable]:
+    return {row[0]: Variable(*row) for row in rows}
 
 
 CURVE_VARIABLES = _declare(
@@ -66,28 +87,81 @@ COORDINATES = _declare(
     ("y", "m", "y of the summit"),
 )
 
-RUN_VARIABLES = _declare(
-    ("run_time", "s", "time spent on the realization, or on all realizations of a statistic"),
-    ("realization_count", "1", "number of realizations of the statistics"),
-    ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
-    ("status", "1", "outcome of the realization"),
-    ("tabor_number", "1", "smallest Tabor number of the asperities"),
-    ("adhesion_law", "1", "adhesion model that was used"),
-    ("edge_slope", "1", "largest slope of a profile at the edge of its contact"),
-    ("profile_extent", "1", "largest contact radius over the radius where its profile ends"),
-    ("remark", "", "why the realization failed, or why it is doubtful"),
-    ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
-    ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
-    ("accuracy_method", "1", "how the cell was computed"),
-)
-"""Variables about the runs of a result."""
-
 DONE, FAILED, NOT_RUN = range(3)
 """Codes of ``status``."""
 STATUSES = ("done", "failed", "not_run")
-"""Meaning of each code of ``status``."""
 ADHESION_CODES = ("none", "jkr", "dugdale")
-"""Adhesion models; the index is the code in ``adhesion_law``."""
+ESTIMATORS = ("sampled", "stratified", "expected")
 
-AUXILIARY_COORDINATES = ("separation", "branch", "cell_key", "remark")
-"""Coordinates of a result besides its swept keys."""
+
+def _tabor_known(scene: Any) -> bool:
+    return bool(scene.adhesion_model.tabor_known)
+
+
+def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
+    return {row.name: row for row in rows}
+
+
+RUN_DIAGNOSTICS = _diagnostics(
+    Diagnostic(
+        "run_time",
+        "s",
+        "time spent on the realization, or on all realizations of a statistic",
+        merge="add",
+        unstated=0.0,
+    ),
+    Diagnostic(
+        "numerical_error", "1", "estimated numerical error of the force over its largest magnitude", unstated=0.0
+    ),
+    Diagnostic(
+        "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
+    ),
+    Diagnostic(
+        "profile_extent",
+        "1",
+        "largest contact radius over the radius where its profile ends",
+        merge="maximum",
+        unstated=0.0,
+    ),
+    Diagnostic(
+        "status", "1", "outcome of the realization", STATUSES, int, merge="maximum", missing=NOT_RUN, unstated=DONE
+    ),
+    Diagnostic("tabor_number", "1", "smallest Tabor number of the asperities", merge="fmin", in_result=_tabor_known),
+    Diagnostic(
+        "adhesion_law",
+        "1",
+        "adhesion model that was used",
+        ADHESION_CODES,
+        int,
+        merge="maximum",
+        missing=0,
+        unstated=0,
+        in_result=_tabor_known,
+    ),
+    Diagnostic(
+        "remark",
+        "",
+        "why the realization failed, or why it is doubtful",
+        dtype=str,
+        merge="first",
+        missing="",
+        unstated="",
+    ),
+)
+"""Diagnostics of a run: from here task results, checkpoints, resumed files and results have them."""
+
+RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | _declare(
+    ("realization_count", "1", "number of realizations of the statistics"),
+    ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
+    ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
+    ("accuracy_method", "1", "how the cell was computed", ESTIMATORS),
+)
+"""Variables of a result that describe its runs and cells."""
+
+AUXILIARY_COORDINATES = (
+    "separation",
+    "branch",
+    "cell_key",
+    *(row.name for row in RUN_DIAGNOSTICS.values() if row.dtype is str),
+)
+"""Coordinates of a result, other than its swept keys."""

@@ -23,16 +23,17 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.runner import local
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.file_checks import destination
 
 _CLI = "from roughmdr.cli import main; main()"
-_IN_CHUNKS = """
+_OF_SMALL_TASKS = """
 import sys
-import roughmdr.batch.plan as plan
-chunk, make_plan = int(sys.argv.pop(1)), plan.make_plan
-plan.make_plan = lambda scene: make_plan(scene, chunk)
+import roughmdr.batch.tasks as tasks
+runs_per_task, split_into_tasks = int(sys.argv.pop(1)), tasks.split_into_tasks
+tasks.split_into_tasks = lambda *given: split_into_tasks(*given[:4], runs_per_task)
 """
 PATIENCE = 120.0
 """After so long [s] something hangs."""
@@ -52,7 +53,7 @@ def interrupted(
     out: Path,
     after: int,
     monkeypatch: pytest.MonkeyPatch,
-    chunk: int = 2,
+    runs_per_task: int = 2,
     resume: bool = True,
 ) -> None:
     """A batch in this process, of tasks of so many runs, ended by Ctrl-C when some of them are done."""
@@ -66,7 +67,7 @@ def interrupted(
     with monkeypatch.context() as patched:
         patched.setattr(local, "compute", until)
         with pytest.raises(KeyboardInterrupt):
-            execute(make_plan(read(table), chunk), out, workers=1, resume=resume)
+            execute(make_plan(read(table)), out, Backend(workers=1, runs_per_task=runs_per_task), resume=resume)
     assert out.exists() == there
     assert store_folder(destination(out)).is_dir()
 
@@ -74,10 +75,12 @@ def interrupted(
 class Batch:
     """A ``roughmdr run`` in a session of its own, with tasks of a given number of runs."""
 
-    def __init__(self, folder: Path, *options: object, chunk: int = 4, code: str = "", scene: str = "scene.toml"):
+    def __init__(
+        self, folder: Path, *options: object, runs_per_task: int = 4, code: str = "", scene: str = "scene.toml"
+    ):
         self.folder = folder
         self._said = (folder.parent / f"{folder.name}.stderr").open("w+")
-        command = [sys.executable, "-c", f"{_IN_CHUNKS}{code}\n{_CLI}", str(chunk)]
+        command = [sys.executable, "-c", f"{_OF_SMALL_TASKS}{code}\n{_CLI}", str(runs_per_task)]
         self.process = subprocess.Popen(
             [*command, "run", scene, "-o", "out.nc", *map(str, options)],
             cwd=folder,
@@ -120,7 +123,7 @@ class Batch:
         return [child for child in found if "spawn_main" in " ".join(child.cmdline())]
 
     def wait_for_lines(self, count: int) -> None:
-        """Until so many shards are kept, or it is over."""
+        """Until so many task results are kept, or it is over."""
         until(lambda: len(lines(self.folder)) >= count or self.process.poll() is not None)
 
 
@@ -138,7 +141,7 @@ def until(condition: Callable[[], bool], patience: float = PATIENCE, pause: floa
 
 
 def lines(folder: Path) -> list[dict[str, Any]]:
-    """The whole lines of the manifest that speak of shards."""
+    """The whole lines of the manifest that speak of task results."""
     manifest = folder / "out.nc.parts" / "manifest.jsonl"
     try:
         content = manifest.read_bytes()

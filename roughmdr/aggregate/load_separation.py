@@ -44,7 +44,7 @@ class LoadSeparation(NamedTuple):
     """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
     model: str
     """The law of adhesion that was taken."""
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     """What makes the ensemble itself doubtful."""
 
     @classmethod
@@ -100,7 +100,7 @@ def compute(
     )
     extremes = ensemble.validity_limits(reached)
     found = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
-    return found._replace(doubts=ensemble.warnings)
+    return found._replace(warnings=ensemble.warnings)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -161,7 +161,7 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
-    doubts = [*result.doubts, *result.extremes.warnings]
+    doubts = [*result.warnings, *result.extremes.warnings]
     attrs = {"warnings": "\n".join(doubts)} if doubts else {}
     for text in doubts:
         warnings.warn(text, LimitWarning, stacklevel=2)

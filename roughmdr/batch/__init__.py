@@ -1,1 +1,1 @@
-"""From a plan to its numbers: tasks, their shards, what is kept of them on disk, and when there are enough."""
+"""From a plan to its numbers: tasks, their results, their storage, and when there are enough realisations."""

@@ -1,132 +1,127 @@
-"""What the shards of a batch come to, in whatever order they come."""
+"""Collects the results of tasks, in whatever order they come."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roughmdr.batch.diagnostics import Columns, Row, merge, merge_rows, not_run
 from roughmdr.batch.moments import Moments, MomentTree
-from roughmdr.batch.task_result import RunDiagnostics, TaskResult
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import FAILED, NOT_RUN
 
 
 class CollectedResults(NamedTuple):
-    """All that was found out; arrays lie over the cells and, where curves are kept, over the realisations."""
+    """All results of a batch; arrays lie over the cells and, where curves are kept, over the realisations."""
 
     values: Floats
-    """[cell, realization, variable, step]; of no cell where tallies are kept."""
-    tally: Moments
-    """[cell, variable, step]; of no cell where curves are kept, and its ``size`` says nothing."""
+    """[cell, realization, variable, step]; of no cell where moments are kept."""
+    moments: Moments
+    """[cell, variable, step]; of no cell where curves are kept, and ``size`` is not used."""
     sem: Floats
-    """Standard errors of the means, as ``tally``."""
-    beside: dict[str, NDArray[Any]]
-    """What else there is to say, by the names in ``RunDiagnostics``."""
+    """Standard errors of the means, as ``moments``."""
+    diagnostics: Columns
 
 
 class Collector:
-    """The shards so far: as curves, or as tallies, which take no more memory the more realisations there are.
+    """Results so far: as curves, or as moments, which take no more memory the more realisations there are.
 
-    Of the curves of a ``watched`` variable there are tallies too.
+    Moments of a ``watched`` variable are kept beside curves too.
     """
 
-    def __init__(self, variables: Sequence[str], steps: int, *, tallied: bool, watched: str | None = None) -> None:
-        self._shape, self._tallied = (len(variables), steps), tallied
+    def __init__(self, variables: Sequence[str], steps: int, *, keep_moments: bool, watched: str | None = None) -> None:
+        self._shape, self._keep_moments = (len(variables), steps), keep_moments
         self._watched = None if watched is None else tuple(variables).index(watched)
-        self._shards: list[TaskResult] = []
-        self._tallies: dict[str, MomentTree] = {}
-        self._beside: dict[str, RunDiagnostics] = {}
+        self._results: list[TaskResult] = []
+        self._trees: dict[str, MomentTree] = {}
+        self._diagnostics: dict[str, Row] = {}
         self._remarks: dict[str, tuple[int, str]] = {}
 
-    def add(self, shard: TaskResult) -> None:
-        """Take in one more."""
-        if not self._tallied:
-            self._shards.append(shard)
-        if self._tallied or self._watched is not None:
-            part = np.s_[:] if self._tallied else np.s_[self._watched]
-            for number in range(len(shard.first)):
-                key, first, row = (
-                    shard.keys[shard.cell[number]],
-                    int(shard.first[number]),
-                    RunDiagnostics.of(shard, number),
-                )
-                if row.status != FAILED:
-                    self._tallies.setdefault(key, MomentTree()).add(first, shard.of_row(number).picked(part))
-                if row.remark:  # of the realisation that comes first, whichever is done first
-                    self._remarks[key] = min((first, row.remark), self._remarks.get(key, (first, row.remark)))
-                self._beside[key] = self._beside[key].joined(row) if key in self._beside else row
+    def add(self, result: TaskResult) -> None:
+        """Add the result of a task."""
+        if not self._keep_moments:
+            self._results.append(result)
+        if not self._keep_moments and self._watched is None:
+            return
+        part = np.s_[:] if self._keep_moments else np.s_[self._watched]
+        rows_of: dict[str, list[int]] = {}
+        columns = result.cell, result.first, result.diagnostics["status"], result.diagnostics["remark"]
+        for row, (cell, first, status, remark) in enumerate(zip(*(each.tolist() for each in columns), strict=True)):
+            key = result.keys[cell]
+            rows_of.setdefault(key, []).append(row)
+            if status != FAILED:
+                self._trees.setdefault(key, MomentTree()).add(first, result.moments(row).select(part))
+            if remark:  # of the realisation that comes first, whichever is done first
+                self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
+        for key, rows in rows_of.items():
+            merged = merge({name: column[rows] for name, column in result.diagnostics.items()})
+            before = self._diagnostics.get(key)
+            self._diagnostics[key] = merged if before is None else merge_rows([before, merged])
 
     @property
-    def nothing(self) -> bool:
-        """Whether no realisation at all could be computed."""
-        return not self._tallies and all((shard.status == FAILED).all() for shard in self._shards)
+    def none_done(self) -> bool:
+        """Whether no realisation at all could be computed; to be asked before ``collected``."""
+        return not self._trees and all((result.diagnostics["status"] == FAILED).all() for result in self._results)
 
     def watched(self, key: str, count: int) -> Moments | None:
-        """Of the first realisations of a cell, of the variable that is watched; None where some failed."""
-        whole = self._whole(key, count)
-        return whole.picked(self._watched) if self._tallied and whole is not None else whole
+        """Return the moments of the watched variable over the first realisations of a cell; None where some failed."""
+        total = self._total(key, count)
+        return total.select(self._watched) if self._keep_moments and total is not None else total
 
-    def _whole(self, key: str, count: int) -> Moments | None:
-        return self._tallies[key].total(count) if key in self._tallies else None
+    def _total(self, key: str, count: int) -> Moments | None:
+        return self._trees[key].total(count) if key in self._trees else None
 
-    def beside(self, key: str) -> RunDiagnostics:
-        """What else there is to say of all realisations of such a cell."""
-        return self._beside[key]
+    def diagnostics(self, key: str) -> Row:
+        """Return the diagnostics of all realisations of a cell together."""
+        return self._diagnostics[key]
 
-    def found(self, chosen: Sequence[tuple[str, int]]) -> CollectedResults:
-        """All of it, for each cell of the realisations that were chosen: its key, and how many they are."""
-        return self._statistics(chosen) if self._tallied else self._curves(chosen)
+    def collected(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
+        """Return the results of cells, each given by its key and its number of realisations; curves are given away."""
+        return self._collect_moments(cells) if self._keep_moments else self._collect_curves(cells)
 
-    def _curves(self, chosen: Sequence[tuple[str, int]]) -> CollectedResults:
-        cells: dict[str, list[int]] = {}
-        for cell, (key, _) in enumerate(chosen):
-            cells.setdefault(key, []).append(cell)
-        count = np.array([count for _, count in chosen])
-        shape = len(chosen), int(count.max())
+    def _collect_curves(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
+        cells_of: dict[str, list[int]] = {}
+        for cell, (key, _) in enumerate(cells):
+            cells_of.setdefault(key, []).append(cell)
+        count = np.array([count for _, count in cells])
+        shape = len(cells), int(count.max())
         values = np.full((*shape, *self._shape), np.nan)
-        beside = _nothing(shape)
-        while self._shards:
-            shard = self._shards.pop()
-            rows = zip(shard.cell.tolist(), shard.first.tolist(), strict=True)
-            places = [
+        diagnostics = not_run(shape)
+        while self._results:
+            result = self._results.pop()
+            rows = zip(result.cell.tolist(), result.first.tolist(), strict=True)
+            selected = [
                 (row, cell, first)
                 for row, (number, first) in enumerate(rows)
-                for cell in cells.get(shard.keys[number], ())
+                for cell in cells_of.get(result.keys[number], ())
                 if first < count[cell]
             ]
-            if places:
-                row, cell, first = np.array(places).T
-                values[cell, first] = shard.values[row]
-                for name, array in beside.items():
-                    array[cell, first] = getattr(shard, name)[row]
-        if ((beside["status"] == NOT_RUN) & (np.arange(shape[1]) < count[:, None])).any():
+            if selected:
+                row, cell, first = np.array(selected).T
+                values[cell, first] = result.values[row]
+                for name, array in diagnostics.items():
+                    array[cell, first] = result.diagnostics[name][row]
+        if ((diagnostics["status"] == NOT_RUN) & (np.arange(shape[1]) < count[:, None])).any():
             raise AssertionError("a realisation was neither computed nor did it fail")
-        nothing = np.empty((0, *self._shape))
-        return CollectedResults(values, Moments.of(nothing), nothing, beside)
+        empty = np.empty((0, *self._shape))
+        return CollectedResults(values, Moments.of(empty), empty, diagnostics)
 
-    def _statistics(self, chosen: Sequence[tuple[str, int]]) -> CollectedResults:
-        shape = (len(chosen), *self._shape)
-        mean, spread, least, greatest, sem = (np.full(shape, np.nan) for _ in range(5))
-        beside = _nothing((len(chosen),))
-        for cell, (key, count) in enumerate(chosen):
-            whole = self._whole(key, count)
-            if whole is not None:
-                mean[cell], spread[cell], least[cell], greatest[cell] = whole[1:]
-                sem[cell] = whole.standard_error
-            elif key not in self._beside or self._beside[key].status != FAILED:
+    def _collect_moments(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
+        shape = (len(cells), *self._shape)
+        mean, spread, minimum, maximum, sem = (np.full(shape, np.nan) for _ in range(5))
+        diagnostics = not_run((len(cells),))
+        for cell, (key, count) in enumerate(cells):
+            total = self._total(key, count)
+            if total is not None:
+                mean[cell], spread[cell], minimum[cell], maximum[cell] = total[1:]
+                sem[cell] = total.standard_error
+            elif key not in self._diagnostics or self._diagnostics[key]["status"] != FAILED:
                 raise AssertionError("a realisation was neither computed nor did it fail")
-            if key in self._beside:
+            if key in self._diagnostics:
                 first, remark = self._remarks.get(key, (0, ""))
-                if first:
-                    remark = f"realisation {first}: {remark}"
-                row = self._beside[key]._replace(remark=remark)
-                for name, array in beside.items():
-                    array[cell] = getattr(row, name)
-        return CollectedResults(np.empty((0, 1, *self._shape)), Moments(0, mean, spread, least, greatest), sem, beside)
-
-
-def _nothing(shape: tuple[int, ...]) -> dict[str, NDArray[Any]]:
-    """What there is to say of realisations that did not run."""
-    nothing = RunDiagnostics(run_time=np.nan, numerical_error=np.nan, status=NOT_RUN)._asdict()
-    return {name: np.full(shape, value, dtype=object if name == "remark" else None) for name, value in nothing.items()}
+                row = {**self._diagnostics[key], "remark": f"realisation {first}: {remark}" if first else remark}
+                for name, array in diagnostics.items():
+                    array[cell] = row[name]
+        values = np.empty((0, 1, *self._shape))
+        return CollectedResults(values, Moments(0, mean, spread, minimum, maximum), sem, diagnostics)

@@ -1,4 +1,4 @@
-"""What a round needs is compiled once, before several threads or a clock need it; nothing that no run asks for."""
+"""Compiles what the runs of a round need, before several threads or a clock need it, and nothing that no run needs."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -9,24 +9,20 @@ from roughmdr.batch.tasks import RunRange
 from roughmdr.errors import RoughmdrError
 
 
-def prepare_all(plan: Plan, stretches: Iterable[RunRange]) -> None:
+def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     """Compile what these runs of a plan need."""
-    kinds: set[tuple[object, ...]] = set()
-    for stretch in stretches:
-        cell = plan.cells[stretch.cell]
-        law, shape, expected = (
-            cell.scene.adhesion_model,
-            cell.scene.asperities.shape_name,
-            stretch.estimator == "expected",
-        )
-        kind = shape, law.work > 0.0, law.candidates, law.tabor_known, expected
-        if kind in kinds:
+    prepared: set[tuple[object, ...]] = set()
+    for runs in ranges:
+        scene, expected = runs.cell.scene, runs.estimator == "expected"
+        adhesion, shape = scene.adhesion_model, scene.asperities.shape_name
+        kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, expected
+        if kind in prepared:
             continue
-        kinds.add(kind)
+        prepared.add(kind)
         if expected:
-            _prepare_expected(cell, plan.scene.output.variables)
+            _prepare_expected(runs.cell, plan.scene.output.variables)
         else:
-            prepare(shape, law)
+            prepare(shape, adhesion)
 
 
 def _prepare_expected(cell: Cell, variables: list[str]) -> None:
@@ -34,7 +30,7 @@ def _prepare_expected(cell: Cell, variables: list[str]) -> None:
 
     scene = cell.scene
     one = LoadingPath.along(cell.path.separation[:1], unload=False, adhesive=scene.work > 0.0)
-    with suppress(RoughmdrError):  # that is said of the whole path
+    with suppress(RoughmdrError):  # the run itself will report it
         expected.prepare(
             scene.asperities,
             one,

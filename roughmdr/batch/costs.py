@@ -1,32 +1,51 @@
-"""About what a run takes: by which batches are cut into tasks, and the cheapest way to an asked error is chosen.
+"""Rough costs of runs, by which they are split into tasks and the cheapest method for an asked error is chosen.
 
 Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipelines/scaling.py``), right to a factor of
-three or so. They are constants, never measured while a batch runs, so that every machine chooses alike.
+about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
-from roughmdr.batch.plan import Cell
+from roughmdr.batch.plan import Cell, Plan
 
-_RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run, to draw and sort an asperity
-_EVEN = 8e-4  # to begin evenly spread draws
-_VISIT, _VISIT_CURVED, _VISIT_COHESIVE, _VISIT_COHESIVE_CURVED = 5e-9, 1.2e-7, 1.5e-7, 4e-5  # of an asperity at a step
+START_UP = 1.2
+"""Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
+_RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run; to draw and sort an asperity
+_STRATIFY = 8e-4  # to begin stratified draws
+_VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1.5e-7, 4e-5  # of an asperity at a step
 # An expected law: its tables, a step, and for each node of its first rule squared, since it takes more nodes where
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
-_TABLES, _TABLES_COHESIVE_CURVED, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
+_TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
+_NUMBER = 8  # bytes
+_BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
 
 
 def seconds(cell: Cell, estimator: str) -> float:
-    """About what one run takes [s]."""
-    law, section = cell.scene.adhesion_model, cell.scene.asperities
-    steps = cell.path.separation.size
-    simple = section.shape_name == "paraboloid" or not law.work
-    cohesive = "dugdale" in law.candidates
+    """Return about how long one run takes [s]."""
+    adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
+    simple = section.shape_name == "paraboloid" or not adhesion.work
+    dugdale = "dugdale" in adhesion.candidates
     if estimator == "expected":
         nodes = section.node_count(_FIRST_RULE)
-        node = (_NODE_ADHESIVE if law.work else _NODE) * (1.0 if simple else _OWN_TABLES)
-        tables = _TABLES_COHESIVE_CURVED if cohesive and not simple else _TABLES
+        node = (_NODE_ADHESIVE if adhesion.work else _NODE) * (1.0 if simple else _OWN_TABLES)
+        tables = _TABLES_DUGDALE_PROFILE if dugdale and not simple else _TABLES
         return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
-    plain, curved = (_VISIT_COHESIVE, _VISIT_COHESIVE_CURVED) if cohesive else (_VISIT, _VISIT_CURVED)
-    visit = plain if simple else curved
-    begin = _RUN + (_EVEN if estimator == "stratified" else 0.0)
-    return begin + section.expected_count * (_DRAW + visit * steps)
+    paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
+    begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
+    return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
+
+
+def file_bytes(plan: Plan, runs: int) -> int:
+    """Return about how large the result file of so many runs is."""
+    return _STEP_IN_FILE * plan.steps + _value_bytes(plan, runs)
+
+
+def result_bytes(plan: Plan, runs: int) -> int:
+    """Return the memory [byte] while the result is assembled: runs as they came, and in their places."""
+    return _BRANCH * plan.steps + 2 * _value_bytes(plan, runs)
+
+
+def _value_bytes(plan: Plan, runs: int) -> int:
+    """Return the size of the variables: the curves of all runs or, of each cell, four statistics."""
+    output = plan.scene.output
+    curves = _NUMBER * plan.steps * len(output.variables)
+    return curves * runs if output.keep == "curves" else 4 * curves * len(plan.cells)

@@ -1,32 +1,27 @@
-"""What a run will cost, before it runs: time and memory, from a short calibration on a small part of it."""
+"""Time and memory of a run before it runs, from a short calibration on a small part of it."""
 
 import math
 import os
-import subprocess
-import sys
-import tempfile
 import time
 import tracemalloc
 from contextlib import suppress
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import tomli_w
 
-from roughmdr.aggregate import LoadingPath, compute
+from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.compile import prepare_all
-from roughmdr.batch.plan import Cell, Plan, simulate_realization
+from roughmdr.batch.costs import START_UP, file_bytes, result_bytes
+from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realization
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
 from roughmdr.errors import RoughmdrError
-from roughmdr.shapes import SHAPES
+from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.memory import available_memory
 
-_SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
-_STEPS = 500
-_CELLS = 12
+_MAX_ASPERITIES = 10_000  # beyond, time and memory grow in proportion
+_MAX_STEPS = 500
+_MAX_CELLS = 12
 _REPEATS = 3
 _DISK = 3e8  # bytes a second: a slow disk
 _NUMBER = 8  # bytes
@@ -34,7 +29,7 @@ _STEP_SECONDS = 3e-6  # of a step of the path itself
 
 
 class Estimate(NamedTuple):
-    """What a run costs, in seconds and bytes; with [accuracy], what its first round does."""
+    """Cost of a run in seconds and bytes; with [accuracy], of its first round."""
 
     runs: int
     tasks: int
@@ -43,131 +38,93 @@ class Estimate(NamedTuple):
     start_up: float
     """Until the first asperity is made."""
     memory: float
-    """At most, in all."""
+    """Peak, in all."""
     resident: float
-    """What Python and its packages take; 0 where the system does not tell."""
-    room: float
-    """How much more this process could be given; inf where the system does not tell."""
+    """Memory of Python and its packages; 0 where the system does not tell."""
+    available_memory: float
+    """How much more memory this process could be given; inf where the system does not tell."""
     file: float
-    """The result on disk."""
+    """Size of the result on disk."""
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
 
 
-class _Cost(NamedTuple):
-    seconds: float
-    memory: float
-
-
 def estimate(plan: Plan, workers: int) -> Estimate:
-    """The cost of a plan, from single runs of a few of its cells and from a run of next to nothing."""
+    """Return the cost of a plan, from single runs of a few of its cells; RoughmdrError where none can be run."""
     rounds = Rounds(plan)
     first = rounds.begin()
     prepare_all(plan, first)
-    try:
-        start_up, resident = _start_up(plan.cells[0]), _resident()
-    except OSError as error:  # of the folder for temporary files
-        raise RoughmdrError(f"a run of next to nothing cannot be timed here: {error.strerror}") from None
-    chosen = np.random.default_rng(0).permutation(len(plan.cells))[:_CELLS]
-    costs, failures = _costs(plan, rounds, sorted(chosen.tolist()))
-    variables, steps = plan.scene.output.variables, plan.cells[0].path.separation.size
-    runs = sum(stretch.last - stretch.first for stretch in first)
+    resident = _resident()
+    cells = np.random.default_rng(0).permutation(len(plan.cells))[:_MAX_CELLS]
+    costs, failures = _costs(plan, rounds, sorted(cells.tolist()))
+    variables = plan.scene.output.variables
+    runs = sum(each.last - each.first for each in first)
     tasks = len(split_into_tasks(plan, first, variables, workers))
-    busy = min(workers, tasks, _cores())
-    held, file = held_bytes(plan, runs), file_bytes(plan, runs)
-    if plan.scene.output.keep == "statistics":
-        held += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * steps * len(variables)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    busy = min(workers, tasks, cores)
+    memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
+    if plan.keeps_statistics:
+        memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
+    computing = float(costs[:, 0].mean()) * runs / busy
     return Estimate(
         runs=runs,
         tasks=tasks,
-        seconds=start_up
-        + float(np.mean([cost.seconds for cost in costs])) * runs / busy
-        + file / _DISK
-        + _STEP_SECONDS * steps,
-        start_up=start_up,
-        memory=resident + held + busy * max(cost.memory for cost in costs),
+        seconds=START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps,
+        start_up=START_UP,
+        memory=resident + memory + busy * float(costs[:, 1].max()),
         resident=resident,
-        room=available_memory()[0],
+        available_memory=available_memory()[0],
         file=file,
         failures=tuple(failures),
     )
 
 
-def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], list[str]]:
-    """The costs of those cells that can be run, and why the others cannot; RoughmdrError where none can."""
+def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[Floats, list[str]]:
+    """Return [cell, time and memory] of one run of those cells that can be run, and why the others cannot.
+
+    RoughmdrError where none can.
+    """
     costs, failures = [], []
     for cell in cells:
         try:
-            costs.append(_cost(plan, plan.cells[cell], rounds.choices[cell].estimator))
+            costs.append(_cost(plan.cells[cell], rounds.methods[cell].estimator, plan.scene.output.variables))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(cell, 0)}: {error}")
     if not costs:
         raise RoughmdrError(failures[0])
-    return costs, failures
+    return np.array(costs), failures
 
 
-def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
-    """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
+def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, float]:
+    """Measure time [s] and memory [byte] of one run of a cell; of a large ensemble or a long path a part."""
     scene, path = cell.scene, cell.path
-    section = scene.asperities.limited_to(_SAMPLE)
-    steps = path.separation.size
-    if steps > _STEPS:
-        some = np.linspace(0, steps - 1, _STEPS).astype(int)
+    section = scene.asperities.limited_to(_MAX_ASPERITIES)
+    if cell.steps > _MAX_STEPS:
+        some = np.linspace(0, cell.steps - 1, _MAX_STEPS).astype(int)
         path = LoadingPath.along(path.separation[some], unload=False, adhesive=scene.work > 0.0)
 
     def run() -> tuple[float, float]:
         started = time.perf_counter()
         if estimator == "expected":
-            simulate_realization(scene, path, 0, plan.scene.output.variables, "expected")
+            simulate_realization(scene, path, 0, variables, "expected")
             return 0.0, time.perf_counter() - started
         ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
-        made = time.perf_counter()
-        compute(
-            ensemble,
-            path,
-            effective_modulus=scene.effective_modulus,
-            adhesion=scene.adhesion_model,
-            variables=plan.scene.output.variables,
-        )
-        return made - started, time.perf_counter() - made
+        drawn = time.perf_counter()
+        simulate_ensemble(scene, path, ensemble, variables)
+        return drawn - started, time.perf_counter() - drawn
 
     tracemalloc.start()
     run()
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    making, adding = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
-    part = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
-    return _Cost(part * (making + adding * steps / path.separation.size), part * memory)
-
-
-def _start_up(cell: Cell) -> float:
-    """Seconds of a run that is as little as a run of the cell's kind can be: all of it is to start."""
-    shape = SHAPES[cell.scene.asperities.shape_name]
-    asperities = {"source": "random", "shape": shape.name, "count": 1, "patch": 1.0, "height": 0.0}
-    smallest = {
-        "material": {"effective_modulus": 1.0},
-        "adhesion": {
-            "model": cell.scene.adhesion_model.model,
-            "work": cell.scene.work and 1.0,
-            **({"strength": 1.0} if cell.scene.adhesion_model.strength < math.inf else {}),
-        },
-        "asperities": {**asperities, **shape.example()},
-        "path": {"separation": [0.0]},
-    }
-    with tempfile.TemporaryDirectory() as folder:
-        scene = Path(folder) / "scene.toml"
-        scene.write_text(tomli_w.dumps(smallest))
-        command = [sys.executable, "-P", "-m", "roughmdr", "run", str(scene), "-o", str(scene.with_suffix(".nc"))]
-        started = time.perf_counter()
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise RoughmdrError(f"a run of next to nothing does not work here: {done.stderr.strip()}")
-    return time.perf_counter() - started
+    drawing, summing = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
+    ratio = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
+    return ratio * (drawing + summing * cell.steps / path.separation.size), ratio * memory
 
 
 def _resident() -> float:
-    """Bytes of this process at most so far; it has loaded nearly all that a run loads."""
-    # Where it is there, since getrusage counts what the process was forked from too.
+    """Return the peak memory of this process so far [byte]; it has loaded nearly all that a run loads."""
+    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
     with suppress(OSError, StopIteration), open("/proc/self/status") as status:
         return next(1024.0 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
     with suppress(ImportError):
@@ -175,9 +132,3 @@ def _resident() -> float:
 
         return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
     return 0.0
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

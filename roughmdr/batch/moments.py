@@ -1,7 +1,7 @@
-"""What is kept of many realisations instead of their curves, however they come in: the same bits for any order.
+"""Moments of many realisations in place of their curves, with the same bits in whatever order these come in.
 
-Realisations are put together in twos, those in fours, and so on: [0, 2) [2, 4) [4, 8) ..., always at the same places,
-so that what comes out does not depend on who computed which of them, or when.
+Realisations are merged in twos, those in fours, and so on, always in the blocks [0, 2) [2, 4) [4, 8) ..., so that
+the result does not depend on who computed which of them, or when.
 """
 
 import math
@@ -14,93 +14,105 @@ from roughmdr.numerics.arguments import Floats
 
 
 class Moments(NamedTuple):
-    """How many, mean, standard deviation (of these, not of all that could be drawn), least and greatest."""
+    """Number, mean, standard deviation (of these, not an estimate for all that could be drawn), minimum and maximum."""
 
     size: int
     mean: Floats
     spread: Floats
-    least: Floats
-    greatest: Floats
+    minimum: Floats
+    maximum: Floats
 
     @classmethod
     def of(cls, values: Floats) -> "Moments":
-        """Of one realisation."""
+        """Return the moments of one realisation."""
         return cls(1, values, np.zeros_like(values), values, values)
 
-    def joined(self, other: "Moments") -> "Moments":
-        """Of both together (T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242, eq. 2.1).
+    def merged(self, other: "Moments") -> "Moments":
+        """Return the moments of both (T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242, eq. 2.1).
 
-        No square leaves the range of a float, and nor does a difference.
+        No square leaves the range of a float, and no difference does.
         """
         count = self.size + other.size
-        own, others = self.size / count, other.size / count
+        weight, other_weight = self.size / count, other.size / count
         half = 0.5 * other.mean - 0.5 * self.mean
-        within = np.hypot(math.sqrt(own) * self.spread, math.sqrt(others) * other.spread)
+        within = np.hypot(math.sqrt(weight) * self.spread, math.sqrt(other_weight) * other.spread)
         return Moments(
             count,
-            self.mean + (2.0 * others) * half,
-            np.hypot(within, (2.0 * math.sqrt(own * others)) * half),
-            np.minimum(self.least, other.least),
-            np.maximum(self.greatest, other.greatest),
+            self.mean + (2.0 * other_weight) * half,
+            np.hypot(within, (2.0 * math.sqrt(weight * other_weight)) * half),
+            np.minimum(self.minimum, other.minimum),
+            np.maximum(self.maximum, other.maximum),
         )
 
-    def picked(self, index: Any) -> "Moments":
-        """The same of a part of the arrays."""
+    def select(self, index: Any) -> "Moments":
+        """Return the moments of a part of the arrays."""
         return Moments(self.size, *(array[index] for array in self[1:]))
 
     @property
     def standard_error(self) -> Floats:
-        """Of the mean; NaN for a single realisation, which has none."""
+        """Standard error of the mean; NaN for a single realisation."""
         if self.size < 2:
             return np.full_like(self.mean, math.nan)
         return np.asarray(self.spread / math.sqrt(self.size - 1))
 
 
-def spans(first: int, last: int) -> Iterator[tuple[int, int]]:
-    """The places at which the realisations first ... last - 1 are put together: where each begins, and how many."""
+def dyadic_blocks(first: int, last: int) -> Iterator[tuple[int, int]]:
+    """Yield first realisation and size of the blocks in which the realisations first ... last - 1 are merged."""
     while first < last:
-        count = 1 << (last - first).bit_length() - 1
+        size = 1 << (last - first).bit_length() - 1
         if first:
-            count = min(count, first & -first)
-        yield first, count
-        first += count
+            size = min(size, first & -first)
+        yield first, size
+        first += size
 
 
-def moments_of(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
-    """Tallies of the realisations ``first`` and so on, whose ``values`` lie along the first axis, with their places."""
-    for begin, count in spans(first, first + len(values)):
-        tally = Moments.of(values[begin - first : begin - first + count])
-        while len(tally.mean) > 1:
-            tally = tally.picked(np.s_[0::2]).joined(tally.picked(np.s_[1::2]))
-        yield begin, tally.picked(0)
+def block_moments(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
+    """Yield each block of the realisations ``first`` ..., whose ``values`` lie along the first axis: where it begins,
+    and its moments.
+    """
+    for begin, count in dyadic_blocks(first, first + len(values)):
+        moments = Moments.of(values[begin - first : begin - first + count])
+        while len(moments.mean) > 1:
+            moments = moments.select(np.s_[0::2]).merged(moments.select(np.s_[1::2]))
+        yield begin, moments.select(0)
+
+
+def moments_of(values: Floats) -> Moments:
+    """Return the moments of the realisations along the first axis, of which there is at least one."""
+    tree = MomentTree()
+    tree.add_curves(0, values)
+    total = tree.total(len(values))
+    if total is None:
+        raise AssertionError("there is at least one realisation")
+    return total
 
 
 class MomentTree:
-    """The tallies of one cell, put together as far as they go: as many are held as their number has binary digits."""
+    """Moments of one cell, merged as far as possible: as many blocks as their number has binary digits."""
 
     def __init__(self) -> None:
-        self.held: dict[int, Moments] = {}
-        """By the place where each begins."""
+        self.blocks: dict[int, Moments] = {}
+        """By the first realisation of each block."""
 
-    def add(self, first: int, tally: Moments) -> None:
-        """Take in one more; ``first`` is where it begins."""
-        while (neighbour := self.held.get(first ^ tally.size)) and neighbour.size == tally.size:
-            del self.held[first ^ tally.size]
-            tally = tally.joined(neighbour) if not first & tally.size else neighbour.joined(tally)
-            first &= ~(tally.size >> 1)
-        self.held[first] = tally
+    def add(self, first: int, moments: Moments) -> None:
+        """Add a block that begins at the realisation ``first``."""
+        while (neighbour := self.blocks.get(first ^ moments.size)) and neighbour.size == moments.size:
+            del self.blocks[first ^ moments.size]
+            moments = moments.merged(neighbour) if not first & moments.size else neighbour.merged(moments)
+            first &= ~(moments.size >> 1)
+        self.blocks[first] = moments
 
-    def add_all(self, first: int, values: Floats) -> None:
-        """Take in single realisations along the first axis."""
-        for begin, tally in moments_of(first, values):
-            self.add(begin, tally)
+    def add_curves(self, first: int, values: Floats) -> None:
+        """Add single realisations along the first axis."""
+        for begin, moments in block_moments(first, values):
+            self.add(begin, moments)
 
     def total(self, count: int) -> Moments | None:
-        """Of the first ``count`` realisations; None where some are missing."""
-        parts = [self.held.get(first) for first, _ in spans(0, count)]
-        whole: Moments | None = None
-        for part, (_, size) in zip(parts, spans(0, count), strict=True):
-            if part is None or part.size != size:
+        """Return the moments of the first ``count`` realisations; None where some are missing."""
+        total: Moments | None = None
+        for first, size in dyadic_blocks(0, count):
+            block = self.blocks.get(first)
+            if block is None or block.size != size:
                 return None
-            whole = part if whole is None else whole.joined(part)
-        return whole
+            total = block if total is None else total.merged(block)
+        return total

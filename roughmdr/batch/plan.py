@@ -1,4 +1,4 @@
-"""From a scene to its cells: where the flat of each goes, how each is computed, what is left out and why."""
+"""The plan of a scene: its cells, each with the path of its flat, and what is left out; and how one run is done."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
+from roughmdr.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
@@ -18,21 +19,24 @@ from roughmdr.variables import COORDINATES, CURVE_VARIABLES
 
 
 class Cell(NamedTuple):
-    """A scene without a sweep, and the way of its flat."""
+    """A scene without a sweep, and the path of its flat."""
 
     scene: Scene
     path: LoadingPath
 
+    @property
+    def steps(self) -> int:
+        """Number of steps of the path."""
+        return int(self.path.separation.size)
+
 
 class Plan(NamedTuple):
-    """What a run of a scene will do."""
+    """The cells of a scene, and what they do not need."""
 
     scene: Scene
     cells: tuple[Cell, ...]
     left_out: tuple[str, ...]
     """Lines "part: reason"."""
-    chunk: int | None = None
-    """How many runs make a task; None for as many as make it worth its overhead."""
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -40,17 +44,27 @@ class Plan(NamedTuple):
         return self.scene.sweep.sizes
 
     @property
+    def steps(self) -> int:
+        """Number of steps of the paths, which is the same in all cells."""
+        return self.cells[0].steps
+
+    @property
+    def keeps_statistics(self) -> bool:
+        """Whether statistics over the realisations are kept, not their curves."""
+        return self.scene.output.keep == "statistics"
+
+    @property
     def warnings(self) -> list[str]:
-        """Warn of asperities that may not be as they were meant; in how many cells, where not in all."""
+        """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
 
     def name_of(self, cell: int, realization: int) -> str:
-        """A run in words."""
+        """Describe a run: the swept values of its cell, and its realisation."""
         values = next(islice(self.scene.sweep.cells(), cell, None))
         return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
 
     def coordinates(self) -> dict[str, Array]:
-        """The swept values, the separation over those of them that change it, and the branch."""
+        """Return the swept values, the separation over those of them that change it, and the branch."""
         return {
             **self.scene.sweep.coordinates(),
             "separation": self._separation(),
@@ -64,57 +78,63 @@ class Plan(NamedTuple):
         separation = np.array([cell.path.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
         dims = ["step"]
         for axis, name in reversed(list(enumerate(self.sizes))):
-            one = separation.take([0], axis)
-            if (separation == one).all():
-                separation = one.squeeze(axis)
+            first_only = separation.take([0], axis)
+            if (separation == first_only).all():
+                separation = first_only.squeeze(axis)
             else:
                 dims.insert(0, name)
         return Array(tuple(dims), separation, COORDINATES["separation"].attrs)
 
 
-def make_plan(scene: Scene, chunk: int | None = None) -> Plan:
-    """The plan of a scene; ``chunk`` as in Plan.
+def make_plan(scene: Scene) -> Plan:
+    """Return the plan of a scene.
 
-    SceneError where a map cannot be read, the way of the flat cannot be laid out, or two cells go different ways, in
-    and out.
+    SceneError where a map cannot be read, a path cannot be laid out, or two cells differ in where they load and unload.
     """
-    cells = tuple(_cells(scene))
-    return Plan(scene, cells, tuple(left_out(scene)), chunk)
+    return Plan(scene, tuple(_cells(scene)), tuple(left_out(scene)))
 
 
 def _cells(scene: Scene) -> Iterator[Cell]:
-    known: dict[tuple[bytes, bool], LoadingPath] = {}
+    paths: dict[tuple[bytes, bool], LoadingPath] = {}
     first: NDArray[np.str_] | None = None
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
-        way_in = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
-        key = way_in.tobytes(), cell.work > 0.0
-        if key not in known:
-            known[key] = LoadingPath.along(way_in, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            found = branches(known[key].separation)
-            first = found if first is None else first
-            if not np.array_equal(found, first):
-                other = f"sweep: with {describe_cell(values)} the flat goes another way, in or out,"
-                raise SceneError(f"{other} than in the first cell")
-        yield Cell(cell, known[key])
+        loading = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
+        key = loading.tobytes(), cell.work > 0.0
+        if key not in paths:
+            paths[key] = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
+            branch = branches(paths[key].separation)
+            first = branch if first is None else first
+            if not np.array_equal(branch, first):
+                raise SceneError(
+                    f"sweep: with {describe_cell(values)} the flat loads and unloads at other steps than in the first "
+                    "cell"
+                )
+        yield Cell(cell, paths[key])
+
+
+def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
+    """Return the load-separation curve of an ensemble with the material and the adhesion of a scene."""
+    effective_modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
 
 
 def simulate_realization(
     scene: Scene, path: LoadingPath, realization: int, variables: list[str], estimator: str
 ) -> LoadSeparation:
-    """The law of one realisation of a scene without a sweep, by an estimator."""
-    effective_modulus, adhesion, section = scene.effective_modulus, scene.adhesion_model, scene.asperities
+    """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
         from roughmdr import expected
 
+        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
         return expected.compute(
-            section, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables
+            scene.asperities, path, effective_modulus=modulus, adhesion=adhesion, variables=variables
         )
-    ensemble = section.ensemble(scene.seed, realization, stratified=estimator == "stratified")
-    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
+    ensemble = scene.asperities.ensemble(scene.seed, realization, stratified=estimator == "stratified")
+    return simulate_ensemble(scene, path, ensemble, variables)
 
 
 def left_out(scene: Scene) -> list[str]:
-    """What the scene does not need, and why, as lines "part: reason"; in which cells, where not in all."""
+    """Return what the scene does not need, and why, as lines "part: reason", with the cells where not in all."""
     return count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
 
 
@@ -134,7 +154,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
     if scene.asperities.is_random:
-        yield "positions: asperities are independent; nothing depends on where they stand"
+        yield "positions: asperities are independent; nothing depends on their positions"
     yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]
     if unasked:

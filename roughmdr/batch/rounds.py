@@ -7,9 +7,9 @@ from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import keys_of
-from roughmdr.batch.stopping_rule import FIRST, enough, next_count, relative_error, still_missing
+from roughmdr.batch.stopping_rule import FIRST, is_enough, missing_count, next_count, relative_error
 from roughmdr.batch.tasks import RunRange
-from roughmdr.batch.unmet import Rare
+from roughmdr.batch.unmet import RareAsperities
 from roughmdr.scene.sections import Accuracy
 from roughmdr.variables import DONE
 
@@ -21,19 +21,19 @@ class CellMethod(NamedTuple):
     estimator: str
     realizations: int
     error: float = math.nan
-    """Of the mean force over its largest value: standard error, or that of an expected law; NaN where not known."""
-    met: float = math.nan
-    """The standard error by the draws alone, without what asperities may add that they have not met."""
+    """Error of the mean force over its largest value, of draws the standard error; NaN where not known."""
+    drawn_error: float = math.nan
+    """Standard error of the draws alone, without asperities that they may not have met."""
 
 
-class _Way(NamedTuple):
-    """How a cell came to its choice."""
+class CellHistory(NamedTuple):
+    """The method of a cell, and those tried before it."""
 
-    choice: CellMethod
+    method: CellMethod
     draws: CellMethod | None = None
-    """Those before its expected law."""
-    law: CellMethod | None = None
-    """Its expected law, where that is not right enough."""
+    """Draws that the expected law replaced."""
+    expected: CellMethod | None = None
+    """The expected law, where its error is too large."""
 
 
 class Rounds:
@@ -43,99 +43,97 @@ class Rounds:
         self._plan, self._accuracy = plan, plan.scene.accuracy
         estimators = {estimator for cell in plan.cells for estimator in cell.scene.estimators}
         self._keys = {estimator: keys_of(plan, estimator) for estimator in sorted(estimators)}
-        self._ways = [_Way(self._first_choice(cell)) for cell in range(len(plan.cells))]
-        alike: dict[str, int] = {}
-        self._leader = [alike.setdefault(way.choice.key, cell) for cell, way in enumerate(self._ways)]
-        self._open = list(alike.values())
-        self._made: dict[str, int] = {}
-        self._rare: dict[int, Rare] = {}
+        self._histories = [CellHistory(self._first_method(cell)) for cell in range(len(plan.cells))]
+        first_with: dict[str, int] = {}
+        self._computed_as = [first_with.setdefault(each.method.key, cell) for cell, each in enumerate(self._histories)]
+        self._open = list(first_with.values())
+        self._requested: dict[str, int] = {}
+        self._rare: dict[int, RareAsperities] = {}
 
     @property
-    def choices(self) -> list[CellMethod]:
-        """How each cell is computed, as far as that is known; cells that are the same are computed once."""
-        return [self._ways[leader].choice for leader in self._leader]
+    def methods(self) -> list[CellMethod]:
+        """How each cell is computed, as far as that is known; equal cells are computed once."""
+        return [self._histories[cell].method for cell in self._computed_as]
 
     @property
     def keys(self) -> list[set[str]]:
-        """Of each cell the keys that it may come to have."""
+        """The keys that each cell may have, one for each estimator."""
         return [set(keys) for keys in zip(*self._keys.values(), strict=True)]
 
-    def key(self, stretch: RunRange) -> str:
-        """Of the cell of a stretch."""
-        return self._keys[stretch.estimator][stretch.cell]
-
     def begin(self) -> list[RunRange]:
-        """The runs of the first round."""
-        return [self._stretch(cell) for cell in self._open]
+        """Return the runs of the first round."""
+        return [self._missing_runs(cell) for cell in self._open]
 
-    def next(self, gathered: Collector) -> list[RunRange]:
-        """The runs of the next round, given what was gathered in those before; none where there are enough."""
+    def next(self, collector: Collector) -> list[RunRange]:
+        """Return the runs of the next round, given the results of those before; none where there are enough."""
         if self._accuracy is None:
             return []
         for cell in self._open:
-            self._ways[cell] = self._after(cell, self._ways[cell], gathered, self._accuracy)
-        wanting = [(cell, self._ways[cell].choice) for cell in self._open]
-        self._open = [cell for cell, choice in wanting if choice.realizations > self._made.get(choice.key, 0)]
-        return [self._stretch(cell) for cell in self._open]
+            self._histories[cell] = self._judge(cell, self._histories[cell], collector, self._accuracy)
+        methods = [(cell, self._histories[cell].method) for cell in self._open]
+        self._open = [cell for cell, method in methods if method.realizations > self._requested.get(method.key, 0)]
+        return [self._missing_runs(cell) for cell in self._open]
 
-    def _stretch(self, cell: int) -> RunRange:
-        """What the choice of a cell needs beyond what was made."""
-        key, estimator, count, *_ = self._ways[cell].choice
-        first, self._made[key] = self._made.get(key, 0), count
-        return RunRange(cell, first, count, estimator)
+    def _missing_runs(self, cell: int) -> RunRange:
+        """Return the runs that the method of a cell needs beyond those that were requested."""
+        key, estimator, count, *_ = self._histories[cell].method
+        first, self._requested[key] = self._requested.get(key, 0), count
+        return RunRange(key, self._plan.cells[cell], estimator, first, count)
 
-    def _first_choice(self, cell: int) -> CellMethod:
+    def _first_method(self, cell: int) -> CellMethod:
         accuracy = self._accuracy
         estimator, *other = self._plan.cells[cell].scene.estimators
         if accuracy is None:
-            return self._choice(cell, estimator, self._plan.cells[cell].scene.batch.realizations)
-        if estimator == "expected" or (other and self._dearer(cell, self._few(accuracy))):
-            return self._choice(cell, "expected", 1)
-        return self._choice(cell, estimator, self._few(accuracy))
+            return self._method(cell, estimator, self._plan.cells[cell].scene.batch.realizations)
+        if estimator == "expected" or (other and self._is_dearer(cell, self._first_count(accuracy))):
+            return self._method(cell, "expected", 1)
+        return self._method(cell, estimator, self._first_count(accuracy))
 
-    def _choice(self, cell: int, estimator: str, count: int) -> CellMethod:
+    def _method(self, cell: int, estimator: str, count: int) -> CellMethod:
         return CellMethod(self._keys[estimator][cell], estimator, count)
 
-    def _few(self, accuracy: Accuracy) -> int:
-        """How many realisations to begin with."""
+    def _first_count(self, accuracy: Accuracy) -> int:
+        """Return how many realisations to begin with."""
         return min(max(self._plan.scene.batch.realizations, FIRST), accuracy.max_realizations)
 
-    def _dearer(self, cell: int, draws: float) -> bool:
-        """Whether so many draws cost more than the expected law."""
-        own = self._plan.cells[cell]
-        drawn, law = (seconds(own, estimator) for estimator in own.scene.estimators)
-        return draws * drawn > law
+    def _is_dearer(self, cell: int, realizations: float) -> bool:
+        """Return whether so many realisations cost more than the expected law."""
+        drawn, expected = (seconds(self._plan.cells[cell], name) for name in self._plan.cells[cell].scene.estimators)
+        return realizations * drawn > expected
 
-    def _after(self, cell: int, way: _Way, gathered: Collector, accuracy: Accuracy) -> _Way:
-        """The same choice with its error where that is small enough or nothing is better; else a better one."""
-        if way.choice.estimator != "expected":
-            return self._after_draws(cell, way, gathered, accuracy)
-        row = gathered.beside(way.choice.key)
-        law = way.choice._replace(error=row.numerical_error)
-        if accuracy.method == "expected" or (row.status == DONE and law.error <= accuracy.relative):
-            return way._replace(choice=law)
-        if way.draws is None:
-            draws = self._choice(cell, self._plan.cells[cell].scene.estimators[0], self._few(accuracy))
-            return way._replace(choice=draws, law=law)
-        return self._after_draws(cell, way._replace(choice=way.draws, law=law), gathered, accuracy)
+    def _judge(self, cell: int, history: CellHistory, collector: Collector, accuracy: Accuracy) -> CellHistory:
+        """Accept the cell with its error, extend it, or switch its method."""
+        if history.method.estimator != "expected":
+            return self._judge_draws(cell, history, collector, accuracy)
+        diagnostics = collector.diagnostics(history.method.key)
+        expected = history.method._replace(error=float(diagnostics["numerical_error"]))
+        met = diagnostics["status"] == DONE and expected.error <= accuracy.relative
+        if accuracy.method == "expected" or met:
+            return history._replace(method=expected)
+        if history.draws is None:
+            draws = self._method(cell, self._plan.cells[cell].scene.estimators[0], self._first_count(accuracy))
+            return history._replace(method=draws, expected=expected)
+        return self._judge_draws(cell, history._replace(method=history.draws, expected=expected), collector, accuracy)
 
-    def _after_draws(self, cell: int, way: _Way, gathered: Collector, accuracy: Accuracy) -> _Way:
-        draws = way.choice
-        tally = gathered.watched(draws.key, draws.realizations)
-        if tally is None:  # some failed
-            return way
+    def _judge_draws(self, cell: int, history: CellHistory, collector: Collector, accuracy: Accuracy) -> CellHistory:
+        draws = history.method
+        moments = collector.watched(draws.key, draws.realizations)
+        if moments is None:  # some failed
+            return history
         if cell not in self._rare:
-            self._rare[cell] = Rare(self._plan.cells[cell])
-        error = relative_error(tally, self._rare[cell].spread(draws.realizations))
-        choice = draws._replace(error=error, met=relative_error(tally)) if error < math.inf else draws
-        known = way._replace(choice=choice)
-        if enough(draws.realizations, error, accuracy):
-            return known
+            self._rare[cell] = RareAsperities(self._plan.cells[cell])
+        error = relative_error(moments, self._rare[cell].spread(draws.realizations))
+        known = draws._replace(error=error, drawn_error=relative_error(moments)) if error < math.inf else draws
+        accepted = history._replace(method=known)
+        if is_enough(draws.realizations, error, accuracy):
+            return accepted
         count = next_count(draws.realizations, error, accuracy)
-        at_its_end = count == draws.realizations
-        untried = way.law is None and "expected" in self._plan.cells[cell].scene.estimators
-        if untried and (at_its_end or self._dearer(cell, still_missing(draws.realizations, error, accuracy))):
-            return way._replace(choice=self._choice(cell, "expected", 1), draws=draws)
-        if not at_its_end:
-            return way._replace(choice=draws._replace(realizations=count))
-        return way._replace(choice=way.law) if way.law is not None and way.law.error < error else known
+        exhausted = count == draws.realizations
+        untried = history.expected is None and "expected" in self._plan.cells[cell].scene.estimators
+        if untried and (exhausted or self._is_dearer(cell, missing_count(draws.realizations, error, accuracy))):
+            return history._replace(method=self._method(cell, "expected", 1), draws=draws)
+        if not exhausted:
+            return history._replace(method=draws._replace(realizations=count))
+        if history.expected is not None and history.expected.error < error:
+            return history._replace(method=history.expected)
+        return accepted

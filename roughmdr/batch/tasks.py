@@ -1,4 +1,4 @@
-"""Tasks: which runs go together, and what a worker does with them."""
+"""Tasks: which runs are computed together, and how a worker computes them."""
 
 import math
 import time
@@ -7,153 +7,156 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.aggregate import LoadSeparation
 from roughmdr.batch.costs import seconds
+from roughmdr.batch.diagnostics import Row, merge_rows, row_of
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan, simulate_realization
-from roughmdr.batch.resume.keys import check_versions
-from roughmdr.batch.task_result import RunDiagnostics, TaskResult, table_of
+from roughmdr.batch.resume.keys import check_versions, versions
+from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.variables import ADHESION_CODES, FAILED
+from roughmdr.scene import Scene
+from roughmdr.variables import ADHESION_CODES, DONE, FAILED
 
-_AT_ONCE = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
-_LEAST, _USUAL, _MOST = 0.05, 0.1, 3.0  # what a task takes [s]
-_MANY = 4000  # of so many tasks each may take longer
-_EACH = 8  # tasks a worker at least, so that all finish together
-_BYTES = 2**24  # of curves in a task, if it has more than one
+_SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
+_MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # of a task
+_MANY = 4000  # of so many tasks each may take longer than usual
+_TASKS_PER_WORKER = 8  # at least, so that all workers finish together
+_MAX_BYTES = 2**24  # of curves in a task, if it has more than one
 BLOCK_SIZE = 256
-"""Curves in memory at a time, where tallies are kept."""
+"""Curves in memory at a time, where moments are kept."""
 
 
 class RunRange(NamedTuple):
-    """Realisations first ... last - 1 of a cell."""
-
-    cell: int
-    first: int
-    last: int
-    estimator: str
-
-
-class TaskPart(NamedTuple):
-    """A stretch of a task, with all that it takes to compute it."""
+    """Realisations first ... last - 1 of a cell, and all that it takes to compute them."""
 
     key: str
     cell: Cell
+    estimator: str
     first: int
     last: int
-    estimator: str
 
 
 class Task(NamedTuple):
-    """What a worker computes in one go."""
+    """Runs that a worker computes in one go."""
 
-    parts: tuple[TaskPart, ...]
+    ranges: tuple[RunRange, ...]
     variables: tuple[str, ...]
-    tallied: bool
-    """Whether tallies are wanted, not curves."""
+    keep_moments: bool
+    """Whether moments are kept, not curves."""
     versions: str
+
+    @property
+    def steps(self) -> int:
+        """Number of steps of the paths."""
+        return self.ranges[0].cell.steps
 
 
 def split_into_tasks(
-    plan: Plan, stretches: Sequence[RunRange], variables: Sequence[str], workers: int
-) -> list[list[RunRange]]:
-    """Stretches, in their order, cut so that each group takes about as long as a task should."""
-    each = [seconds(plan.cells[stretch.cell], stretch.estimator) for stretch in stretches]
-    in_all = sum(own * (last - first) for own, (_, first, last, _) in zip(each, stretches, strict=True))
-    if plan.chunk is None and in_all <= _AT_ONCE:
-        return [list(stretches)] if stretches else []
-    enough = max(_LEAST, min(in_all / (_EACH * workers), max(_USUAL, min(in_all / _MANY, _MOST))))
-    tallied = plan.scene.output.keep == "statistics"
-    size = 8 * len(variables) * plan.cells[0].path.separation.size
-    most = 2**62 if tallied else max(1, _BYTES // size)
-    tasks: list[list[RunRange]] = []
-    group: list[RunRange] = []
-    filled, runs = 0.0, 0
-    for own, (cell, begin, last, estimator) in zip(each, stretches, strict=True):
-        first = begin
-        while first < last:
-            fitting = math.ceil((enough - filled) / own) if plan.chunk is None else plan.chunk - runs
-            taken = min(max(fitting, 1), most - runs, last - first)
-            group.append(RunRange(cell, first, first + taken, estimator))
-            first, filled, runs = first + taken, filled + taken * own, runs + taken
-            if runs >= most or (filled >= enough if plan.chunk is None else runs >= plan.chunk):
-                tasks.append(group)
-                group, filled, runs = [], 0.0, 0
-    return [*tasks, group] if group else tasks
+    plan: Plan, ranges: Sequence[RunRange], variables: Sequence[str], workers: int, runs_per_task: int | None = None
+) -> list[Task]:
+    """Split runs, in their order, into tasks of about the same duration, or of ``runs_per_task`` runs each."""
+    if runs_per_task is None:
+        costs = [seconds(runs.cell, runs.estimator) for runs in ranges]
+        total = sum(cost * (runs.last - runs.first) for cost, runs in zip(costs, ranges, strict=True))
+        usual = max(_USUAL_SECONDS, min(total / _MANY, _MAX_SECONDS))
+        size = max(_MIN_SECONDS, min(total / (_TASKS_PER_WORKER * workers), usual))
+        size = size if total > _SINGLE_TASK else math.inf
+    else:
+        costs, size = [1.0] * len(ranges), float(runs_per_task)
+    curve_bytes = 8 * len(variables) * plan.steps
+    max_runs = 2**62 if plan.keeps_statistics or size == math.inf else max(1, _MAX_BYTES // curve_bytes)
+    groups: list[list[RunRange]] = [[]]
+    filled, count = 0.0, 0
+    for cost, runs in zip(costs, ranges, strict=True):
+        first = runs.first
+        while first < runs.last:
+            if filled >= size or count >= max_runs:
+                groups.append([])
+                filled, count = 0.0, 0
+            fitting = math.ceil(min((size - filled) / cost, runs.last - first))
+            added = min(max(fitting, 1), max_runs - count)
+            groups[-1].append(runs._replace(first=first, last=first + added))
+            first, filled, count = first + added, filled + added * cost, count + added
+    return [Task(tuple(group), tuple(variables), plan.keeps_statistics, versions()) for group in groups if group]
 
 
 def compute(task: Task) -> TaskResult:
-    """The results of a task; a run that cannot be computed is marked, and says why."""
+    """Compute a task; a run that cannot be computed is marked as failed, and its remark says why."""
     check_versions(task.versions)
-    keys = [part.key for part in task.parts]
-    steps = task.parts[0].cell.path.separation.size
-    rows: list[tuple[int, int, Moments, RunDiagnostics]] = []
-    for number, part in enumerate(task.parts):
-        found = _tallied(part, task.variables) if task.tallied else _curves(part, task.variables)
-        rows += [(number, first, tally, row) for first, tally, row in found]
-    return table_of(keys, task.variables, rows, steps)
+    rows: list[tuple[int, int, Moments, Row]] = []
+    for number, runs in enumerate(task.ranges):
+        results = _moments(runs, task.variables) if task.keep_moments else _curves(runs, task.variables)
+        rows += [(number, *result) for result in results]
+    return TaskResult.of([runs.key for runs in task.ranges], task.variables, rows, task.steps)
 
 
-def _curves(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, RunDiagnostics]]:
-    for realization in range(part.first, part.last):
-        values, row = _run(part, realization, names)
-        yield realization, Moments.of(values), row
+def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
+    for realization in range(runs.first, runs.last):
+        values, diagnostics = _run(runs, realization, names)
+        yield realization, Moments.of(values), diagnostics
 
 
-def _tallied(part: TaskPart, names: Sequence[str]) -> Iterator[tuple[int, Moments, RunDiagnostics]]:
-    """What the realisations come to; those that fail stand for themselves."""
-    tallies, rows = MomentTree(), dict[int, RunDiagnostics]()
-    for first in range(part.first, part.last, BLOCK_SIZE):
-        begin, kept = first, list[Floats]()
-        for realization in range(first, min(first + BLOCK_SIZE, part.last)):
-            values, row = _run(part, realization, names)
-            if row.status == FAILED:
-                yield realization, Moments.of(values), row
-                tallies.add_all(begin, np.array(kept).reshape(-1, *values.shape))
-                begin, kept = realization + 1, []
+def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
+    """Yield blocks of merged realisations: the first, moments and diagnostics; realisations that fail stand alone."""
+    tree, rows = MomentTree(), dict[int, Row]()
+    for first in range(runs.first, runs.last, BLOCK_SIZE):
+        begin, curves = first, list[Floats]()
+        for realization in range(first, min(first + BLOCK_SIZE, runs.last)):
+            values, rows[realization] = _run(runs, realization, names)
+            if rows[realization]["status"] == FAILED:
+                yield realization, Moments.of(values), rows[realization]
+                tree.add_curves(begin, np.array(curves).reshape(-1, *values.shape))
+                begin, curves = realization + 1, []
             else:
-                kept.append(values)
-                rows[realization] = row
-        if kept:
-            tallies.add_all(begin, np.array(kept))
-    for first, tally in tallies.held.items():
-        whole = rows[first]
-        for realization in range(first + 1, first + tally.size):
-            whole = whole.joined(rows[realization])
-        yield first, tally, whole
+                curves.append(values)
+        if curves:
+            tree.add_curves(begin, np.array(curves))
+    for first, moments in tree.blocks.items():
+        yield first, moments, merge_rows([rows[realization] for realization in range(first, first + moments.size)])
 
 
-def _run(part: TaskPart, realization: int, names: Sequence[str]) -> tuple[Floats, RunDiagnostics]:
-    """The variables [variable, step] of one realisation, and what else there is to say."""
-    (scene, path), started = part.cell, time.perf_counter()
+def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats, Row]:
+    """Return the variables [variable, step] and the diagnostics of one realisation."""
+    (scene, path), started = runs.cell, time.perf_counter()
     try:
-        found = simulate_realization(scene, path, realization, list(names), part.estimator)
+        result = simulate_realization(scene, path, realization, list(names), runs.estimator)
     except Exception as error:  # whatever it is, the other runs go on
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        values = np.full((len(names), path.separation.size), math.nan)
-        return values, RunDiagnostics(time.perf_counter() - started, status=FAILED, remark=what)
-    law = ADHESION_CODES.index(found.model if scene.work > 0.0 else "none")
-    values = np.array([found.variables[name] for name in names])
-    slope, extent, _ = found.extremes
-    row = RunDiagnostics(0.0, found.numerical_error, found.tabor, law, slope, extent, remark="\n".join(found.doubts))
-    return values, row._replace(run_time=time.perf_counter() - started)
+        values = np.full((len(names), runs.cell.steps), math.nan)
+        remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        return values, row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
+    values = np.array([result.variables[name] for name in names])
+    known = diagnostics_of(result, scene)
+    return values, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
+
+
+def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
+    """Return the diagnostics of a realisation that its result tells, by their names in ``RUN_DIAGNOSTICS``."""
+    return {
+        "numerical_error": result.numerical_error,
+        "edge_slope": result.extremes.slope,
+        "profile_extent": result.extremes.extent,
+        "tabor_number": result.tabor if result.tabor < math.inf else math.nan,
+        "adhesion_law": ADHESION_CODES.index(result.model if scene.work > 0.0 else "none"),
+        "remark": "\n".join(result.warnings),
+    }
 
 
 def failed(task: Task, remark: str) -> TaskResult:
-    """The shard of a task that could not be computed at all."""
-    steps = task.parts[0].cell.path.separation.size
-    nothing = Moments.of(np.full((len(task.variables), steps), math.nan))
-    row = RunDiagnostics(0.0, math.nan, status=FAILED, remark=remark)
+    """Return the result of a task that could not be computed at all."""
+    moments = Moments.of(np.full((len(task.variables), task.steps), math.nan))
+    diagnostics = row_of(run_time=0.0, status=FAILED, remark=remark)
     rows = [
-        (number, realization, nothing, row)
-        for number, part in enumerate(task.parts)
-        for realization in range(part.first, part.last)
+        (number, realization, moments, diagnostics)
+        for number, runs in enumerate(task.ranges)
+        for realization in range(runs.first, runs.last)
     ]
-    return table_of([part.key for part in task.parts], task.variables, rows, steps)
+    return TaskResult.of([runs.key for runs in task.ranges], task.variables, rows, task.steps)
 
 
 def first_error(remark: str) -> Exception:
-    """The error that a failed run tells of, to be raised again."""
+    """Return the error that the remark of a failed run tells, to be raised again."""
     import roughmdr.errors
 
     name, _, message = remark.partition(": ")

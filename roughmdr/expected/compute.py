@@ -68,7 +68,7 @@ def compute(
     extremes = _as_ensemble(source, source.nodes(rule)).validity_limits(_largest_radii(nodes, closest, count))
     model = problem.adhesion.model
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, validity.tabor, model)
-    return law._replace(doubts=_warnings(law.numerical_error, error_of_others))
+    return law._replace(warnings=_warnings(law.numerical_error, error_of_others))
 
 
 @np.errstate(all="ignore")  # its numbers are not used

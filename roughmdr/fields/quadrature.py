@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.gauss import gauss
+from roughmdr.numerics.gauss import gauss, last_coefficients
 
 SINH, COSH, EXP, SIN = range(4)
 """Substitutions for v: scale sinh u, scale cosh u, e^u, scale sin u."""

@@ -11,8 +11,8 @@ from roughmdr.result.layout import (
     cells_of,
     done_of,
     estimator_of,
-    held_variables,
     realizations_of,
+    stored_variables,
     swept_sizes,
 )
 from roughmdr.result.pull_off import PullOff, pull_off_force
@@ -45,8 +45,8 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
 
 def _memory(estimate: "Estimate") -> str:
     total, resident = format_bytes(estimate.memory), format_bytes(estimate.resident)
-    too_much = estimate.memory - estimate.resident > estimate.room
-    warning = f"; it can get only {format_bytes(estimate.room)} more" if too_much else ""
+    too_much = estimate.memory - estimate.resident > estimate.available_memory
+    warning = f"; it can get only {format_bytes(estimate.available_memory)} more" if too_much else ""
     return f"about {total}, of which {resident} for Python and its packages{warning}"
 
 
@@ -66,7 +66,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     realizations, steps = realizations_of(result), result.sizes["step"]
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(swept_sizes(result), realizations, steps)}"),
-        ("variables", ", ".join(held_variables(result))),
+        ("variables", ", ".join(stored_variables(result))),
         *_pull_off(result),
         *_contacts_at_ends(result),
         *_adhesion(result),
@@ -131,7 +131,7 @@ def _error(result: Labelled) -> str:
 
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the pull-off force of each cell, and how it is defined."""
-    if "force" not in held_variables(result):
+    if "force" not in stored_variables(result):
         return
     if "unloading" not in result.coordinates["branch"].values:
         yield "pull-off", "none: the path has no unloading"

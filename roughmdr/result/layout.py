@@ -1,4 +1,4 @@
-"""How a result is laid out: its variables, its cells, its realisations."""
+"""The layout of a result: its variables, its cells, its realisations."""
 
 from collections.abc import Iterable
 
@@ -11,8 +11,8 @@ from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE
 
 
-def held_variables(result: Labelled) -> list[str]:
-    """The variables whose curves, or their statistics, a result holds."""
+def stored_variables(result: Labelled) -> list[str]:
+    """Return the variables whose curves, or their statistics, a result holds."""
     return [
         name.removesuffix("_mean")
         for name, array in result.variables.items()
@@ -21,16 +21,16 @@ def held_variables(result: Labelled) -> list[str]:
 
 
 def estimator_of(result: Labelled) -> str:
-    """How the realisations were made; where not all alike, drawn."""
+    """Return how the realisations were made; "sampled" where not all alike."""
     if "accuracy_method" in result.variables:
         method = result.variables["accuracy_method"]
-        taken = {str(method.attrs["flag_meanings"]).split()[number] for number in np.unique(method.values)}
-        return taken.pop() if len(taken) == 1 else "sampled"
+        used = {str(method.attrs["flag_meanings"]).split()[number] for number in np.unique(method.values)}
+        return used.pop() if len(used) == 1 else "sampled"
     return str(parse_toml(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled"))
 
 
 def method_of(result: Labelled, cell: tuple[int, ...]) -> str:
-    """How a cell was computed, where that was for the run to find out; else empty."""
+    """Return how a cell was computed, where the run chose that; else an empty text."""
     if "accuracy_method" not in result.variables:
         return ""
     method = result.variables["accuracy_method"]
@@ -38,51 +38,51 @@ def method_of(result: Labelled, cell: tuple[int, ...]) -> str:
 
 
 def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:
-    """The variables ``asked`` for, or else all that the result holds; StoreError for one that it lacks."""
-    held = held_variables(result)
-    names = list(asked) or held
+    """Return the variables ``asked`` for, or else all that the result holds; StoreError for one that it lacks."""
+    available = stored_variables(result)
+    names = list(asked) or available
     for name in names:
-        if name not in held:
-            raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(held)}")
+        if name not in available:
+            raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(available)}")
     return names
 
 
 def done_of(result: Labelled) -> NDArray[np.bool_]:
-    """Which runs, or cells where the runs were not kept, were computed."""
+    """Return which runs, or cells where the runs were not kept, were computed."""
     return np.asarray(result.variables["status"].values == DONE)
 
 
 def realizations_of(result: Labelled) -> int:
-    """How many realisations a result is made from."""
+    """Return the number of realisations that a result is made from, at most of a cell."""
     if "realization_count" in result.variables:
         return int(result.variables["realization_count"].values.max())
     return result.sizes["realization"]
 
 
 def realizations_in_words(result: Labelled) -> str:
-    """How many realisations a picture is of, and what it shows of them."""
+    """Describe how many realisations a picture is of, and what it shows of them."""
     if estimator_of(result) == "expected":
         return "expected law"
-    most = least = realizations_of(result)
+    most = fewest = realizations_of(result)
     if "realization_count" in result.variables:
-        least = int(result.variables["realization_count"].values.min())
+        fewest = int(result.variables["realization_count"].values.min())
     if most == 1:
         return "one realisation"
-    return f"{most if most == least else f'{least} to {most}'} realisations, mean ± 2 standard errors"
+    return f"{most if most == fewest else f'{fewest} to {most}'} realisations, mean ± 2 standard errors"
 
 
 def swept_sizes(result: Labelled) -> dict[str, int]:
-    """The dimensions of a result's cells."""
+    """Return the swept dimensions of a result with their sizes."""
     return {name: result.sizes[name] for name in result.variables["status"].dims if name != "realization"}
 
 
 def cells_of(result: Labelled) -> list[tuple[int, ...]]:
-    """The indices of each cell, the last swept dimension fastest; one, empty, without a sweep."""
+    """Return the indices of each cell, the last swept dimension fastest; one, empty, without a sweep."""
     return list(np.ndindex(*swept_sizes(result).values()))
 
 
 def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
-    """The swept values of a cell."""
+    """Describe a cell by its swept values."""
     names = list(swept_sizes(result))
     parts = []
     for name, array in result.coordinates.items():

@@ -1,4 +1,4 @@
-"""What a result says in a few numbers."""
+"""The pull-off force of a result."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,39 +23,39 @@ class PullOff(NamedTuple):
     standard_error: Floats
     """NaN for a single realisation, which has none."""
     change: Floats
-    """By how much, on average, the force changes there from step to step of the path: how well the path resolves it."""
+    """Mean change of the force there from step to step of the path: how well the path resolves it."""
     tensile: NDArray[np.int64]
-    """How many of the curves are tensile at all."""
+    """Number of curves that are tensile at all."""
     curves: NDArray[np.int64]
-    """How many curves there are: the realisations that were computed, or one."""
+    """Number of curves: the realisations that were computed, or one."""
 
 
 def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
-    """The pull-off force of a result, over its swept dimensions.
+    """Return the pull-off force of a result, over its swept dimensions.
 
     StoreError where the result holds no force, or where its flat never retracts.
     """
     data = result if isinstance(result, Labelled) else Labelled.of(result)
-    held = data.coordinates | data.variables
-    retracting = np.flatnonzero(held["branch"].values == "unloading")
+    arrays = data.coordinates | data.variables
+    retracting = np.flatnonzero(arrays["branch"].values == "unloading")
     if not retracting.size:
         raise StoreError("the flat never retracts, so that nothing is pulled off: add path.unload = true")
-    if "force" in held:
-        whole = held["force"].values
-    elif "force_mean" in held:
-        whole = held["force_mean"].values[..., None, :]
+    if "force" in arrays:
+        curves = arrays["force"].values
+    elif "force_mean" in arrays:
+        curves = arrays["force_mean"].values[..., None, :]
     else:
         raise StoreError("the result holds no force: add it to output.variables")
-    force = whole[..., retracting]
-    where = np.argmin(force, axis=-1)[..., None]
-    lowest = np.take_along_axis(force, where, axis=-1)[..., 0]
-    done = held["status"].values == DONE
-    done = done if "force" in held else done[..., None]
+    force = curves[..., retracting]
+    step = np.argmin(force, axis=-1)[..., None]
+    lowest = np.take_along_axis(force, step, axis=-1)[..., 0]
+    done = arrays["status"].values == DONE
+    done = done if "force" in arrays else done[..., None]
     mean, error = mean_and_error(np.minimum(lowest, 0.0), done)
-    if "force" not in held:
-        at_lowest = np.take_along_axis(held["force_sem"].values[..., None, retracting], where, axis=-1)
+    if "force" not in arrays:
+        at_lowest = np.take_along_axis(arrays["force_sem"].values[..., None, retracting], step, axis=-1)
         error = np.where(mean < 0.0, at_lowest[..., 0, 0], np.where(np.isnan(mean), np.nan, 0.0))
-    steps = np.abs(np.diff(whole, axis=-1, append=whole[..., -1:], prepend=whole[..., :1]))
-    beside = np.maximum(*(np.take_along_axis(steps, retracting[where] + i, axis=-1)[..., 0] for i in (0, 1)))
-    change, _ = mean_and_error(beside, done)
+    steps = np.abs(np.diff(curves, axis=-1, append=curves[..., -1:], prepend=curves[..., :1]))
+    neighbours = np.maximum(*(np.take_along_axis(steps, retracting[step] + i, axis=-1)[..., 0] for i in (0, 1)))
+    change, _ = mean_and_error(neighbours, done)
     return PullOff(mean, error, change, (lowest < 0.0).sum(axis=-1), done.sum(axis=-1))

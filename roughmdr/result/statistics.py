@@ -1,55 +1,47 @@
-"""What a result holds of many realisations instead of their curves: mean, standard error, least and greatest."""
+"""Statistics of realisations: mean, standard error, minimum and maximum."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.moments import Moments, moments_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CURVE_VARIABLES
 
-_INFINITE_VARIANCE = "not computed where contacts let go: there k runs off to minus infinity and has no finite variance"
-
-
-def tally_of(values: Floats) -> Moments:
-    """Of the realisations along the first axis."""
-    tallies = MomentTree()
-    tallies.add_all(0, values)
-    whole = tallies.total(len(values))
-    if whole is None:
-        raise AssertionError("there is at least one realisation")
-    return whole
+_INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
 
 
 def summarise(
-    name: str, dims: tuple[str, ...], tally: Moments, sem: Floats, snaps: NDArray[np.bool_]
+    name: str, dims: tuple[str, ...], moments: Moments, sem: Floats, at_detachment: NDArray[np.bool_]
 ) -> dict[str, Array]:
-    """``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable over dims, from its tally and standard error.
+    """Return ``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable over dims, from its moments and standard error.
 
-    ``snaps`` [..., step] says where contacts may be at the point of letting go. NaN stands for a standard error that is
-    not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
+    ``at_detachment`` [..., step] tells where contacts may be at the point of detachment. NaN stands for a standard error that
+    is not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
     """
     variable = CURVE_VARIABLES[name]
-    remark = {}
-    if name == "stiffness" and snaps.any():
-        sem[snaps] = math.nan
-        remark = {"comment": _INFINITE_VARIANCE}
+    comment = {}
+    if name == "stiffness" and at_detachment.any():
+        sem[at_detachment] = math.nan
+        comment = {"comment": _INFINITE_VARIANCE}
 
-    def array(numbers: Floats, what: str, attrs: dict[str, str]) -> Array:
-        return Array(dims, numbers, {"units": variable.units, "long_name": f"{what} of {variable.long_name}", **attrs})
+    def array(numbers: Floats, statistic: str, attrs: dict[str, str]) -> Array:
+        return Array(
+            dims, numbers, {"units": variable.units, "long_name": f"{statistic} of {variable.long_name}", **attrs}
+        )
 
     return {
-        f"{name}_mean": array(tally.mean, "mean", {"ancillary_variables": f"{name}_sem"}),
-        f"{name}_sem": array(sem, "standard error of the mean", remark),
-        f"{name}_min": array(tally.least, "least", {}),
-        f"{name}_max": array(tally.greatest, "greatest", {}),
+        f"{name}_mean": array(moments.mean, "mean", {"ancillary_variables": f"{name}_sem"}),
+        f"{name}_sem": array(sem, "standard error of the mean", comment),
+        f"{name}_min": array(moments.minimum, "least", {}),
+        f"{name}_max": array(moments.maximum, "greatest", {}),
     }
 
 
 def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Mean and its standard error over the realisations that are ``done`` [..., realization], cell by cell.
+    """Return the mean and its standard error over the realisations that are ``done`` [..., realization], cell by cell.
 
     ``values`` lie over the same and, where there are more dimensions, over those too. NaN for the error of a single
     realisation, and for both where none is done.
@@ -57,12 +49,12 @@ def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Flo
     cells = done.shape[:-1]
     values = np.moveaxis(values, len(cells), 0)
     if done.all():
-        whole = tally_of(values)
-        return whole.mean, whole.standard_error
+        moments = moments_of(values)
+        return moments.mean, moments.standard_error
     mean, error = (np.full(values.shape[1:], math.nan) for _ in range(2))
     for cell in np.ndindex(cells):
         kept = values[(done[cell], *cell)]
         if len(kept):
-            whole = tally_of(kept)
-            mean[cell], error[cell] = whole.mean, whole.standard_error
+            moments = moments_of(kept)
+            mean[cell], error[cell] = moments.mean, moments.standard_error
     return mean, error

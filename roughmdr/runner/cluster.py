@@ -1,4 +1,4 @@
-"""Tasks on a dask cluster that is there already: some in flight, so that memory stays bounded; lost ones again."""
+"""Computes tasks on a running dask cluster: a few at a time, so that memory stays bounded; lost ones again."""
 
 import logging
 import socket
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
     from distributed import Client
 
-_WINDOW = 2  # tasks in flight for each thread of the cluster: one that runs, one that is ready
-_COUNTED = 1.0  # for so long [s] the number of threads is taken to be the same
-_ANSWER = 30.0  # how long [s] a scheduler may take to answer
+_WINDOW = 2  # tasks submitted for each thread of the cluster: one that runs, one that is ready
+_COUNT_INTERVAL = 1.0  # between counts of the threads [s]
+_TIMEOUT = 30.0  # for an answer of the scheduler [s]
 
 
 class Tls(NamedTuple):
-    """The files that an encrypted connection needs."""
+    """Files for an encrypted connection."""
 
     ca: str
     cert: str
@@ -34,46 +34,46 @@ class Tls(NamedTuple):
 
 
 class Cluster:
-    """The workers of a dask scheduler; whoever they are, and whether they come or go."""
+    """The workers of a dask scheduler, whose number may change."""
 
     def __init__(self, client: "Client") -> None:
         self._client = client
-        self._threads, self._counted = 0, -_COUNTED
+        self._threads, self._counted = 0, -_COUNT_INTERVAL
 
     @property
     def workers(self) -> int:
-        """How many threads there are, at least one."""
-        if time.monotonic() - self._counted > _COUNTED:
+        """Number of threads, at least one."""
+        if time.monotonic() - self._counted > _COUNT_INTERVAL:
             self._threads, self._counted = sum(self._client.nthreads().values()), time.monotonic()
         return max(1, self._threads)
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """As in ``Pool``; a task that takes its workers down with it has failed, any other is tried again."""
+        """As in ``Pool``; a task whose workers die one after another has failed, any other is tried again."""
         from distributed import as_completed
 
         if not self._client.nthreads():
             print("roughmdr: the scheduler has no workers yet; waiting for some", file=sys.stderr, flush=True)
-        name, flying = f"roughmdr-{uuid.uuid4().hex}", dict[Any, Task]()
+        name, submitted = f"roughmdr-{uuid.uuid4().hex}", dict[Any, Task]()
         numbered = enumerate(tasks)
         done = as_completed(loop=self._client.loop)
         try:
             while True:
-                while len(flying) < _WINDOW * self.workers and not stop.is_set():
+                while len(submitted) < _WINDOW * self.workers and not stop.is_set():
                     number, task = next(numbered, (0, None))
                     if task is None:
                         break
                     future = self._client.submit(compute, task, key=f"{name}-{number}", pure=False)
-                    flying[future.key] = task
+                    submitted[future.key] = task
                     done.add(future)
-                if not flying:
+                if not submitted:
                     return
                 future = next(done)
-                self._received(future, flying.pop(future.key), sink)
+                self._receive(future, submitted.pop(future.key), sink)
         except (OSError, TimeoutError) as error:
             raise Unfinished(f"the cluster is lost: {error or type(error).__name__}") from None
 
     @staticmethod
-    def _received(future: Any, task: Task, sink: Sink) -> None:
+    def _receive(future: Any, task: Task, sink: Sink) -> None:
         from distributed import KilledWorker
 
         if future.status == "cancelled":
@@ -89,8 +89,8 @@ class Cluster:
             sink(future.result())
 
 
-def _check(address: str, *, encrypted: bool, certified: bool) -> None:
-    """RoughmdrError where address and certificates do not go together."""
+def _check_security(address: str, *, encrypted: bool, certified: bool) -> None:
+    """RoughmdrError where address and certificates do not match."""
     secure = address.startswith("tls://")
     if encrypted and not secure:
         raise RoughmdrError(f"scheduler is {address!r}: with certificates it must be tls://HOST:PORT")
@@ -98,17 +98,17 @@ def _check(address: str, *, encrypted: bool, certified: bool) -> None:
         raise RoughmdrError(f"scheduler is {address!r}: it needs --tls-ca, --tls-cert and --tls-key")
 
 
-def _reach(address: str, context: "ssl.SSLContext | None") -> None:
-    """OSError where nobody listens, or where it is a stranger; a client would try on and on."""
-    place = urlsplit(address)
-    with socket.create_connection((place.hostname or "", place.port or 0), _ANSWER) as plain:
+def _check_listening(address: str, context: "ssl.SSLContext | None") -> None:
+    """OSError where nobody listens, or one without a valid certificate; a client would try on and on."""
+    url = urlsplit(address)
+    with socket.create_connection((url.hostname or "", url.port or 0), _TIMEOUT) as plain:
         if context is not None and address.startswith("tls://"):
-            context.wrap_socket(plain, server_hostname=place.hostname).close()
+            context.wrap_socket(plain, server_hostname=url.hostname).close()
 
 
 @contextmanager
 def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
-    """The cluster at an address, tcp://HOST:PORT or tls://HOST:PORT; RoughmdrError where there is none."""
+    """Connect to the cluster at tcp://HOST:PORT or tls://HOST:PORT; RoughmdrError where there is none."""
     try:
         from distributed import Client, Security
     except ImportError:
@@ -122,20 +122,20 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
                 tls_ca_file=tls.ca, tls_client_cert=tls.cert, tls_client_key=tls.key, require_encryption=True
             )
         context = security.get_connection_args("client").get("ssl_context")
-        _check(address, encrypted=security.require_encryption, certified=context is not None)
-        _reach(address, context)
-        client = Client(address, security=security, timeout=_ANSWER, set_as_default=False)
+        _check_security(address, encrypted=security.require_encryption, certified=context is not None)
+        _check_listening(address, context)
+        client = Client(address, security=security, timeout=_TIMEOUT, set_as_default=False)
     except RoughmdrError:
         raise
     except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
         raise RoughmdrError(f"scheduler is {address!r}: no dask scheduler answers there ({error})") from None
-    with _silent(), client:
+    with _quiet_logs(), client:
         yield Cluster(client)
 
 
 @contextmanager
-def _silent() -> Iterator[None]:
-    """What dask says of a lost connection, with a traceback, is said here in words."""
+def _quiet_logs() -> Iterator[None]:
+    """Silence dask, which reports a lost connection with a traceback: here an error says so in words."""
     logs = [logging.getLogger(f"distributed.{part}") for part in ("client", "batched", "core", "comm")]
     levels = [log.level for log in logs]
     for log in logs:

@@ -1,4 +1,4 @@
-"""Tasks on this machine: here, over dask's threads, or over processes."""
+"""Computes tasks on this machine: in the calling thread, over dask's threads, or over processes."""
 
 import multiprocessing
 import os
@@ -19,29 +19,29 @@ from roughmdr.batch.tasks import Task, compute, failed
 from roughmdr.errors import RoughmdrError
 
 Sink = Callable[[TaskResult], None]
-"""Takes a finished shard, in the thread that called."""
+"""Receives a finished task result, in the thread that called."""
 
-_AT_ONCE = 64  # tasks a worker that dask is given at a time: it ends a lot before it begins the next one
+_BATCH = 64  # tasks a worker that dask is given at a time: it finishes a batch before it begins the next one
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_STARTS = 3  # how often processes are started before that is given up
-_LOSSES = 1  # how often all tasks are tried again when a process died, before each is tried alone
+_MAX_STARTS = 3  # attempts to start processes
+_MAX_LOSSES = 1  # how often all tasks are tried again when a process died, before each is tried alone
 
 
 class Pool(Protocol):
-    """What computes tasks."""
+    """Computes tasks."""
 
     @property
     def workers(self) -> int:
-        """How many tasks run at a time."""
+        """Number of tasks that run at a time."""
         ...
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """Compute tasks; when ``stop`` is set those that are under way are finished, and no others begun."""
+        """Compute tasks; when ``stop`` is set, those under way are finished and no others begun."""
         ...
 
 
 class Serial:
-    """The thread that calls, for what is over before dask is loaded."""
+    """The calling thread, for a batch that is over before dask is loaded."""
 
     workers = 1
 
@@ -53,7 +53,7 @@ class Serial:
 
 
 class Threads:
-    """Threads of this process: what is compiled lets go of Python's lock."""
+    """Threads of this process: compiled code releases Python's lock."""
 
     def __init__(self, workers: int) -> None:
         self.workers = workers
@@ -62,23 +62,23 @@ class Threads:
         """As in ``Pool``."""
         from dask.threaded import get
 
-        # An own pool: those that dask keeps are dead in a process that was forked from this one.
+        # Its own pool: those that dask keeps are dead in a process that was forked from this one.
         pool = ThreadPoolExecutor(self.workers, "roughmdr")
         try:
-            for lot in _lots(tasks, _AT_ONCE * self.workers):
+            for batch in _batches(tasks, _BATCH * self.workers):
                 if stop.is_set():
                     return
-                functions = {number: partial(_unless, stop, task) for number, task in lot.items()}
-                _over_dask(get, functions, lambda _, shard: sink(shard), pool=pool)
+                functions = {number: partial(_compute_unless, stop, task) for number, task in batch.items()}
+                _over_dask(get, functions, lambda _, result: sink(result), pool=pool)
         except BaseException:
-            stop.set()  # threads that wait for their turn let it pass
+            stop.set()  # tasks that have not begun return at once
             raise
         finally:
             pool.shutdown(wait=not stop.is_set(), cancel_futures=True)
 
 
 class Processes:
-    """Processes of this machine, for what holds Python's lock; one that dies is replaced."""
+    """Processes of this machine, for code that holds Python's lock; one that dies is replaced."""
 
     def __init__(self, workers: int) -> None:
         self.workers = workers
@@ -87,19 +87,19 @@ class Processes:
         """As in ``Pool``; a task whose process dies again and again has failed."""
         context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang
         halt = context.Event()
-        crew = _Crew(self.workers, context, halt)
+        group = _ProcessGroup(self.workers, context, halt)
         try:
-            for waiting in _lots(tasks, _AT_ONCE * self.workers):
+            for waiting in _batches(tasks, _BATCH * self.workers):
                 losses = 0
                 while waiting and not stop.is_set():
                     first = next(iter(waiting))
-                    alone = losses > _LOSSES
+                    alone = losses > _MAX_LOSSES
                     try:
-                        _over_processes(crew.pool, [first] if alone else list(waiting), waiting, stop, halt, sink)
+                        _over_processes(group.pool, [first] if alone else list(waiting), waiting, stop, halt, sink)
                     except BrokenProcessPool:
                         losses += 1
-                        crew.end()
-                        crew = _Crew(self.workers, context, halt)
+                        group.end()
+                        group = _ProcessGroup(self.workers, context, halt)
                         if alone:
                             sink(failed(waiting.pop(first), "the process that computed it died"))
         except BaseException:
@@ -107,40 +107,40 @@ class Processes:
             raise
         finally:
             halt.set()
-            crew.end()
+            group.end()
 
 
-class _Crew:
-    """A pool of processes that end when it does, and when this process does, however that ends."""
+class _ProcessGroup:
+    """A pool of processes that end with it, and with this process, however that ends."""
 
     def __init__(self, workers: int, context: SpawnContext, halt: Event) -> None:
         if multiprocessing.current_process().daemon:
-            raise RoughmdrError("scheduler is 'processes': a daemonic process, as this one is, can start none")
-        for _ in range(_STARTS):
-            self.pool = ProcessPoolExecutor(workers, context, _begin, (halt,))
-            with _deaf():
-                # Each is started with the first thing for which no other is idle.
-                begun = [self.pool.submit(int) for _ in range(workers)]
+            raise RoughmdrError("scheduler is 'processes', which cannot run inside a daemonic process")
+        for _ in range(_MAX_STARTS):
+            self.pool = ProcessPoolExecutor(workers, context, _start_worker, (halt,))
+            with _signals_blocked():
+                # Each is started with the first call for which no other is idle.
+                started = [self.pool.submit(int) for _ in range(workers)]
             with suppress(BrokenProcessPool):
-                for future in begun:
+                for future in started:
                     future.result()
                 return
             self.end()
         raise RoughmdrError(
-            "scheduler is 'processes': none can be started; in a script, what is not only defined must stand under "
+            "scheduler is 'processes': no process can be started; a script must make its calls under "
             "if __name__ == '__main__':"
         )
 
     def end(self) -> None:
-        """End all processes at once, also those that have only just begun; SIGTERM they would not hear."""
+        """Kill all processes, also those that have only just begun; they ignore SIGTERM."""
         for process in list((self.pool._processes or {}).values()):
             process.kill()
         self.pool.shutdown(wait=False, cancel_futures=True)
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
-    """Signals wait; for processes that are started here, from their first moment on."""
+def _signals_blocked() -> Iterator[None]:
+    """Block signals, also in processes that are started meanwhile, from their first moment on."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
     try:
         yield
@@ -150,22 +150,22 @@ def _deaf() -> Iterator[None]:
 
 def _over_processes(
     pool: ProcessPoolExecutor,
-    chosen: Sequence[int],
+    selected: Sequence[int],
     waiting: dict[int, Task],
     stop: threading.Event,
     halt: Event,
     sink: Sink,
 ) -> None:
-    """Compute some of the tasks that are waiting; those that are done wait no longer."""
+    """Compute selected tasks of those that are waiting; those that are done are removed there."""
     from dask.multiprocessing import get
 
-    def done(number: int, shard: TaskResult) -> None:
+    def done(number: int, result: TaskResult) -> None:
         del waiting[number]
         if stop.is_set():
             halt.set()
-        sink(shard)
+        sink(result)
 
-    functions = {number: partial(_unless_halted, waiting[number]) for number in chosen}
+    functions = {number: partial(_compute_unless_halted, waiting[number]) for number in selected}
     _over_dask(get, functions, done, pool=pool, chunksize=1, optimize_graph=False)
 
 
@@ -175,38 +175,38 @@ def _over_dask(
     done: Callable[[int, TaskResult], None],
     **options: Any,
 ) -> None:
-    """Call functions over one of dask's schedulers; what each returns goes to ``done`` as soon as it is there."""
+    """Call functions over one of dask's schedulers; ``done`` receives each task result as soon as it is there."""
     # A task without arguments: dask would search them for other tasks, and import dask.array to tell them apart. It
     # begins with the last key.
-    keys = {f"shard-{len(functions) - place:09d}": number for place, number in enumerate(functions)}
+    keys = {f"task-{len(functions) - index:09d}": number for index, number in enumerate(functions)}
     graph = {key: (functions[number],) for key, number in keys.items()}
 
     def posttask(key: str, result: TaskResult | None, *_: object) -> None:
         if result is not None:
             done(keys[key], result)
 
-    # Handed over, since what dask.callbacks registers is the same for all threads.
+    # As an argument, since what dask.callbacks registers is shared by all threads.
     get(graph, list(graph), callbacks=[(None, None, None, posttask, None)], **options)
 
 
-def _lots(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
-    """Tasks with their numbers, so many at a time."""
+def _batches(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
+    """Yield tasks by their numbers, ``size`` at a time."""
     numbered = enumerate(tasks)
-    while lot := dict(islice(numbered, size)):
-        yield lot
+    while batch := dict(islice(numbered, size)):
+        yield batch
 
 
-def _unless(stop: threading.Event, task: Task) -> TaskResult | None:
-    return None if stop.is_set() else compute(task)
+def _compute_unless(stop: threading.Event | Event | None, task: Task) -> TaskResult | None:
+    return None if stop is not None and stop.is_set() else compute(task)
 
 
 _halt: Event | None = None
-"""Of the batch that a worker process works for."""
+"""Set when the batch that a worker process works for is to stop."""
 
 
-def _begin(halt: Event) -> None:
-    """Make a worker process one that leaves signals to its parent, and ends when that does."""
-    global _halt  # noqa: PLW0603 - what a process is given when it begins has no other place
+def _start_worker(halt: Event) -> None:
+    """Make a worker process leave signals to its parent, and end when that does."""
+    global _halt  # noqa: PLW0603 - the arguments of an initializer have no other place
     _halt = halt
     for number in _SIGNALS:
         signal.signal(number, signal.SIG_IGN)
@@ -220,5 +220,5 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _unless_halted(task: Task) -> TaskResult | None:
-    return None if _halt is not None and _halt.is_set() else compute(task)
+def _compute_unless_halted(task: Task) -> TaskResult | None:
+    return _compute_unless(_halt, task)

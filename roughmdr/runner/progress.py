@@ -1,73 +1,66 @@
-"""How far a batch is: a bar on a terminal, a line now and then elsewhere."""
+"""Progress of a batch: a bar on a terminal, a line now and then elsewhere."""
 
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import Protocol
 
 _SECONDS_BETWEEN_LINES = 10.0
 
 
-class Progress(Protocol):
-    """A display of runs."""
+class Progress:
+    """Counts runs, and shows nothing."""
+
+    def __init__(self, title: str) -> None:
+        self.title, self.total, self.done, self.reused = title, 0, 0, 0
 
     def expect(self, count: int) -> None:
-        """There are so many more runs to do."""
+        """Add runs that are still to be done."""
+        self.total += count
+        self.update()
 
     def advance(self, count: int) -> None:
-        """So many more are done."""
+        """Add runs that are done."""
+        self.done += count
+        self.update()
 
-    def use_again(self, count: int) -> None:
-        """So many were there already."""
+    def reuse(self, count: int) -> None:
+        """Add runs that are reused."""
+        self.reused += count
+        self.update()
+
+    def update(self) -> None:
+        """Show the counts, if it is time for it."""
 
 
 @contextmanager
 def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
-    """A display on the standard error stream."""
+    """Open a display on the standard error stream."""
     if quiet or sys.stderr is None:
-        yield _Nothing()
+        yield Progress(title)
     elif sys.stderr.isatty():
         with _bar(title) as display:
             yield display
     else:
         lines = _Lines(title)
         yield lines
-        lines.say()
+        lines.print()
 
 
-class _Nothing:
-    def expect(self, count: int) -> None:
-        pass
-
-    def advance(self, count: int) -> None:
-        pass
-
-    def use_again(self, count: int) -> None:
-        pass
-
-
-class _Lines:
+class _Lines(Progress):
     def __init__(self, title: str) -> None:
-        self._title, self._said = title, time.monotonic()
-        self._total = self._done = self._again = 0
+        super().__init__(title)
+        self._printed = time.monotonic()
 
-    def expect(self, count: int) -> None:
-        self._total += count
+    def update(self) -> None:
+        if self.done and time.monotonic() - self._printed >= _SECONDS_BETWEEN_LINES:
+            self.print()
 
-    def advance(self, count: int) -> None:
-        self._done += count
-        if time.monotonic() - self._said >= _SECONDS_BETWEEN_LINES:
-            self.say()
-
-    def use_again(self, count: int) -> None:
-        self._again += count
-
-    def say(self) -> None:
-        more = f", {self._again} used again" if self._again else ""
-        self._said = time.monotonic()
-        with suppress(OSError):  # nobody listens
-            print(f"{self._title}: {self._done} of {self._total} runs{more}", file=sys.stderr, flush=True)
+    def print(self) -> None:
+        more = f", {self.reused} used again" if self.reused else ""
+        self._printed = time.monotonic()
+        with suppress(OSError):  # nobody reads it
+            print(f"{self.title}: {self.done} of {self.total} runs{more}", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -78,18 +71,11 @@ def _bar(title: str) -> Iterator[Progress]:
 
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Bar(*columns, console=Console(stderr=True)) as bar:
-        task, again = bar.add_task(title, total=0), 0
+        task = bar.add_task(title, total=0)
 
-        class Display:
-            def expect(self, count: int) -> None:
-                bar.update(task, total=(bar.tasks[task].total or 0) + count)
+        class Display(Progress):
+            def update(self) -> None:
+                more = f" ({self.reused} used again)" if self.reused else ""
+                bar.update(task, total=self.total, completed=self.done, description=f"{title}{more}")
 
-            def advance(self, count: int) -> None:
-                bar.advance(task, count)
-
-            def use_again(self, count: int) -> None:
-                nonlocal again
-                again += count
-                bar.update(task, description=f"{title} ({again} used again)")
-
-        yield Display()
+        yield Display(title)

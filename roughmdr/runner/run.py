@@ -1,9 +1,7 @@
-"""From a plan to a result: round after round of tasks, kept as they finish, put together at the end."""
+"""Runs a plan: round after round of tasks, stored as they finish, assembled at the end."""
 
 import threading
 import warnings
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +9,19 @@ import numpy as np
 
 from roughmdr.batch.collect import Collector
 from roughmdr.batch.compile import prepare_all
+from roughmdr.batch.costs import result_bytes
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
-from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.writer import CheckpointWriter, checkpointing
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.sizes import held_bytes
 from roughmdr.batch.task_result import TaskResult
-from roughmdr.batch.tasks import RunRange, Task, TaskPart, first_error, split_into_tasks
+from roughmdr.batch.tasks import RunRange, first_error, split_into_tasks
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
 from roughmdr.result.assemble import assemble
-from roughmdr.runner.cluster import Cluster, Tls, connected
-from roughmdr.runner.local import Pool, Processes, Serial, Threads
+from roughmdr.runner.backend import Backend
+from roughmdr.runner.cluster import Cluster
+from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
@@ -36,9 +34,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from distributed import Client
 
-_LOCAL: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
 _FORCE = "force"
-_CLUSTERS = ("tcp://", "tls://")
 
 
 def run(
@@ -52,19 +48,53 @@ def run(
 ) -> "xr.Dataset":
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
 
-    scene is the path of a TOML file, a dictionary of the same form, or a Scene. ``scheduler`` is "threads" or
-    "processes", of which there are ``workers``, or a dask cluster: its address, or a Client of it. With ``resume``,
-    what ``out`` holds or an earlier run kept beside it is used again; else it is replaced. The result lies over the
-    swept keys, realization and step and does not depend on workers or scheduler, to the last bit. ``quiet`` leaves out
-    the progress display.
+    Parameters
+    ----------
+    scene : path, dict or Scene
+        A TOML file, a dictionary of the same form, or a Scene that was read.
+    out : path, optional
+        The result file. While the batch runs, what is finished is kept in ``OUT.parts``.
+    workers : int
+        Number of threads or processes.
+    scheduler : str or distributed.Client
+        "threads", "processes", or a dask cluster: its address, ``tcp://HOST:PORT`` or ``tls://HOST:PORT``, or a Client.
+    resume : bool
+        Whether what ``out`` holds, or an earlier run kept beside it, is reused; else it is replaced.
+    quiet : bool
+        Leave out the progress display.
 
-    SceneError, OutOfRange or StoreError say what is wrong before anything is written. Runs that cannot be computed are
-    marked, and a FailedRuns warning tells of them; where none can, the error of the first is raised. Unfinished and
-    KeyboardInterrupt leave what is done beside ``out``.
+    Returns
+    -------
+    xarray.Dataset
+        Over the swept keys, ``realization`` and ``step``; the same to the last bit for any workers and scheduler.
+
+    Raises
+    ------
+    SceneError, OutOfRange, StoreError
+        Before anything is written, where the scene or ``out`` is wrong; where no run can be computed, the error of the
+        first. Single runs that cannot be computed are marked, and a FailedRuns warning tells of them.
+    Unfinished, KeyboardInterrupt
+        The batch could not go on; what is done is kept beside ``out``.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> result = rm.run({
+    ...     "title": "Sixteen surfaces", "seed": 1,
+    ...     "material": {"effective_modulus": "1 GPa"},
+    ...     "asperities": {
+    ...         "source": "random", "shape": "paraboloid", "count": 50, "patch": "1 mm", "radius": "50 um",
+    ...         "height": {"distribution": "normal", "std": "1 um"},
+    ...     },
+    ...     "path": {"separation": ["3 um", "1 um", "0 um"]},
+    ...     "batch": {"realizations": 16},
+    ... })
+    >>> dict(result.force.sizes)
+    {'realization': 16, 'step': 3}
     """
     target = None if out is None else Path(out)
     plan = make_plan(read(scene))
-    result = execute(plan, target, workers=workers, scheduler=scheduler, resume=resume, quiet=quiet)
+    result = execute(plan, target, Backend(scheduler, workers), resume=resume, quiet=quiet)
     for text in result.attrs.get("warnings", "").splitlines():
         warnings.warn(text, LimitWarning, stacklevel=2)
     status = result.variables["status"].values
@@ -76,79 +106,53 @@ def run(
 def execute(
     plan: Plan,
     target: Path | None,
+    backend: Backend = Backend(),
     *,
-    workers: int = 2,
-    scheduler: "str | Client" = "threads",
     resume: bool = True,
     quiet: bool = True,
     command: str = "roughmdr.run",
-    tls: Tls | None = None,
 ) -> Labelled:
-    """Do what a plan says; ``command`` goes into the file's history. StoreError, before computing, for a bad target."""
-    _check(workers, scheduler)
+    """Carry out a plan; ``command`` goes into the file's history.
+
+    StoreError, before computing, for a bad target or too little memory.
+    """
+    backend.check()
     if target is not None:
         check_writable(target, plan.scene.inputs)
         target = destination(target)
     rounds = Rounds(plan)
-    with checkpointing(target) as keeper:
-        held = ReusableRows(rounds.keys, computed(plan), tallied=plan.scene.output.keep == "statistics")
+    with checkpointing(target) as writer:
+        reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
-        if target is not None and keeper is not None and resume:
-            old = None if keeper.may_replace(plan.scene.toml) else find_previous(target)
+        if writer is not None and resume:
+            old = None if writer.may_replace(plan.scene.toml) else find_previous(writer.target)
             if old is not None and is_finished(old, plan, rounds.keys):
-                if keeper.parts is not None and keeper.parts.scene in ("", old.attrs["scene"]):
-                    keeper.parts.remove()  # the run that wrote the result was killed before it could
+                if writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
+                    writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
-            reuse(target, old, keeper.parts, plan, held)
-        _check_memory(plan, rounds)
+            reuse(writer.target, old, writer.store, plan, reusable)
+        runs = sum(method.realizations for method in rounds.methods)  # of the first round
+        remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
+        check_memory(result_bytes(plan, runs), "the run", remedy)
         try:
-            with _pool(scheduler, workers, tls) as pool:
-                if keeper is not None and not resume:
-                    keeper.clear()
-                return _Batch(plan, rounds, keeper, held, pool, quiet=quiet).run(command, old)
+            with backend.pool() as pool:
+                if writer is not None and not resume:
+                    writer.clear()
+                batch = _Batch(plan, rounds, writer, reusable, pool, backend.runs_per_task)
+                return batch.run(old, command, quiet=quiet)
         except (StoreError, MemoryError) as error:
-            what = str(error) or f"out of memory, with {describe_available_memory()}"
-            if keeper is not None and keeper.said:
-                raise Unfinished(f"{what}; {keeper.said}") from None
+            message = str(error) or f"out of memory, with {describe_available_memory()}"
+            if writer is not None and writer.saved_message:
+                raise Unfinished(f"{message}; {writer.saved_message}") from None
             if isinstance(error, MemoryError):
-                raise Unfinished(what) from None
+                raise Unfinished(message) from None
             raise
 
 
-def _check(workers: int, scheduler: "str | Client") -> None:
-    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
-        raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
-    if isinstance(scheduler, str):
-        known = scheduler in _LOCAL or scheduler.startswith(_CLUSTERS)
-    else:
-        known = type(scheduler).__module__.startswith("distributed.")  # which is not imported to tell
-    if not known:
-        raise RoughmdrError(
-            f"scheduler is {scheduler!r}; it must be 'threads', 'processes', or the address of a dask cluster, "
-            "tcp://HOST:PORT or tls://HOST:PORT, or in Python a Client of one"
-        )
-
-
-def _pool(scheduler: "str | Client", workers: int, tls: Tls | None) -> AbstractContextManager[Pool]:
-    if not isinstance(scheduler, str):
-        return nullcontext(Cluster(scheduler))
-    if scheduler in _LOCAL:
-        return nullcontext(_LOCAL[scheduler](workers))
-    return connected(scheduler, tls)
-
-
-def computed(plan: Plan) -> tuple[str, ...]:
-    """The variables that are computed: those asked for and, where an error is asked for, the force."""
+def computed_variables(plan: Plan) -> tuple[str, ...]:
+    """Return the variables that are computed: those asked for and, where an error is asked for, the force."""
     asked = plan.scene.output.variables
     return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
-
-
-def _check_memory(plan: Plan, rounds: Rounds) -> None:
-    """StoreError, before computing, where this process may not have the memory that the first round takes at least."""
-    runs = sum(choice.realizations for choice in rounds.choices)
-    check_memory(
-        held_bytes(plan, runs), "the run", "fewer steps or realizations, or output.keep = 'statistics', take less"
-    )
 
 
 class _Batch:
@@ -158,89 +162,83 @@ class _Batch:
         self,
         plan: Plan,
         rounds: Rounds,
-        keeper: CheckpointWriter | None,
-        held: ReusableRows,
+        writer: CheckpointWriter | None,
+        reusable: ReusableRows,
         pool: Pool,
-        *,
-        quiet: bool,
+        runs_per_task: int | None,
     ) -> None:
-        self._plan, self._rounds, self._keeper, self._held, self._pool = plan, rounds, keeper, held, pool
-        self._quiet, self._variables = quiet, computed(plan)
-        self._tallied = plan.scene.output.keep == "statistics"
+        self._plan, self._rounds, self._writer, self._reusable, self._pool = plan, rounds, writer, reusable, pool
+        self._runs_per_task, self._variables = runs_per_task, computed_variables(plan)
         watched = None if plan.scene.accuracy is None else _FORCE
-        steps = plan.cells[0].path.separation.size
-        self._gathered = Collector(self._variables, steps, tallied=self._tallied, watched=watched)
+        self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
 
-    def run(self, command: str, old: Labelled | None) -> Labelled:
-        """All rounds; the result, whose history goes on from that of the ``old`` one that it may take the place of."""
-        with interruptible(self._begun, self._kept) as stop:
-            with progress(self._plan.scene.title, quiet=self._quiet) as display:
-                stretches = self._rounds.begin()
-                while stretches:
-                    self._round(stretches, display, stop)
-                    stretches = self._rounds.next(self._gathered)
-            return self._finished(command, old)
+    def run(self, old: Labelled | None, command: str, *, quiet: bool) -> Labelled:
+        """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
+        with interruptible(self._is_kept, self._saved_message) as stop:
+            with progress(self._plan.scene.title, quiet=quiet) as display:
+                ranges = self._rounds.begin()
+                while ranges:
+                    self._round(ranges, display, stop)
+                    ranges = self._rounds.next(self._collector)
+            return self._finish(old, command)
 
-    def _finished(self, command: str, old: Labelled | None) -> Labelled:
-        """The result, put together and written."""
-        choices = self._rounds.choices
-        nothing = self._gathered.nothing  # asked first: what was gathered is given away then
-        found = self._gathered.found([(choice.key, choice.realizations) for choice in choices])
-        failed = found.beside["status"] == FAILED
-        if nothing:
+    def _finish(self, old: Labelled | None, command: str) -> Labelled:
+        """Assemble the result and write it."""
+        methods, none_done = self._rounds.methods, self._collector.none_done
+        cells = [(method.key, method.realizations) for method in methods]
+        collected = self._collector.collected(cells)
+        failed = collected.diagnostics["status"] == FAILED
+        if none_done:
             cell = int(np.argwhere(failed)[0, 0])
-            error = first_error(str(found.beside["remark"][failed][0]))
+            error = first_error(str(collected.diagnostics["remark"][failed][0]))
             name = self._plan.name_of(cell, 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
-        result = assemble(self._plan, choices, found, self._variables, command)
+        result = assemble(self._plan, methods, collected, self._variables, command)
         if old is not None:
             result.attrs["history"] += f"\n{old.attrs['history']}"
-        if self._keeper is not None:
+        if self._writer is not None:
             if old is not None:
-                check_no_less(self._keeper.target, old, result, self._rounds.keys)
-            spare = self._held.spare([(choice.key, choice.realizations) for choice in choices])
-            self._keeper.finish(result, whole=not (failed.any() or spare))
+                check_no_less(self._writer.target, old, result, self._rounds.keys)
+            complete = not (failed.any() or self._reusable.has_unused(cells))
+            self._writer.finish(result, complete=complete)
         return result
 
-    def _kept(self) -> str:
-        return (self._keeper and self._keeper.said) or "nothing was written"
+    def _saved_message(self) -> str:
+        return (self._writer and self._writer.saved_message) or "nothing was written"
 
-    def _begun(self) -> bool:
-        return self._keeper is not None and self._keeper.begun
+    def _is_kept(self) -> bool:
+        """Return whether what is finished is kept."""
+        return self._writer is not None and self._writer.begun
 
-    def _round(self, stretches: list[RunRange], display: Progress, stop: threading.Event) -> None:
-        """Take what is at hand, compute what is missing."""
-        picks: list[tuple[int, int]] = []
+    def _round(self, ranges: list[RunRange], display: Progress, stop: threading.Event) -> None:
+        """Reuse what there is, compute what is missing."""
+        selected: list[tuple[int, int]] = []
         missing = [
-            stretch._replace(first=first, last=last)
-            for stretch in stretches
-            for first, last in self._held.take(self._rounds.key(stretch), stretch.first, stretch.last, picks)
+            runs._replace(first=first, last=last)
+            for runs in ranges
+            for first, last in self._reusable.select(runs.key, runs.first, runs.last, selected)
         ]
-        for shard in self._held.shards(picks):
-            self._gathered.add(shard)
-            display.use_again(int(shard.size.sum()))
-        tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers)
+        for result in self._reusable.read(selected):
+            self._collector.add(result)
+            display.reuse(result.realizations)
+        tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
         if not tasks:
             return
-        display.expect(sum(last - first for _, first, last, _ in missing))
+        display.expect(sum(runs.last - runs.first for runs in missing))
         if not isinstance(self._pool, Cluster):
             prepare_all(self._plan, missing)
-        if len(tasks) > 1 and self._keeper is not None:
-            self._keeper.begin(self._plan.scene.toml)
+        if len(tasks) > 1 and self._writer is not None:
+            self._writer.begin(self._plan.scene.toml)
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
-        def sink(shard: TaskResult) -> None:
-            if self._keeper is not None:
-                self._keeper.put(shard)
-            self._gathered.add(shard)
-            display.advance(int(shard.size.sum()))
+        def sink(result: TaskResult) -> None:
+            if self._writer is not None:
+                self._writer.put(result)
+            self._collector.add(result)
+            display.advance(result.realizations)
 
-        pool.compute(map(self._task, tasks), stop, sink)
+        pool.compute(tasks, stop, sink)
         if stop.is_set():
-            if self._keeper is not None:
-                self._keeper.flush()
-            raise Interrupted(f"interrupted; {self._kept()}")
-
-    def _task(self, group: list[RunRange]) -> Task:
-        parts = (TaskPart(self._rounds.key(stretch), self._plan.cells[stretch.cell], *stretch[1:]) for stretch in group)
-        return Task(tuple(parts), self._variables, self._tallied, versions())
+            if self._writer is not None:
+                self._writer.flush()
+            raise Interrupted(f"interrupted; {self._saved_message()}")

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: once, and what is under way is finished and kept; twice, and it ends at once."""
+"""Ctrl-C and SIGTERM: the first finishes the tasks under way and keeps them, the second ends the batch at once."""
 
 import os
 import signal
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-_SAID = b"\nroughmdr: finishing what is under way; once more: stop at once\n"
+_FINISHING = b"\nroughmdr: finishing what is under way; once more: stop at once\n"
 
 
 class Interrupted(KeyboardInterrupt):
@@ -15,19 +15,16 @@ class Interrupted(KeyboardInterrupt):
 
 
 @contextmanager
-def interruptible(begun: Callable[[], bool], kept: Callable[[], str]) -> Iterator[threading.Event]:
-    """An event that is set when the batch is to stop; ``kept`` says what is safe then.
-
-    Unless what is finished is kept, it ends at once.
-    """
+def interruptible(is_kept: Callable[[], bool], saved_message: Callable[[], str]) -> Iterator[threading.Event]:
+    """Make an event that is set when the batch is to stop; it ends at once unless what is finished ``is_kept``."""
     stop = threading.Event()
 
     def handle(number: int, frame: FrameType | None) -> None:
-        if stop.is_set() or not begun():
-            raise Interrupted(f"interrupted; {kept()}")
+        if stop.is_set() or not is_kept():
+            raise Interrupted(f"interrupted; {saved_message()}")
         stop.set()
         with suppress(OSError):
-            os.write(2, _SAID)
+            os.write(2, _FINISHING)
 
     if threading.current_thread() is not threading.main_thread():
         yield stop

@@ -11,17 +11,13 @@ from numpy.typing import NDArray
 
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN
+from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN, RUN_DIAGNOSTICS
 
 _REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _OPTIONAL_TEXTS = ("accuracy", "warnings", "versions", "checksum")
 _REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
-_RUN_KINDS = {
-    **dict.fromkeys(("run_time", "numerical_error", "tabor_number", "edge_slope", "profile_extent"), "f"),
-    **dict.fromkeys(("status", "adhesion_law"), "i"),
-}
 _CELL_KINDS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i"}
-"""NumPy's kind of each variable over runs and over cells: f floating-point, i integer."""
+"""NumPy's kind of each variable over cells: f floating-point, i integer."""
 _STATISTICS = ("mean", "sem", "min", "max")
 _BRANCHES = ("loading", "unloading")
 
@@ -76,10 +72,14 @@ def _dimensions(data: Labelled) -> Iterator[str]:
 
 def _arrays(data: Labelled) -> Iterator[str]:
     runs, cells = data.variables["status"].dims, _cells(data)
-    for declared, dims in ((_RUN_KINDS, runs), (_CELL_KINDS, cells)):
+    run_kinds = {name: _KIND_OF[declared.dtype] for name, declared in RUN_DIAGNOSTICS.items()}
+    for declared, dims in ((run_kinds, runs), (_CELL_KINDS, cells)):
         for name in declared.keys() & data.variables.keys():
             yield from _mismatches(name, data.variables[name], dims, declared[name])
-    for name, dims in (("cell_key", cells), ("remark", runs), ("branch", ("step",))):
+    texts = {"cell_key": cells, "branch": ("step",)} | {
+        name: runs for name, kind in run_kinds.items() if kind == "text"
+    }
+    for name, dims in texts.items():
         if name in data.coordinates:
             yield from _mismatches(name, data.coordinates[name], dims, "text")
     separation = data.coordinates["separation"]
@@ -155,6 +155,7 @@ def _mismatches(name: str, array: Array, dims: tuple[str, ...], kind: str) -> It
         yield f"{name} is of type {array.values.dtype}; it must be {_KIND_NAMES[kind]}"
 
 
+_KIND_OF = {float: "f", int: "i", str: "text"}
 _KIND_NAMES = {"text": "texts", "f": "floating-point numbers", "i": "whole numbers"}
 
 

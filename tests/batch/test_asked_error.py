@@ -26,6 +26,7 @@ from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
 from roughmdr.result.pull_off import pull_off_force
 from roughmdr.runner import local
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.scene.sections import Accuracy
@@ -53,8 +54,10 @@ def kept(keep: str, *variables: str) -> dict[str, Any]:
     return {"keep": keep, "variables": list(variables) or ["force"]}
 
 
-def go(table: dict[str, Any], out: Path | None = None, chunk: int | None = None, workers: int = 2) -> xr.Dataset:
-    return execute(make_plan(read(table), chunk), out, workers=workers).to_xarray()
+def go(
+    table: dict[str, Any], out: Path | None = None, runs_per_task: int | None = None, workers: int = 2
+) -> xr.Dataset:
+    return execute(make_plan(read(table)), out, Backend(workers=workers, runs_per_task=runs_per_task)).to_xarray()
 
 
 def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:
@@ -130,7 +133,7 @@ def made(table: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> tuple[xr.Dat
     """What is found, and the runs that were made for it."""
     runs, run = list[tuple[str, int]](), tasks._run
 
-    def counting(part: tasks.TaskPart, realization: int, names: Any) -> Any:
+    def counting(part: tasks.RunRange, realization: int, names: Any) -> Any:
         runs.append((part.estimator, realization))
         return run(part, realization, names)
 
@@ -222,7 +225,7 @@ def test_more_parameters_make_the_expected_law_dearer() -> None:
 def test_the_expected_law_alone_says_where_it_is_not_right_enough() -> None:
     found = go(asking(1e-16, "expected"))
     assert "was not reached in 1 of 1 cells" in found.attrs["warnings"]
-    assert "the expected law is not right enough" in found.attrs["warnings"]
+    assert "the expected law is not accurate enough" in found.attrs["warnings"]
     assert "max_realizations" not in found.attrs["warnings"]
 
 
@@ -306,16 +309,16 @@ def test_the_force_need_not_be_asked_for(keep: str) -> None:
             xr.testing.assert_identical(without[name], with_force[name])
 
 
-def chunked(table: dict[str, Any], chunk: int, workers: int) -> xr.Dataset:
-    return go(table, chunk=chunk, workers=workers)
+def split(table: dict[str, Any], runs_per_task: int, workers: int) -> xr.Dataset:
+    return go(table, runs_per_task=runs_per_task, workers=workers)
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_the_outcome_depends_on_no_workers_and_no_chunks(keep: str) -> None:
+def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
     table = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep))
-    one = chunked(table, 1000, 1)
-    for chunk, workers in ((1, 2), (7, 3), (16, 1)):
-        assert_same(chunked(table, chunk, workers), one)
+    one = split(table, 1000, 1)
+    for runs_per_task, workers in ((1, 2), (7, 3), (16, 1)):
+        assert_same(split(table, runs_per_task, workers), one)
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
@@ -325,16 +328,16 @@ def test_the_outcome_depends_on_no_interruption(
 ) -> None:
     table, out = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), tmp_path / "out.nc"
     compute, done = tasks.compute, 0
-    interrupted(table, out, after, monkeypatch, chunk=8)
+    interrupted(table, out, after, monkeypatch, runs_per_task=8)
 
     def counting(task: tasks.Task) -> task_result.TaskResult:
         nonlocal done
-        done += sum(part.last - part.first for part in task.parts)
+        done += sum(runs.last - runs.first for runs in task.ranges)
         return compute(task)
 
     with monkeypatch.context() as patched:
         patched.setattr(local, "compute", counting)
-        found = go(table, out, chunk=5)
+        found = go(table, out, runs_per_task=5)
     assert done <= int(found.realization_count.sum()) - 4 * after
     assert_same(found, go(table))
     again = go(table, out)
@@ -346,9 +349,9 @@ def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
 ) -> None:
     out, done, run = tmp_path / "out.nc", list[int](), tasks._run
 
-    def counting(part: tasks.TaskPart, realization: int, names: Any) -> Any:
+    def counting(runs: tasks.RunRange, realization: int, names: Any) -> Any:
         done.append(realization)
-        return run(part, realization, names)
+        return run(runs, realization, names)
 
     first = int(go(asking(0.08), out).realization_count)
     monkeypatch.setattr(tasks, "_run", counting)
@@ -383,14 +386,14 @@ def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path)
 def test_a_cell_with_a_failure_is_left_as_it_is(
     fails: Sequence[int], keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    law_of = tasks.law_of
+    simulate_realization = tasks.simulate_realization
 
     def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
         if cell.asperities.expected_count == 30 and realization in fails:
             raise rm.OutOfRange("it must fail")
-        return law_of(cell, route, realization, *others)
+        return simulate_realization(cell, route, realization, *others)
 
-    monkeypatch.setattr(tasks, "law_of", failing)
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
     out = tmp_path / "out.nc"
     found = go(asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), out)
     assert found.realization_count[0] == FIRST

@@ -1,4 +1,7 @@
-"""The batch: the same bits for any number of workers and any chunking, and what the result holds."""
+"""The batch: the same bits for any number of workers and any tasks, and what the result holds."""
+
+import doctest
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +12,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.variables import CURVE_VARIABLES
@@ -24,13 +28,13 @@ def base() -> xr.Dataset:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3])
-@pytest.mark.parametrize("chunk", [1, 7, 16])
-def test_bits_do_not_depend_on_workers_or_chunks(base: xr.Dataset, workers: int, chunk: int) -> None:
-    plan = make_plan(read(scene()), chunk)
-    tasks = split_into_tasks(plan, Rounds(plan).begin(), plan.scene.output.variables, workers)
-    assert [n for task in tasks for stretch in task for n in range(stretch.first, stretch.last)] == list(range(16))
-    assert len(tasks) == -(-16 // chunk)
-    assert_same_bits(base, execute(plan, None, workers=workers, quiet=True).to_xarray())
+@pytest.mark.parametrize("runs_per_task", [1, 7, 16])
+def test_bits_do_not_depend_on_workers_or_tasks(base: xr.Dataset, workers: int, runs_per_task: int) -> None:
+    plan = make_plan(read(scene()))
+    tasks = split_into_tasks(plan, Rounds(plan).begin(), plan.scene.output.variables, workers, runs_per_task)
+    assert [n for task in tasks for runs in task.ranges for n in range(runs.first, runs.last)] == list(range(16))
+    assert len(tasks) == -(-16 // runs_per_task)
+    assert_same_bits(base, execute(plan, None, Backend(workers=workers, runs_per_task=runs_per_task)).to_xarray())
 
 
 def test_a_second_run_has_the_same_bits(base: xr.Dataset) -> None:
@@ -117,3 +121,7 @@ def test_dimensionless_twins() -> None:
 def test_a_wrong_number_of_workers_is_refused(workers: object) -> None:
     with pytest.raises(rm.RoughmdrError, match="workers is"):
         rm.run(scene(), workers=workers)  # type: ignore[arg-type]
+
+
+def test_the_example_of_run_is_what_it_says() -> None:
+    assert doctest.testmod(sys.modules[rm.run.__module__]) == (0, 3)

@@ -13,6 +13,7 @@ from scenes import ASPERITIES, SCENE, scene
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
@@ -80,7 +81,7 @@ def test_stratified_asperities_are_from_the_same_distribution_but_more_even() ->
 
 def test_the_bits_of_stratified_draws_hang_on_seed_and_realisation_alone() -> None:
     table = scene(asperities=asperities(count=100), batch={"estimator": "stratified", "realizations": 5})
-    first, chunked = rm.run(table).force, execute(make_plan(read(table), 2), None, workers=2, quiet=True).to_xarray()
+    first, chunked = rm.run(table).force, execute(make_plan(read(table)), None, Backend(runs_per_task=2)).to_xarray()
     np.testing.assert_array_equal(first, chunked.force)
     assert len(np.unique(first.isel(step=39))) == 5
     assert (rm.run({**table, "seed": 8}).force.isel(step=39) != first.isel(step=39)).all()

@@ -13,6 +13,7 @@ from scenes import scene
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.file_checks import destination
@@ -53,7 +54,7 @@ def test_an_interrupted_fresh_run_goes_on_beside_the_file_that_it_replaces(
     interrupted(table, out, 2, monkeypatch, resume=False)
     interrupted(table, out, 0, monkeypatch)
     assert out.read_bytes() == before
-    done = execute(make_plan(read(table), 2), out).to_xarray()
+    done = execute(make_plan(read(table)), out, Backend(runs_per_task=2)).to_xarray()
     assert out.read_bytes() != before
     whole = rm.run(table)
     xr.testing.assert_identical(done.drop_vars("run_time").drop_attrs(), whole.drop_vars("run_time").drop_attrs())
@@ -86,7 +87,7 @@ def test_kept_runs_of_other_cells_excuse_no_loss(tmp_path: Path) -> None:
     for works, says in (([0.01, 0.03], "realisations of a cell"), ([0.03], "holds results of another scene")):
         table = few(sweep={"adhesion.work": works}, batch={"realizations": 1}, accuracy=accuracy)
         with pytest.raises(rm.RoughmdrError, match=says):
-            execute(make_plan(read(table), 1), out)
+            execute(make_plan(read(table)), out, Backend(runs_per_task=1))
         assert out.read_bytes() == content
         assert destination(out).with_name("out.nc.parts").exists()
 

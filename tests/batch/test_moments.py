@@ -1,4 +1,4 @@
-"""Tallies: the same bits however realisations are cut up and ordered, and right to the last digits."""
+"""Moments: the same bits however realisations are cut up and ordered, and right to the last digits."""
 
 import math
 import random
@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.batch.moments import Moments, MomentTree, moments_of, spans
-from roughmdr.result.statistics import tally_of
+from roughmdr.batch.moments import Moments, MomentTree, block_moments, dyadic_blocks, moments_of
 
 ORDINARY = st.floats(-1e3, 1e3, allow_subnormal=False)
 EXTREME = st.one_of(
@@ -21,24 +20,24 @@ EXTREME = st.one_of(
 )
 
 
-def bits(tally: Moments) -> tuple[int, ...]:
-    return tally.size, *(np.asarray(array).tobytes() for array in tally[1:])  # type: ignore[return-value]
+def bits(moments: Moments) -> tuple[int, ...]:
+    return moments.size, *(np.asarray(array).tobytes() for array in moments[1:])  # type: ignore[return-value]
 
 
 def gathered(values: np.ndarray, cuts: list[int], order: random.Random, *, singles: bool) -> MomentTree:
-    """Realisations cut into stretches, which come as singles or as tallies, in some order."""
+    """Realisations cut into ranges, which come as singles or as moments, in some order."""
     edges = sorted({0, len(values), *(cut % len(values) for cut in cuts)})
     pieces: list[tuple[int, Moments]] = []
     for number, (first, last) in enumerate(pairwise(edges)):
         if singles and number % 2:
             pieces += [(place, Moments.of(values[place])) for place in range(first, last)]
         else:
-            pieces += moments_of(first, values[first:last])
+            pieces += block_moments(first, values[first:last])
     order.shuffle(pieces)
-    tallies = MomentTree()
-    for first, tally in pieces:
-        tallies.add(first, tally)
-    return tallies
+    tree = MomentTree()
+    for first, moments in pieces:
+        tree.add(first, moments)
+    return tree
 
 
 @settings(deadline=None, max_examples=150)
@@ -54,7 +53,7 @@ def test_the_bits_depend_on_no_cut_and_no_order(
     array = np.array(values)[:, None] * [1.0, -0.5]
     whole = gathered(array, cuts, order, singles=singles).total(len(array))
     assert whole is not None
-    assert bits(whole) == bits(tally_of(array))
+    assert bits(whole) == bits(moments_of(array))
 
 
 @settings(deadline=None, max_examples=100)
@@ -62,7 +61,7 @@ def test_the_bits_depend_on_no_cut_and_no_order(
 def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
     """Against sums of fractions, which are exact; without a warning of numpy's."""
     with np.errstate(all="raise", under="ignore"):
-        found = tally_of(np.array(values)[:, None])
+        found = moments_of(np.array(values)[:, None])
     exact = [Fraction(value) for value in values]
     mean = sum(exact) / len(exact)
     variance = sum((value - mean) ** 2 for value in exact) / len(exact)
@@ -72,8 +71,8 @@ def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
         assert abs(mpmath.mpf(float(found.spread[0])) - spread) <= 4e-15 * scale
     largest = max(abs(value) for value in exact)
     assert abs(Fraction(float(found.mean[0])) - mean) <= Fraction(2e-15) * largest + Fraction(5e-324)
-    assert found.least[0] == min(values)
-    assert found.greatest[0] == max(values)
+    assert found.minimum[0] == min(values)
+    assert found.maximum[0] == max(values)
     if len(values) > 1:
         expected = float(found.spread[0]) / math.sqrt(len(values) - 1)
         assert found.standard_error[0] == expected
@@ -84,7 +83,7 @@ def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
 def test_a_small_spread_about_a_large_mean_keeps_its_digits(offset: float, seed: int, count: int) -> None:
     """The error is of the size of a rounding of the values, not of their squares."""
     values = offset + np.random.default_rng(seed).standard_normal(count)
-    found = tally_of(values[:, None])
+    found = moments_of(values[:, None])
     exact = [Fraction(value) for value in values.tolist()]
     mean = sum(exact) / count
     spread = math.sqrt(sum((value - mean) ** 2 for value in exact) / count)
@@ -95,15 +94,15 @@ def test_a_small_spread_about_a_large_mean_keeps_its_digits(offset: float, seed:
 @settings(deadline=None, max_examples=60)
 @given(value=EXTREME, count=st.integers(1, 200))
 def test_realisations_that_are_all_equal_have_no_spread(value: float, count: int) -> None:
-    found = tally_of(np.full((count, 1), value))
+    found = moments_of(np.full((count, 1), value))
     assert found.size == count
-    for array in (found.mean, found.least, found.greatest):
+    for array in (found.mean, found.minimum, found.maximum):
         assert array[0] == value
     assert found.spread[0] == 0.0
 
 
 def test_one_realisation_has_no_standard_error() -> None:
-    single = tally_of(np.array([[1.0, -2.0]]))
+    single = moments_of(np.array([[1.0, -2.0]]))
     assert single.size == 1
     assert single.mean.tolist() == [1.0, -2.0]
     assert single.spread.tolist() == [0.0, 0.0]
@@ -115,25 +114,25 @@ def test_one_realisation_has_no_standard_error() -> None:
 def test_there_is_no_total_where_one_is_missing(count: int, missing: int) -> None:
     missing %= count
     values = np.arange(float(count))[:, None]
-    tallies = MomentTree()
-    tallies.add_all(0, values[:missing])
-    tallies.add_all(missing + 1, values[missing + 1 :])
-    assert tallies.total(count) is None
-    assert tallies.total(count + 1) is None
-    tallies.add(missing, Moments.of(values[missing]))
-    assert (whole := tallies.total(count)) is not None
+    tree = MomentTree()
+    tree.add_curves(0, values[:missing])
+    tree.add_curves(missing + 1, values[missing + 1 :])
+    assert tree.total(count) is None
+    assert tree.total(count + 1) is None
+    tree.add(missing, Moments.of(values[missing]))
+    assert (whole := tree.total(count)) is not None
     assert whole.size == count
-    assert tallies.total(count + 1) is None
+    assert tree.total(count + 1) is None
 
 
 @pytest.mark.parametrize("last", [1, 2, 255, 256, 1000])
-def test_few_tallies_are_held(last: int) -> None:
+def test_few_blocks_are_held(last: int) -> None:
     """As many as the number has binary digits, where realisations come in order."""
-    tallies = MomentTree()
+    tree = MomentTree()
     for count in range(1, last + 1):
-        tallies.add(count - 1, Moments.of(np.array([float(count)])))
-        assert len(tallies.held) == count.bit_count() <= math.log2(count) + 1
-        assert sum(tally.size for tally in tallies.held.values()) == count
+        tree.add(count - 1, Moments.of(np.array([float(count)])))
+        assert len(tree.blocks) == count.bit_count() <= math.log2(count) + 1
+        assert sum(moments.size for moments in tree.blocks.values()) == count
 
 
 @settings(deadline=None)
@@ -141,7 +140,7 @@ def test_few_tallies_are_held(last: int) -> None:
 def test_the_places_fill_a_stretch_and_never_overlap(first: int, size: int) -> None:
     last = first + size
     at = first
-    for begin, count in spans(first, last):
+    for begin, count in dyadic_blocks(first, last):
         assert begin == at
         assert count.bit_count() == 1
         assert begin % count == 0

@@ -20,7 +20,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume import find, keys, writer
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.result import assemble as result
-from roughmdr.runner import run as batch
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
@@ -58,19 +58,19 @@ class Calls:
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
-    counted, run, law_of = Calls(), tasks._run, tasks.law_of
+    counted, run, simulate_realization = Calls(), tasks._run, tasks.simulate_realization
 
-    def counting(part: tasks.TaskPart, realization: int, names: Any) -> Any:
-        counted.done.append((part.cell.scene.work, realization))
-        return run(part, realization, names)
+    def counting(runs: tasks.RunRange, realization: int, names: Any) -> Any:
+        counted.done.append((runs.cell.scene.work, realization))
+        return run(runs, realization, names)
 
     def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
         if counted.fails(cell.work, realization):
             raise rm.OutOfRange("it must fail")
-        return law_of(cell, route, realization, *others)
+        return simulate_realization(cell, route, realization, *others)
 
     monkeypatch.setattr(tasks, "_run", counting)
-    monkeypatch.setattr(tasks, "law_of", failing)
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
     return counted
 
 
@@ -79,9 +79,13 @@ def out(tmp_path: Path) -> Path:
     return tmp_path / "out.nc"
 
 
-def go(table: dict[str, Any], out: Path | None, chunk: int = 2, workers: int = 2, resume: bool = True) -> xr.Dataset:
+def go(
+    table: dict[str, Any], out: Path | None, runs_per_task: int = 2, workers: int = 2, resume: bool = True
+) -> xr.Dataset:
     """A run in many tasks, small as it is."""
-    return execute(make_plan(read(table), chunk), out, workers=workers, resume=resume).to_xarray()
+    return execute(
+        make_plan(read(table)), out, Backend(workers=workers, runs_per_task=runs_per_task), resume=resume
+    ).to_xarray()
 
 
 def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:
@@ -412,7 +416,7 @@ def test_cells_that_are_the_same_are_computed_once(keep: str, calls: Calls, out:
 @pytest.fixture
 def other_versions(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     def change() -> None:
-        for module in (keys, find, writer, batch, result):
+        for module in (keys, find, writer, tasks, result):
             monkeypatch.setattr(module, "versions", lambda: "roughmdr 99")
 
     return change
@@ -445,7 +449,7 @@ def test_what_an_interrupted_run_finished_is_used(
     interrupted(table, out, after, monkeypatch)
     done = calls.taken()
     assert len(done) == 2 * after
-    found = go(table, out, chunk=4)
+    found = go(table, out, runs_per_task=4)
     assert sorted(done + calls.taken()) == every([0.01, 0.03, 0.05], 0, 6)
     assert not store_folder(out).exists()
     assert_same(found, go(table, None))
@@ -471,12 +475,12 @@ def test_an_interrupted_run_asked_for_otherwise(
 def test_curves_of_an_interrupted_run_become_statistics(
     realizations: int, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    interrupted(swept(WORKS[:2], realizations=11), out, 7, monkeypatch, chunk=3)
+    interrupted(swept(WORKS[:2], realizations=11), out, 7, monkeypatch, runs_per_task=3)
     done = calls.taken()
     table = swept(WORKS[:2], realizations=realizations, output={"keep": "statistics"})
     found = go(table, out)
     assert sorted(done + calls.taken()) == every([0.01, 0.03], 0, realizations)
-    assert_same(found, go(table, None, chunk=5))
+    assert_same(found, go(table, None, runs_per_task=5))
 
 
 def test_variables_of_an_interrupted_run_that_are_not_asked_for_stay(
@@ -537,9 +541,9 @@ def test_what_failed_is_computed_again(keep: str, calls: Calls, out: Path) -> No
 def test_failures_leave_the_same_whatever_the_tasks(keep: str, calls: Calls) -> None:
     calls.fails = lambda work, number: work == 0.01 and number in (2, 5)
     table = swept(WORKS[:2], realizations=9, output=kept(keep), asperities={**FEW, "radius": "2 um"})
-    one = go(table, None, chunk=1)
-    for chunk, workers in ((1, 1), (4, 2), (18, 2)):
-        assert_same(go(table, None, chunk, workers), one)
+    one = go(table, None, runs_per_task=1)
+    for runs_per_task, workers in ((1, 1), (4, 2), (18, 2)):
+        assert_same(go(table, None, runs_per_task, workers), one)
     assert (one.status == 1).sum() == (2 if keep == "curves" else 1)
     if keep == "statistics":
         assert np.isfinite(one.numerical_error).all()

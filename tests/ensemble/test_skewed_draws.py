@@ -15,8 +15,9 @@ from scipy.special import ndtr, ndtri
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.unmet import Rare
+from roughmdr.batch.unmet import RareAsperities
 from roughmdr.ensemble import RandomAsperities
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
@@ -55,7 +56,7 @@ def test_unmet_variance_is_that_of_the_tail(spread: float, count: int, realizati
     parts = [ndtr(k * s - z) + ndtr(-k * s - z) for k in (0, 1, 2)]
     beyond = (1.0 + spread**2) * parts[2] - 2.0 * parts[1] + parts[0]  # over the square of the mean
     exact = count * beyond * mean_force(spread, 1) ** 2
-    found = Rare(make_plan(read(cones(spread, count, 0.1))).cells[0]).spread(realizations) ** 2
+    found = RareAsperities(make_plan(read(cones(spread, count, 0.1))).cells[0]).spread(realizations) ** 2
     total = count * (spread * mean_force(spread, 1)) ** 2
     assert float(found[0]) == pytest.approx(exact, rel=0.1, abs=1e-3 * total)
 
@@ -96,7 +97,7 @@ def test_the_error_is_met_though_few_asperities_bear_most_of_the_force(
     taken, errors = [], []
     for seed in range(20):
         table = cones(spread, count, relative, method=method, seed=seed)
-        found = execute(make_plan(read(table)), None, workers=1)
+        found = execute(make_plan(read(table)), None, Backend(workers=1))
         assert float(found.variables["accuracy_reached"].values) <= relative
         taken.append(float(found.variables["realization_count"].values))
         errors.append(float(found.variables["force_mean"].values[0]) / mean_force(spread, count) - 1.0)
@@ -129,16 +130,16 @@ def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_same_bits_for_any_chunks_and_after_an_interruption(
+def test_same_bits_for_any_tasks_and_after_an_interruption(
     keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     table = cones(3.0, 20, 0.1, output={"variables": ["force"], "keep": keep})
-    plain = execute(make_plan(read(table), 1000), None, workers=1).to_xarray()
+    plain = execute(make_plan(read(table)), None, Backend(workers=1, runs_per_task=1000)).to_xarray()
     out = tmp_path / "out.nc"
-    interrupted(table, out, 3, monkeypatch, chunk=8)
+    interrupted(table, out, 3, monkeypatch, runs_per_task=8)
     for found in (
-        execute(make_plan(read(table), 7), None, workers=3).to_xarray(),
-        execute(make_plan(read(table), 5), out, workers=2).to_xarray(),
+        execute(make_plan(read(table)), None, Backend(workers=3, runs_per_task=7)).to_xarray(),
+        execute(make_plan(read(table)), out, Backend(runs_per_task=5)).to_xarray(),
     ):
         dropped = [each.drop_vars("run_time").assign_attrs(history="", checksum="") for each in (found, plain)]
         xr.testing.assert_identical(*dropped)

@@ -17,11 +17,11 @@ PACKAGE = Path(__file__).parent.parent.parent / "roughmdr"
 _RUN = """
 import sys
 
-from roughmdr.batch.resume.reusable import Held
+from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.cli import main
 used = []
-whole = Held.shards
-Held.shards = lambda self, picks: [used.append(int(shard.size.sum())) or shard for shard in whole(self, picks)]
+read = ReusableRows.read
+ReusableRows.read = lambda self, rows: [used.append(each.realizations) or each for each in read(self, rows)]
 try:
     main({arguments!r})
 except SystemExit as end:

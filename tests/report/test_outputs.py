@@ -90,8 +90,7 @@ def test_what_is_kept_is_found_by_way_of_a_link_and_without(
     target = linked[1]
     interrupted(few(), linked[first], 3, monkeypatch)
     assert names(target.parent) == ["real.nc.parts"]
-    shards = len([*store_folder(target).glob("*.npz")])
-    assert shards == 3
+    assert len([*store_folder(target).glob("*.npz")]) == 3
     xr.testing.assert_equal(rm.run(few(), linked[second]).force, rm.run(few()).force)
     assert names(target.parent) == ["real.nc"]
 
@@ -349,14 +348,14 @@ def test_a_disk_that_is_full_when_the_result_is_written_says_so(tmp_path: Path, 
         write_scene(folder, few(1, path=path))  # 64 000 steps of 48 bytes and a text
         space = os.statvfs(folder)
         (folder / "filling").write_bytes(bytes(space.f_bavail * space.f_frsize - free))
-        with running(Batch(folder, chunk=1)) as batch:
+        with running(Batch(folder, runs_per_task=1)) as batch:
             status, said = batch.end()
         assert status == 2, said
         assert "No space left on device" in said
         assert "Traceback" not in said
         assert names(folder) == ["filling", "scene.toml"]
         (folder / "filling").unlink()
-        with running(Batch(folder, chunk=1)) as batch:
+        with running(Batch(folder, runs_per_task=1)) as batch:
             assert batch.succeed() == 1
         assert names(folder) == ["out.nc", "scene.toml"]
 
@@ -367,13 +366,13 @@ def test_a_disk_that_is_full_at_the_end_keeps_what_is_finished(tmp_path: Path) -
         write_scene(folder, CURVES)
         full = """
 import os
-import roughmdr.batch.resume.writer as keeper
-def write(*arguments, write=keeper.write_netcdf):
+import roughmdr.batch.resume.writer as writer
+def write(*arguments, write=writer.write_netcdf):
     space = os.statvfs(".")
     with open("filling", "wb") as file:
         file.write(bytes(space.f_bavail * space.f_frsize - 50_000))
     write(*arguments)
-keeper.write_netcdf = write
+writer.write_netcdf = write
 """
         with running(Batch(folder, code=full)) as batch:
             status, said = batch.end()

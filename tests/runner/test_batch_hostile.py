@@ -22,6 +22,7 @@ import roughmdr as rm
 from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import store_folder
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
@@ -34,8 +35,10 @@ def few(realizations: int = 60, **changes: Any) -> dict[str, Any]:
     return scene(**{"asperities": FEW, "path": PATH, "batch": {"realizations": realizations}} | changes)
 
 
-def forces(table: dict[str, Any], chunk: int = 1) -> np.ndarray:
-    found: np.ndarray = execute(make_plan(read(table), chunk), None).variables["force_mean"].values
+def forces(table: dict[str, Any], runs_per_task: int = 1) -> np.ndarray:
+    found: np.ndarray = (
+        execute(make_plan(read(table)), None, Backend(runs_per_task=runs_per_task)).variables["force_mean"].values
+    )
     return found
 
 
@@ -55,7 +58,7 @@ def test_batches_in_threads_of_one_process_do_not_mix() -> None:
 
 _FORKED = """
 import os, sys
-sys.path.insert(0, {tests!r})
+sys.path[:0] = {tests!r}
 from test_batch_hostile import few, forces
 before = forces(few(output={{"keep": "statistics"}}))
 child = os.fork()
@@ -68,7 +71,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_a_forked_process_computes_too() -> None:
-    code = _FORKED.format(tests=str(Path(__file__).parent.parent))
+    code = _FORKED.format(tests=[str(folder) for folder in Path(__file__).parents[:2]])
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.strip() == "0", done.stderr
 
@@ -120,18 +123,18 @@ def test_no_force_yet_is_no_small_error() -> None:
 def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, sweep = tmp_path / "out.nc", {"adhesion.work": [0.01, 0.02, 0.05]}
     whole = few(10, sweep=sweep)
-    interrupted(whole, out, 3, monkeypatch, chunk=5)
-    shards = sorted(path.name for path in store_folder(out).glob("*.npz"))
-    assert len(shards) == 3
+    interrupted(whole, out, 3, monkeypatch, runs_per_task=5)
+    files = sorted(path.name for path in store_folder(out).glob("*.npz"))
+    assert len(files) == 3
     rm.run(few(10, sweep={"adhesion.work": [0.01]}), out)
-    assert sorted(path.name for path in store_folder(out).glob("*.npz")) == shards
+    assert sorted(path.name for path in store_folder(out).glob("*.npz")) == files
     xr.testing.assert_equal(rm.run(whole, out).force, rm.run(whole).force)
     assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
 
 
 def test_a_cluster_that_is_not_there_costs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out.nc"
-    interrupted(few(), out, 3, monkeypatch, chunk=5)
+    interrupted(few(), out, 3, monkeypatch, runs_per_task=5)
     before = sorted(path.name for path in store_folder(out).iterdir())
     with pytest.raises(rm.RoughmdrError, match="no dask scheduler answers"):
         rm.run(few(), out, scheduler="tcp://127.0.0.1:1", resume=False)

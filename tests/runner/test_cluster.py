@@ -31,6 +31,7 @@ from batches import (
 )
 
 from roughmdr.batch.plan import make_plan
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 
@@ -87,29 +88,34 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dask]:
         yield cluster
 
 
-@pytest.mark.parametrize("chunk", [1, 7, 64])
+@pytest.mark.parametrize("runs_per_task", [1, 7, 64])
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_the_same_bits_from_a_cluster(two: Dask, keep: str, chunk: int, request: pytest.FixtureRequest) -> None:
-    plan = make_plan(read(CURVES if keep == "curves" else STATISTICS), chunk)
-    assert_same(execute(plan, None, scheduler=two.address).to_xarray(), request.getfixturevalue(keep))
+def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, request: pytest.FixtureRequest) -> None:
+    plan = make_plan(read(CURVES if keep == "curves" else STATISTICS))
+    assert_same(
+        execute(plan, None, Backend(two.address, runs_per_task=runs_per_task)).to_xarray(),
+        request.getfixturevalue(keep),
+    )
 
 
 @pytest.mark.parametrize(
     ("scheduler", "workers"), [("threads", 1), ("threads", 2), ("threads", 3), ("processes", 2), ("processes", 3)]
 )
-@pytest.mark.parametrize(("keep", "chunk"), [("curves", 7), ("statistics", 64), ("statistics", 1)])
+@pytest.mark.parametrize(("keep", "runs_per_task"), [("curves", 7), ("statistics", 64), ("statistics", 1)])
 def test_the_same_bits_from_threads_and_processes(
-    scheduler: str, workers: int, keep: str, chunk: int, request: pytest.FixtureRequest
+    scheduler: str, workers: int, keep: str, runs_per_task: int, request: pytest.FixtureRequest
 ) -> None:
-    plan = make_plan(read(CURVES if keep == "curves" else STATISTICS), chunk)
-    assert_same(execute(plan, None, scheduler=scheduler, workers=workers).to_xarray(), request.getfixturevalue(keep))
+    plan = make_plan(read(CURVES if keep == "curves" else STATISTICS))
+    assert_same(
+        execute(plan, None, Backend(scheduler, workers, None, runs_per_task)).to_xarray(), request.getfixturevalue(keep)
+    )
 
 
 def test_few_tasks_are_in_flight(two: Dask) -> None:
     """Two for each thread, so that no heap of results waits for the writer."""
     from distributed import Client
 
-    plan, over, seen = make_plan(read(CURVES), 1), threading.Event(), list[int]()
+    plan, over, seen = make_plan(read(CURVES)), threading.Event(), list[int]()
 
     def watch() -> None:
         def in_flight(dask_scheduler: Any) -> int:
@@ -124,7 +130,7 @@ def test_few_tasks_are_in_flight(two: Dask) -> None:
     watcher.start()
     try:
         until(lambda: len(seen) > 0)
-        execute(plan, None, scheduler=two.address)
+        execute(plan, None, Backend(two.address, runs_per_task=1))
     finally:
         over.set()
         watcher.join()

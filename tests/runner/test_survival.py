@@ -35,7 +35,8 @@ from batches import (
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.store import ShardStore
+from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
@@ -61,7 +62,7 @@ def left(killed: Path, tmp_path: Path) -> Path:
 def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -> int:
     """Go on in this process: how many runs were computed. The result is right, and nothing else is left."""
     capsys.readouterr()
-    execute(make_plan(read(folder / "scene.toml"), 4), folder / "out.nc", quiet=False)
+    execute(make_plan(read(folder / "scene.toml")), folder / "out.nc", Backend(runs_per_task=4), quiet=False)
     assert_result(folder, base)
     assert_clean(folder)
     return computed(capsys.readouterr().err)
@@ -79,17 +80,17 @@ def test_killed_again_and_again_it_comes_to_the_same_bits(
     base = request.getfixturevalue(keep)
     folder, chosen = tmp_path / "batch", random.Random(2012)
     write_scene(folder, CURVES if keep == "curves" else STATISTICS)
-    shards, before, survived = RUNS // 4, 0, 0
+    tasks, before, survived = RUNS // 4, 0, 0
     for kill in range(kills):
         late = kill >= 3 * kills // 4
         batch = Batch(folder, "--workers", chosen.choice([1, 2, 3]))
         if late:
-            batch.wait_for_lines(shards)
+            batch.wait_for_lines(tasks)
             time.sleep(chosen.uniform(0.0, 0.06))
         elif chosen.random() < 0.15:
             time.sleep(chosen.uniform(0.0, 2.0))  # anywhere, also before anything is computed
         else:
-            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), shards - 4))
+            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), tasks - 4))
             time.sleep(chosen.uniform(0.0, 0.03))
         survived += batch.process.poll() is None
         batch.kill()
@@ -129,18 +130,18 @@ def test_parts_of_another_scene_outlive_a_result_that_is_there(
     saved = shutil.move(left / "out.nc.parts", left.parent / "saved")
     other = slow_scene(4, count=100)
     write_scene(left, other)
-    execute(make_plan(read(left / "scene.toml"), 4), left / "out.nc")
+    execute(make_plan(read(left / "scene.toml")), left / "out.nc", Backend(runs_per_task=4))
     shutil.move(saved, left / "out.nc.parts")
-    execute(make_plan(read(left / "scene.toml"), 4), left / "out.nc")
+    execute(make_plan(read(left / "scene.toml")), left / "out.nc", Backend(runs_per_task=4))
     assert lines(left)
     (left / "out.nc").unlink()
     write_scene(left, CURVES)
     assert 0 < resume(left, capsys, curves) < RUNS
 
 
-@pytest.mark.parametrize("chunk", [8, RUNS])
+@pytest.mark.parametrize("runs_per_task", [8, RUNS])
 def test_killed_while_the_result_is_half_written(
-    folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], chunk: int
+    folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], runs_per_task: int
 ) -> None:
     """Also where all is one task, of which nothing is kept."""
     halfway = """
@@ -150,11 +151,11 @@ def sync(*_):
     os.kill(os.getpid(), signal.SIGKILL)
 netCDF4.Dataset.__exit__ = sync
 """
-    with running(Batch(folder, chunk=chunk, code=halfway)) as batch:
+    with running(Batch(folder, runs_per_task=runs_per_task, code=halfway)) as batch:
         assert batch.end()[0] == -signal.SIGKILL
     assert not (folder / "out.nc").exists()
     assert [path.name for path in (folder / "out.nc.parts").glob(".roughmdr.*.tmp")]
-    assert resume(folder, capsys, curves) == (0 if chunk < RUNS else RUNS)
+    assert resume(folder, capsys, curves) == (0 if runs_per_task < RUNS else RUNS)
 
 
 # Damaged
@@ -162,7 +163,7 @@ netCDF4.Dataset.__exit__ = sync
 
 @pytest.mark.parametrize(
     "damage",
-    ["torn line", "odd lines", "no first line", "shard", "no shard", "every shard", "nothing left", "leftovers"],
+    ["torn line", "odd lines", "no first line", "file", "no file", "every file", "nothing left", "leftovers"],
 )
 def test_only_what_is_damaged_is_computed_again(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
@@ -179,18 +180,18 @@ def test_only_what_is_damaged_is_computed_again(
                 file.write(b'7\n[]\nnull\n{"file": 3}\n{"file": "x.npz", "sha256": "0"}\n\xff\xfe\n\0\0\0\n{"file": "0')
         case "no first line":
             manifest.write_bytes(b"".join(manifest.read_bytes().splitlines(keepends=True)[1:]))
-        case "shard":
+        case "file":
             content = bytearray(third.read_bytes())
             content[len(content) // 2] ^= 1
             third.write_bytes(content)
             lost = had[2]["realizations"]
-        case "no shard":
+        case "no file":
             third.unlink()
             lost = had[2]["realizations"]
-        case "every shard" | "nothing left":
+        case "every file" | "nothing left":
             for line in had:
-                shard = parts / line["file"]
-                os.truncate(shard, 0 if damage == "nothing left" else shard.stat().st_size // 2)
+                file = parts / line["file"]
+                os.truncate(file, 0 if damage == "nothing left" else file.stat().st_size // 2)
             lost = sum(line["realizations"] for line in had)
         case "leftovers":
             (parts / "000099.npz.tmp").write_bytes(b"half")
@@ -227,7 +228,7 @@ def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureF
     """Its runs would take minutes."""
     endless = slow_scene(64, count=20_000_000)
     write_scene(folder, endless)
-    with running(Batch(folder, "--scheduler", scheduler, chunk=1)) as batch:
+    with running(Batch(folder, "--scheduler", scheduler, runs_per_task=1)) as batch:
         until((folder / "out.nc.parts" / "manifest.jsonl").exists)
         if scheduler == "processes":
             until(lambda: len(batch.children()) == 2)
@@ -260,11 +261,11 @@ def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -
 def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Path, curves: xr.Dataset) -> None:
     slowly = """
 import os, signal
-import roughmdr.batch.resume.writer as keeper
-def write(*arguments, write=keeper.write):
+import roughmdr.batch.resume.writer as writer
+def write(*arguments, write=writer.write):
     os.kill(os.getpid(), signal.SIGINT)
     write(*arguments)
-keeper.write = write
+writer.write = write
 """
     with running(Batch(folder, code=slowly)) as batch:
         status, said = batch.end()
@@ -311,7 +312,7 @@ def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(fold
     """A system out of memory kills whatever takes too much; here the test does it in its place."""
     counts = [100, 200, 6_000_000, 300, 400]
     write_scene(folder, slow_scene(1, sweep={"asperities.count": counts}))
-    with running(Batch(folder, "--scheduler", "processes", chunk=1)) as batch:
+    with running(Batch(folder, "--scheduler", "processes", runs_per_task=1)) as batch:
         deaths = 0
         while batch.process.poll() is None:
             with suppress(psutil.NoSuchProcess):
@@ -359,11 +360,11 @@ def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
 def test_a_failure_that_has_gone_away_is_repaired(folder: Path, curves: xr.Dataset) -> None:
     short_of_memory = """
 import roughmdr.batch.tasks as tasks
-def law_of(scene, route, realization, *more, law_of=tasks.law_of):
+def simulate_realization(scene, route, realization, *more, simulate_realization=tasks.simulate_realization):
     if realization in (3, 70):
         raise MemoryError
-    return law_of(scene, route, realization, *more)
-tasks.law_of = law_of
+    return simulate_realization(scene, route, realization, *more)
+tasks.simulate_realization = simulate_realization
 """
     with running(Batch(folder, code=short_of_memory)) as batch:
         status, said = batch.end()
@@ -380,7 +381,9 @@ tasks.law_of = law_of
 
 
 def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
-    with running(Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.law_of = lambda *_: [][0]")) as batch:
+    with running(
+        Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.simulate_realization = lambda *_: [][0]")
+    ) as batch:
         status, said = batch.end()
     assert status == 1
     assert "realisation 0: IndexError: list index out of range" in said
@@ -405,7 +408,9 @@ def test_a_full_disk_keeps_what_fits_and_more_room_is_all_it_takes(tmp_path: Pat
         assert_no_traceback(said)
         assert not (folder / "out.nc").exists()
         held = sum(
-            shard.status.size for read in ShardStore(folder / "out.nc.parts").held() if (shard := read()) is not None
+            result.realizations
+            for read in CheckpointStore(folder / "out.nc.parts").readers()
+            if (result := read()) is not None
         )
         assert 20 < held == kept(folder) < 40
         with running(Batch(folder)) as batch:  # nothing has changed, and so is the answer
@@ -500,7 +505,9 @@ def test_batches_in_threads_of_one_process(tmp_path: Path, curves: xr.Dataset) -
     found: dict[int, Any] = {}
 
     def work(number: int) -> None:
-        found[number] = execute(make_plan(read(CURVES), 16), tmp_path / f"{number}.nc").to_xarray()
+        found[number] = execute(
+            make_plan(read(CURVES)), tmp_path / f"{number}.nc", Backend(runs_per_task=16)
+        ).to_xarray()
 
     threads = [threading.Thread(target=work, args=(number,)) for number in range(2)]
     for thread in threads:

@@ -15,6 +15,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
+from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read as read_scene
 from roughmdr.storage.atomic import replace_atomically
@@ -55,7 +56,7 @@ def test_an_output_that_cannot_be_written_is_found_before_computing(tmp_path: Pa
     (tmp_path / "folder").mkdir()
     endless = scene(asperities={**ASPERITIES, "count": 1_000_000_000}, batch={"realizations": 1_000_000})
     with pytest.raises(rm.StoreError, match=str(tmp_path / target)):
-        execute(make_plan(read_scene(endless), chunk=1_000_000), tmp_path / target, workers=2, quiet=True)
+        execute(make_plan(read_scene(endless)), tmp_path / target, Backend(runs_per_task=1_000_000))
 
 
 def test_a_failure_while_writing_leaves_the_old_file_and_no_other(tmp_path: Path) -> None:

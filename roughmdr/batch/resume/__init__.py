@@ -1,1 +1,1 @@
-"""Checkpoints of a batch: keys of cells, the folder of shards, and their reuse."""
+"""Checkpoints of a batch: keys of cells, the folder of task results, and their reuse."""

@@ -1,4 +1,4 @@
-"""What decides the numbers of a cell, as a key: results are used again only where it is the same."""
+"""The key of a cell, a hash of all that decides its numbers: results are reused only where it is the same."""
 
 import hashlib
 from collections.abc import Iterator
@@ -14,15 +14,15 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
-_LONG = 1000  # letters of a value, as of a path or a list of numbers, in a message
-_NO_MATTER = ("title", "output", "batch", "accuracy", "sweep.mode")
-"""Keys of a scene that do not change what a realisation comes to; what estimates it stands in the key itself."""
-_MATTER = ("batch.estimator", "accuracy.method")
+_MAX_LETTERS = 1000  # of a value in a message, such as a path or a list of numbers
+_IGNORED = ("title", "output", "batch", "accuracy", "sweep.mode")
+"""Parts of a scene that do not change the numbers of a realisation; its estimator is in the key itself."""
+_NOT_IGNORED = ("batch.estimator", "accuracy.method")
 
 
 @cache
 def versions() -> str:
-    """The versions of all that numbers come from."""
+    """Return the versions of all that numbers come from."""
     packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
     return f"roughmdr {version('roughmdr')} ({fingerprint(NUMBERS)}), {packages}"
 
@@ -34,19 +34,19 @@ def check_versions(asked: str) -> None:
 
 
 def keys_of(plan: Plan, estimator: str) -> list[str]:
-    """The key of each cell of a plan under an estimator."""
-    known: dict[int, str] = {}  # cells of a sweep have sections in common
-    return [_key(cell, estimator, known) for cell in plan.cells]
+    """Return the key of each cell of a plan under an estimator."""
+    sections: dict[int, str] = {}  # cells of a sweep have sections in common
+    return [_key(cell, estimator, sections) for cell in plan.cells]
 
 
-def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
+def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
     scene, path = cell
-    if id(scene.asperities) not in known:
-        known[id(scene.asperities)] = _asperities(scene.asperities)
+    if id(scene.asperities) not in sections:
+        sections[id(scene.asperities)] = _asperities(scene.asperities)
     parts = (
         scene.effective_modulus,
         tuple(scene.adhesion_model),
-        known[id(scene.asperities)],
+        sections[id(scene.asperities)],
         _path(path.separation.tobytes()),
         scene.seed,
         estimator,
@@ -56,7 +56,7 @@ def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
 
 
 def _asperities(section: Source) -> str:
-    """A section in words, with what is in its file in place of its name."""
+    """Return the text of a section, with the content of its file in place of its name."""
     return repr(section.model_copy(update={"file": section.content_hash}) if section.inputs else section)
 
 
@@ -66,13 +66,13 @@ def _path(separation: bytes) -> str:
 
 
 def changes(old: str, new: str) -> Iterator[str]:
-    """What of a scene that matters is another in a new one; both in TOML."""
+    """Yield which decisive values of a scene are others in a new one, old and new; both scenes are TOML."""
     before, after = (_flat(parse_toml(text)) for text in (old, new))
     for key in dict.fromkeys([*before, *after]):
-        if key.startswith(_NO_MATTER) and key not in _MATTER:
+        if key.startswith(_IGNORED) and key not in _NOT_IGNORED:
             continue
         if before.get(key) != after.get(key):
-            was, now = (short_repr(side[key], _LONG) if key in side else "not given" for side in (before, after))
+            was, now = (short_repr(side[key], _MAX_LETTERS) if key in side else "not given" for side in (before, after))
             yield f"{key} was {was}, is {now}"
 
 

@@ -1,4 +1,4 @@
-"""Rows of shards that are at hand already, of an earlier run, to be taken as they are needed."""
+"""Rows of task results of earlier runs, selected as they are needed."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -7,70 +7,74 @@ import numpy as np
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 
+Reader = Callable[[], TaskResult | None]
+"""Reads a task result; None where it is damaged."""
+
 
 class ReusableRows:
-    """By the keys of the cells. Only where the rows are is in memory; they are read again when they are taken."""
+    """By the keys of the cells. Only where the rows are is in memory; they are read again when they are needed."""
 
-    def __init__(self, keys: Sequence[set[str]], variables: Sequence[str], *, tallied: bool) -> None:
-        self._wanted = set[str]().union(*keys)
-        self._variables, self._tallied = variables, tallied
-        self._reads: list[Callable[[], TaskResult | None]] = []
+    def __init__(self, keys: Sequence[set[str]], variables: Sequence[str], *, keep_moments: bool) -> None:
+        self._keys = set[str]().union(*keys)
+        self._variables, self._keep_moments = variables, keep_moments
+        self._readers: list[Reader] = []
         self._rows: dict[str, list[tuple[int, int, int, int]]] = {}
-        self._more = False
+        """First realisation, minus their number, so that long rows come first, and number of the reader and row."""
+        self._has_more = False
 
-    def wants(self, keys: Sequence[str]) -> bool:
-        """Whether a cell of one of the keys is among those that are wanted."""
-        return not self._wanted.isdisjoint(keys)
+    def matches(self, keys: Sequence[str]) -> bool:
+        """Return whether a cell of this run has one of the keys."""
+        return not self._keys.isdisjoint(keys)
 
-    def add(self, read: Callable[[], TaskResult | None]) -> bool | None:
-        """Note the contents of a shard; whether it has cells that are wanted, in whatever variables.
+    def add(self, read: Reader) -> bool | None:
+        """Note the rows of a task result; return whether it has cells of this run, in whatever variables.
 
         None where it cannot be read.
         """
-        whole = read()
-        if whole is None:
+        result = read()
+        if result is None:
             return None
-        self._more |= not self._wanted.issuperset(whole.keys)
-        if not self.wants(whole.keys):
+        self._has_more |= not self._keys.issuperset(result.keys)
+        if not self.matches(result.keys):
             return False
-        self._more |= not set(self._variables).issuperset(whole.variables)
-        shard = self._fitting(whole)
-        if shard is not None:
-            columns = zip(shard.cell.tolist(), shard.first.tolist(), shard.size.tolist(), strict=True)
+        self._has_more |= not set(self._variables).issuperset(result.variables)
+        usable = self._usable(result)
+        if usable is not None:
+            columns = zip(usable.cell.tolist(), usable.first.tolist(), usable.size.tolist(), strict=True)
             for row, (cell, first, size) in enumerate(columns):
-                if (key := shard.keys[cell]) in self._wanted:
-                    self._rows.setdefault(key, []).append((first, -size, len(self._reads), row))
-            self._reads.append(read)
+                if (key := usable.keys[cell]) in self._keys:
+                    self._rows.setdefault(key, []).append((first, -size, len(self._readers), row))
+            self._readers.append(read)
         return True
 
-    def spare(self, chosen: Sequence[tuple[str, int]]) -> bool:
-        """Whether there is more than goes into these cells, of which each has a key and so many realisations."""
-        return self._more or any(
-            first - less > count for key, count in chosen for first, less, *_ in self._rows.get(key, ())
+    def has_unused(self, cells: Sequence[tuple[str, int]]) -> bool:
+        """Return whether there is more than these cells need, each given by its key and number of realisations."""
+        return self._has_more or any(
+            first - minus_size > count for key, count in cells for first, minus_size, *_ in self._rows.get(key, ())
         )
 
-    def _fitting(self, shard: TaskResult) -> TaskResult | None:
-        return shard.with_variables(self._variables) if self._tallied or shard.single else None
+    def _usable(self, result: TaskResult) -> TaskResult | None:
+        return result.with_variables(self._variables) if self._keep_moments or result.single else None
 
-    def take(self, key: str, first: int, last: int, picks: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-        """Of the realisations first ... last - 1 of a cell the missing ones; rows of the others go to ``picks``."""
-        for begin, less, number, row in sorted(self._rows.get(key, ())):
-            if first <= begin and begin - less <= last:
+    def select(self, key: str, first: int, last: int, selected: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+        """Append the rows of realisations first ... last - 1 of a cell to ``selected``; yield the ranges without."""
+        for begin, minus_size, number, row in sorted(self._rows.get(key, ())):
+            if first <= begin and begin - minus_size <= last:
                 if first < begin:
                     yield first, begin
-                picks.append((number, row))
-                first = begin - less
+                selected.append((number, row))
+                first = begin - minus_size
         if first < last:
             yield first, last
 
-    def shards(self, picks: Sequence[tuple[int, int]]) -> Iterator[TaskResult]:
-        """The rows that were taken, as shards."""
-        by_shard: dict[int, list[int]] = {}
-        for number, row in picks:
-            by_shard.setdefault(number, []).append(row)
-        for number, rows in by_shard.items():
-            whole = self._reads[number]()
-            shard = None if whole is None else self._fitting(whole)
-            if shard is None:
-                raise StoreError("a shard that was whole is so no longer: is another program at work in its folder?")
-            yield shard.rows(np.array(rows, dtype=np.int64))
+    def read(self, selected: Sequence[tuple[int, int]]) -> Iterator[TaskResult]:
+        """Yield the rows that were selected."""
+        rows_of: dict[int, list[int]] = {}
+        for number, row in selected:
+            rows_of.setdefault(number, []).append(row)
+        for number, rows in rows_of.items():
+            whole = self._readers[number]()
+            usable = None if whole is None else self._usable(whole)
+            if usable is None:
+                raise StoreError("a stored task result has been damaged: is another program at work in its folder?")
+            yield usable.select_rows(np.array(rows, dtype=np.int64))

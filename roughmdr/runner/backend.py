@@ -1,0 +1,49 @@
+"""Where tasks are computed: threads or processes of this machine, or a dask cluster."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING, NamedTuple
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.runner.cluster import Cluster, Tls, connected
+from roughmdr.runner.local import Pool, Processes, Threads
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_LOCAL: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
+_ADDRESSES = ("tcp://", "tls://")
+
+
+class Backend(NamedTuple):
+    """A scheduler, its number of workers, and how large their tasks are."""
+
+    scheduler: "str | Client" = "threads"
+    """"threads", "processes", the address of a dask cluster, or a Client of one."""
+    workers: int = 2
+    tls: Tls | None = None
+    runs_per_task: int | None = None
+    """None for as many as make a task worth its overhead."""
+
+    def check(self) -> None:
+        """RoughmdrError where the scheduler or the number of workers cannot be."""
+        workers, scheduler = self.workers, self.scheduler
+        if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+            raise RoughmdrError(f"workers is {workers!r}; it must be a whole number of at least 1")
+        if isinstance(scheduler, str):
+            allowed = scheduler in _LOCAL or scheduler.startswith(_ADDRESSES)
+        else:
+            allowed = type(scheduler).__module__.startswith("distributed.")  # which is not imported for this
+        if not allowed:
+            raise RoughmdrError(
+                f"scheduler is {scheduler!r}; it must be 'threads', 'processes', or the address of a dask cluster, "
+                "tcp://HOST:PORT or tls://HOST:PORT, or in Python a Client of one"
+            )
+
+    def pool(self) -> AbstractContextManager[Pool]:
+        """Open what computes the tasks; RoughmdrError where a cluster does not answer."""
+        if not isinstance(self.scheduler, str):
+            return nullcontext(Cluster(self.scheduler))
+        if self.scheduler in _LOCAL:
+            return nullcontext(_LOCAL[self.scheduler](self.workers))
+        return connected(self.scheduler, self.tls)
