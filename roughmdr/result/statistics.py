@@ -18,9 +18,9 @@ def summarise(
 ) -> dict[str, Array]:
     """Return ``NAME_mean``, ``_sem``, ``_min``, ``_max`` of a variable over dims, from its moments and standard error.
 
-    ``at_detachment`` [..., step] tells where contacts may be at the point of detachment. NaN stands for a standard error that
-    is not computed: that of a single realisation, and of the stiffness there, since its variance is infinite.
-    """
+    ``at_detachment`` [..., step] tells where contacts may be at the point of detachment. NaN stands for a standard
+    error that is not computed: that of a single realisation, and of the stiffness there, since its variance is
+    infinite. """
     variable = CURVE_VARIABLES[name]
     comment = {}
     if name == "stiffness" and at_detachment.any():
