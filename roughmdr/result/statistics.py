@@ -20,7 +20,8 @@ def summarise(
 
     ``at_detachment`` [..., step] tells where contacts may be at the point of detachment. NaN stands for a standard
     error that is not computed: that of a single realisation, and of the stiffness there, since its variance is
-    infinite. """
+    infinite.
+    """
     variable = CURVE_VARIABLES[name]
     comment = {}
     if name == "stiffness" and at_detachment.any():
