@@ -1,6 +1,7 @@
 """The errors that roughmdr raises on purpose. Each message names the argument, its value and what is allowed."""
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 
@@ -48,6 +49,14 @@ class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contrac
 
 class LimitWarning(UserWarning):
     """A result lies where its theory is doubtful."""
+
+
+def warn_limits(texts: Iterable[str], stacklevel: int = 3) -> dict[str, str]:
+    """Issue each text as a LimitWarning to the caller of the caller; return them as an attribute of a result."""
+    texts = list(texts)
+    for text in texts:
+        warnings.warn(text, LimitWarning, stacklevel=stacklevel)
+    return {"warnings": "\n".join(texts)} if texts else {}
 
 
 class StoreError(RoughmdrError):

@@ -3,6 +3,8 @@
 The spectrum C(q) [m4] over the wave vector is such that <h^2> = ∫ C d^2q = 2 pi ∫ q C dq.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple, Protocol
 
@@ -10,10 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_number, exactly_one
+
+__all__ = ["Moments", "SelfAffine", "Spectrum"]
 
 RING = 1.5
-"""Nayak's parameter alpha of waves of one length, all directions: there is none below."""
+"""Nayak's parameter alpha of waves of one length, all directions: the least of all isotropic surfaces."""
 
 
 class Moments(NamedTuple):
@@ -27,9 +32,9 @@ class Moments(NamedTuple):
     """<(d2h/dx2)^2> [1/m2]."""
 
     @classmethod
-    def checked(cls, m0: float, m2: float, m4: float) -> "Moments":
-        """The moments; OutOfRange unless all are above 0 and m0 m4/m2^2 above 3/2."""
-        given = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "1/m2"))
+    def checked(cls, m0: float | str, m2: float, m4: float | str) -> Moments:
+        """Return the moments; OutOfRange unless all are above 0 and m0 m4/m2^2 above 3/2."""
+        given = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "m-2"))
         if not RING < given.alpha < math.inf:
             raise OutOfRange(
                 f"alpha = m0 m4/m2^2 is {given.alpha:g}; it must be above 3/2, as it is for every isotropic surface"
@@ -38,7 +43,7 @@ class Moments(NamedTuple):
 
     @property
     def alpha(self) -> float:
-        """How broad the spectrum is, m0 m4/m2^2 (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
+        """Breadth of the spectrum, m0 m4/m2^2 [1] (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
         return (self.m0 / self.m2) * (self.m4 / self.m2)
 
     @property
@@ -63,7 +68,7 @@ class Spectrum(Protocol):
 
 
 def wave_numbers(spectrum: Spectrum) -> tuple[float, float]:
-    """The smallest and the largest wave number [1/m] of a spectrum.
+    """Return the smallest and the largest wave number [1/m] of a spectrum.
 
     RoughmdrError where it is none, OutOfRange where its wavelengths are not above 0 and in order.
     """
@@ -76,15 +81,15 @@ def wave_numbers(spectrum: Spectrum) -> tuple[float, float]:
 
 
 def levels(spectrum: Spectrum, q: Floats) -> Floats:
-    """C(q) [m4]; OutOfRange unless it is finite and at least 0."""
+    """Return C(q) [m4]; OutOfRange unless it is finite and at least 0."""
     level = np.asarray(spectrum(q), dtype=np.float64)
     if not (np.isfinite(level).all() and (level >= 0.0).all()):
         raise OutOfRange("spectrum has levels that are not finite or below 0; C(q) must be finite and at least 0")
     return level
 
 
-def check_waves(long_wave: float, short_wave: float) -> tuple[float, float]:
-    """Both [m]; OutOfRange unless they are above 0 and in order."""
+def check_waves(long_wave: float | str, short_wave: float | str) -> tuple[float, float]:
+    """Return both wavelengths [m]; OutOfRange unless they are above 0 and in order."""
     long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
     if not short_wave < long_wave:
         raise OutOfRange(f"short_wave is {short_wave:g} m; it must be below long_wave, {long_wave:g} m")
@@ -92,11 +97,14 @@ def check_waves(long_wave: float, short_wave: float) -> tuple[float, float]:
 
 
 class SelfAffine(NamedTuple):
-    """C(q) = level (q/q0)^(-2 - 2 hurst) from q0 = 2 pi/long_wave to q1 = 2 pi/short_wave, 0 elsewhere."""
+    """A self-affine spectrum: C(q) = level (q/q0)^(-2 - 2 hurst) between the wave numbers q0 and q1, 0 elsewhere."""
 
     hurst: float
+    """Hurst exponent [1]."""
     long_wave: float
+    """2 pi/q0 [m]."""
     short_wave: float
+    """2 pi/q1 [m]."""
     level: float
     """C(q0) [m4]."""
 
@@ -105,35 +113,64 @@ class SelfAffine(NamedTuple):
         cls,
         *,
         hurst: float,
-        long_wave: float,
-        short_wave: float,
-        rms_height: float | None = None,
+        long_wave: float | str,
+        short_wave: float | str,
+        rms_height: float | str | None = None,
         rms_slope: float | None = None,
-    ) -> "SelfAffine":
-        """The spectrum with either this r.m.s. height [m] or this r.m.s. slope sqrt(<|grad h|^2>) [1].
+    ) -> SelfAffine:
+        """Make the spectrum with a given r.m.s. height or r.m.s. slope.
 
-        hurst from 0 to 1, wavelengths [m]. OutOfRange where a number is not so, RoughmdrError unless one of the two
-        is given.
+        Parameters
+        ----------
+        hurst : float
+            Hurst exponent [1], from 0 to 1.
+        long_wave, short_wave : float or str
+            Longest and shortest wavelength [m].
+        rms_height : float or str, optional
+            sqrt(<h^2>) [m]. Exactly one of rms_height and rms_slope is given.
+        rms_slope : float, optional
+            sqrt(<|grad h|^2>) [1].
+
+        Returns
+        -------
+        SelfAffine
+            The spectrum: a function C(q) [m4] with ``moments``, ``rms_height`` [m] and ``rms_slope`` [1].
+
+        Raises
+        ------
+        OutOfRange
+            Where a number is out of its range.
+        RoughmdrError
+            Unless exactly one of rms_height and rms_slope is given.
+
+        References
+        ----------
+        .. [1] B. N. J. Persson and others, J. Phys. Condens. Matter 17 (2005) R1.
+
+        Examples
+        --------
+        >>> import roughmdr as rm
+        >>> surface = rm.spectrum.SelfAffine.of(hurst=0.8, long_wave="100 um", short_wave="5 um", rms_slope=0.1)
+        >>> f"{surface.rms_height:.3g} m, alpha {surface.moments.alpha:.3g}"
+        '5.21e-07 m, alpha 15.3'
         """
         hurst = check_number("hurst", hurst, "1", zero=True)
         if hurst > 1.0:
             raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
         long_wave, short_wave = check_waves(long_wave, short_wave)
         one = cls(hurst, long_wave, short_wave, 1.0)
-        if rms_height is not None and rms_slope is None:
-            return one._replace(level=(check_number("rms_height", rms_height, "m") / one.rms_height) ** 2)
-        if rms_slope is not None and rms_height is None:
-            return one._replace(level=(check_number("rms_slope", rms_slope, "1") / one.rms_slope) ** 2)
-        raise RoughmdrError("a self-affine spectrum takes either rms_height or rms_slope")
+        name, value = exactly_one("a self-affine spectrum", rms_height=rms_height, rms_slope=rms_slope)
+        unit = {"rms_height": "m", "rms_slope": "1"}[name]
+        return one._replace(level=(check_number(name, value, unit) / getattr(one, name)) ** 2)
 
     def __call__(self, q: ArrayLike) -> Floats:
-        """C(q) [m4] at wave numbers q [1/m] of at least 0."""
+        """Return C(q) [m4] at wave numbers q [1/m] of at least 0."""
         x = np.asarray(q, dtype=np.float64) * self.long_wave / (2.0 * np.pi)
         inside = (x >= 1.0) & (x <= self.long_wave / self.short_wave)
         return np.where(inside, self.level * np.where(inside, x, 1.0) ** (-2.0 - 2.0 * self.hurst), 0.0)
 
-    def _power(self, k: int) -> float:
-        """∫ q^k C dq."""
+    def _integral(self, k: int) -> float:
+        """Return ∫ q^k C dq."""
         q0, log_range = 2.0 * math.pi / self.long_wave, math.log(self.long_wave / self.short_wave)
         p = (k - 1.0 - 2.0 * self.hurst) * log_range
         return self.level * q0 ** (k + 1) * log_range * (math.expm1(p) / p if p else 1.0)
@@ -141,7 +178,9 @@ class SelfAffine(NamedTuple):
     @property
     def moments(self) -> Moments:
         """2 pi ∫ q C, pi ∫ q^3 C and (3 pi/4) ∫ q^5 C dq."""
-        return Moments(2.0 * math.pi * self._power(1), math.pi * self._power(3), 0.75 * math.pi * self._power(5))
+        return Moments(
+            2.0 * math.pi * self._integral(1), math.pi * self._integral(3), 0.75 * math.pi * self._integral(5)
+        )
 
     @property
     def rms_height(self) -> float:

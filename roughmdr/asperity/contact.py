@@ -11,8 +11,8 @@ from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.interface import Kernels, choose
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
-from roughmdr.numerics.arguments import Floats, check_number
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import ProfileShape, Shape
 
 Results = dict[str, Floats]
 
@@ -37,21 +37,18 @@ class Contact(NamedTuple):
         """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
-        effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
         width, rise, params = shape.nondimensional()
         law = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
             params = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
-            if isinstance(shape, ProfileShape) and shape.profile.end * width < adhesion.range and params[COUNT] == 0.0:
-                raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, reaches beyond the end of "
-                    f"{shape}; it must be larger"
+            if (shape.flat_ended or shape.limit < adhesion.range) and adhesion.cohesive and params[COUNT] == 0.0:
+                reason = (
+                    f"is so long that a contact of {shape} is lost in its roundings"
+                    if shape.flat_ended
+                    else f"reaches beyond the end of {shape}"
                 )
-            if isinstance(shape, FlatPunch) and adhesion.cohesive and params[COUNT] == 0.0:
-                raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
-                    f"of {shape} is lost in its roundings; it must be larger"
-                )
+                strength = f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m"
+                raise OutOfRange(f"{strength}, {reason}; it must be larger")
             scales = law.natural(effective_modulus, adhesion.work, width, rise, params)
             contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
         contact._check(
@@ -146,9 +143,9 @@ class Contact(NamedTuple):
         law, shape = self.law, self.shape
         if (radius < 0.0).any():
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
-        if isinstance(shape, FlatPunch):
-            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {shape.radius:g} m")
-        if isinstance(shape, ProfileShape) and shape.profile.flat:
+        if shape.flat_ended:
+            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {shape.limit:g} m")
+        if shape.plateau > 0.0:
             on_the_flat = (radius > 0.0) & (radius < self.radius)
             if on_the_flat.any():
                 raise ShapeError(

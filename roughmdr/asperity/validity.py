@@ -60,14 +60,9 @@ class ValidityLimits(NamedTuple):
                 f"contact radii of up to {self.extent:.3g} times the radius where the profile, or the body that it "
                 "stands for, ends: what lies beyond is extrapolated"
             )
-        return [*found, *short_range(self.tabor)]
-
-
-def short_range(tabor: float) -> list[str]:
-    """What to say of JKR at a Tabor number."""
-    if tabor >= TABOR:
-        return []
-    return [
-        f"a Tabor number of {tabor:.3g}: adhesion reaches further than JKR supposes (warned of below {TABOR:g}); "
-        "adhesion = 'dugdale' has a range"
-    ]
+        if self.tabor < TABOR:
+            found.append(
+                f"a Tabor number of {self.tabor:.3g}: adhesion reaches further than JKR supposes (warned of below "
+                f"{TABOR:g}); adhesion = 'dugdale' has a range"
+            )
+        return found

@@ -1,7 +1,6 @@
 """Where asperities come from: one file a source, each with the section of the scene that asks for it."""
 
 import operator
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
@@ -14,7 +13,7 @@ from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.ensemble.random.shapes import AnyRandomAsperities
 from roughmdr.ensemble.saved import FileAsperities
 from roughmdr.ensemble.source import Source
-from roughmdr.errors import LimitWarning, SceneError
+from roughmdr.errors import SceneError, warn_limits
 from roughmdr.schema.faults import find_faults
 
 if TYPE_CHECKING:
@@ -46,8 +45,7 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
     """
     section = asperities if isinstance(asperities, Source) else _validated(asperities)
     made = make(section, _whole("seed", seed), _whole("realization", realization))
-    for text in made.warnings:
-        warnings.warn(text, LimitWarning, stacklevel=2)
+    warn_limits(made.warnings)
     return made.labelled().to_xarray()
 
 

@@ -4,33 +4,23 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.errors import OutOfRange
 from roughmdr.fields import integrals
 from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
-from roughmdr.numerics.arguments import Floats, check_values
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_scalar, exactly_one
+from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
 
 _ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding
 _SHALLOW, _DEEP, _STEPS_A_DECADE = 1e-6, 10.0, 8  # where the largest shear is looked for, over a radius
 _POWER = {PRESSURE: 1, DISPLACEMENT: 0, STEEP: 1, DEEP: 1, STEEP_TURN: 2, DEEP_TURN: 2}
 """How often a weight is divided by a length."""
-
-
-def one_number(name: str, raw: ArrayLike) -> float:
-    """``raw`` as a float; OutOfRange unless it is one finite number."""
-    value = check_values(name, raw)
-    if value.ndim:
-        raise OutOfRange(
-            f"{name} has {value.ndim} dimensions; it must be one number, since a field is that of one contact"
-        )
-    return float(value)
 
 
 class HalfSpace(NamedTuple):
@@ -53,46 +43,41 @@ class HalfSpace(NamedTuple):
         cls,
         shape: Shape,
         effective_modulus: float,
-        work: float,
-        contact_radius: float | None,
-        indentation: float | None,
+        work: float | str,
+        contact_radius: float | str | None,
+        indentation: float | str | None,
     ) -> "HalfSpace":
         """The state under the one control that is given; RoughmdrError, OutOfRange and ShapeError as in ``indent``."""
-        controls = {"contact_radius": contact_radius, "indentation": indentation}
-        given = {name: value for name, value in controls.items() if value is not None}
-        if len(given) != 1:
-            names = " and ".join(given) or "none"
-            raise RoughmdrError(f"got {names}; a field takes exactly one of contact_radius, indentation")
-        ((control, raw),) = given.items()
-        value = one_number(control, raw)
-        adhesion, wanted = Adhesion.checked("jkr", work, None), np.array([value])
+        control, raw = exactly_one("a field", contact_radius=contact_radius, indentation=indentation)
+        value = check_scalar(control, raw, "m")
+        adhesion, values = Adhesion.checked("jkr", work, None), np.array([value])
         contact = Contact.of(shape, effective_modulus, adhesion)
         law = contact.law
         with np.errstate(all="ignore"):
             if control == "contact_radius":
-                radius, depth = wanted, contact.at_radius(wanted)["indentation"]
+                radius, depth = values, contact.at_radius(values)["indentation"]
                 t = apply(law.state_of_radius, radius, contact.radius, contact.params)
             else:
-                radius, depth = contact.at_indentation(wanted)["contact_radius"], wanted
-                distance = np.where(radius > 0.0, contact.reduced(wanted, contact.depth), 1.0)
+                radius, depth = contact.at_indentation(values)["contact_radius"], values
+                distance = np.where(radius > 0.0, contact.reduced(values, contact.depth), 1.0)
                 t = apply(law.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
         if not (math.isfinite(a) and math.isfinite(delta)):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
         width, rise, params = shape.nondimensional()
         params = np.concatenate([np.atleast_1d(np.asarray(params, dtype=np.float64)), [0.0]])
-        if isinstance(shape, FlatPunch):
+        if shape.flat_ended:
             stretch = delta
         else:
             profile_of(type(shape)).precompute(params)
             stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
-        state = float(t[0]) if isinstance(shape, ProfileShape) else a / width
+        state = float(t[0]) if law.curved else a / width
         return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, params)
 
     @property
     def sharp(self) -> bool:
         """Whether the pressure is infinite at r = 0."""
-        if self.radius == 0.0 or isinstance(self.shape, FlatPunch):
+        if self.radius == 0.0 or self.shape.flat_ended:
             return False
         height = profile_of(type(self.shape)).f_and_slope
         return bool(height(0.0, self.params)[1] > _ROUNDING * height(self.radius / self.width, self.params)[1])
@@ -104,7 +89,7 @@ class HalfSpace(NamedTuple):
             return found
         if self.sharp:
             found[0.0] = "the sharp tip of the profile"
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).corner:
+        if not self.shape.flat_ended and (profile := profile_of(type(self.shape))).corner:
             for index in range(profile.breakpoint_count(self.params)):
                 edge = profile.breakpoint(index, self.params)[0]
                 before, after = (
@@ -127,7 +112,7 @@ class HalfSpace(NamedTuple):
     def total(self, kind: int, at: Floats) -> Floats:
         """The integral of a weight with d(g - delta) to the edge of the contact, its own stretch included."""
         body = np.zeros_like(at)
-        if not isinstance(self.shape, FlatPunch):
+        if not self.shape.flat_ended:
             kernel = integrals.build(type(self.shape))
             body = apply(kernel, at, kind, self.radius, self.t, self.width, self.params)
             if np.isnan(body).any():
@@ -164,9 +149,7 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).breakpoint_count(
-            self.params
-        ):
+        if not self.shape.flat_ended and (profile := profile_of(type(self.shape))).breakpoint_count(self.params):
             smallest = min(smallest, profile.breakpoint(0, self.params)[0] * self.width)
         decades = math.log10(_DEEP / _SHALLOW) + math.log10(self.radius / smallest)
         depths = np.geomspace(_SHALLOW * smallest, _DEEP * self.radius, int(_STEPS_A_DECADE * decades))

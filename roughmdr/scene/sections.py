@@ -18,11 +18,11 @@ from pydantic_core import PydanticCustomError
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.numerics.arguments import check_number
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sweep import Sweep
+from roughmdr.schema.arguments import check_number
+from roughmdr.schema.material import check_one_body, effective_modulus
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
-from roughmdr.schema.units import effective_modulus
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
@@ -48,11 +48,7 @@ class Material(Section):
 
     @model_validator(mode="after")
     def _one_way(self) -> "Material":
-        if self.effective_modulus is not None:
-            if self.modulus is not None or self.poisson is not None:
-                raise RoughmdrError("takes effective_modulus alone, or modulus and poisson")
-        elif self.modulus is None or self.poisson is None:
-            raise RoughmdrError("needs effective_modulus, or modulus and poisson")
+        check_one_body(self.effective_modulus, self.modulus, self.poisson)
         return self
 
 

@@ -9,15 +9,19 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
+from roughmdr.schema.units import quantity
+from roughmdr.schema.wording import shown
 from roughmdr.shapes.profile import Profile, never_softens
 
 
 class Shape(ABC):
     """An axisymmetric profile with its tip at f(0) = 0, pointing at the flat. Its parameters are floats in SI.
+
+    A parameter may be given as a string with a unit, such as "10 um".
 
     A shape is a dimensionless form, stretched sideways by a width and upwards by a rise: that triple is all that
     the kernels see.
@@ -30,6 +34,8 @@ class Shape(ABC):
     """The sets of parameters that describe the shape, any one of them whole."""
     not_below: ClassVar[tuple[tuple[str, str, str], ...]] = ()
     """Pairs of parameters of which the first must not be below the second, and why."""
+    flat_ended: ClassVar[bool] = False
+    """Whether it is flat up to where it ends, so that the contact radius is always that radius."""
 
     @abstractmethod
     def f(self, r: ArrayLike) -> Floats:
@@ -63,6 +69,16 @@ class Shape(ABC):
     def ends(cls, parameters: dict[str, Floats]) -> Floats:
         """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
         return np.full(np.shape(next(iter(parameters.values()))), np.inf)
+
+    @property
+    def plateau(self) -> float:
+        """The radius [m] to which the tip is flat."""
+        return 0.0
+
+    @property
+    def limit(self) -> float:
+        """The radius [m] beyond which f is undefined; inf where it never is."""
+        return math.inf
 
     @classmethod
     @abstractmethod
@@ -107,7 +123,9 @@ class Shape(ABC):
         parameters = self.parameters
         type(self).spelling(set(parameters))
         for name, value in parameters.items():
-            check_one(type(self).name, name, value)
+            if isinstance(value, str):
+                parameters[name] = _in_si(type(self).name, name, value, self.units[name])
+            check_one(type(self).name, name, parameters[name])
         self.check(parameters)
         for name, value in parameters.items():
             object.__setattr__(self, name, float(value))
@@ -139,6 +157,14 @@ class ProfileShape(Shape):
     def branched(cls) -> bool:
         """Whether there can be more than one stable branch with adhesion."""
         return cls.profile.softening_count is not never_softens
+
+    @property
+    def plateau(self) -> float:
+        return self.nondimensional()[0] if self.profile.flat else 0.0
+
+    @property
+    def limit(self) -> float:
+        return self.profile.end * self.nondimensional()[0]
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         """a [m], g [m] and a g - G [m2] at t with 40 digits."""
@@ -222,6 +248,13 @@ def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:
         above = "" if math.isinf(most) else f" and at most {most:g} m"
         raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0{above}")
     return numbers
+
+
+def _in_si(owner: str, name: str, text: str, dimension: str) -> float:
+    try:
+        return quantity(text, dimension)
+    except RoughmdrError as error:
+        raise ShapeError(f"{owner}: {name} is {shown(text)}: {error}") from None
 
 
 def check_one(owner: str, name: str, value: object) -> None:

@@ -19,6 +19,15 @@ class FlatPunch(Shape):
     name: ClassVar[str] = "flat_punch"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
+    flat_ended: ClassVar[bool] = True
+
+    @property
+    def plateau(self) -> float:
+        return self.radius
+
+    @property
+    def limit(self) -> float:
+        return self.radius
 
     def f(self, r: ArrayLike) -> Floats:
         return np.zeros_like(radii("r", r, most=self.radius))

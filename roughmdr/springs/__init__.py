@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs.profile import OfFunction, OfShape
 from roughmdr.springs.row import Ints, Row, Rows
@@ -49,8 +49,6 @@ class Springs(NamedTuple):
         if count is None or not whole or not FEWEST <= index(count) <= most:
             allowed = f"a whole number from {FEWEST} to {most}{'' if most == MOST else ' for a function f(r)'}"
             raise RoughmdrError(f"springs is {count!r}; with method='springs' it must be {allowed}")
-        effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
-        work = check_number("work", work, "J/m^2", zero=True)
         profile = OfShape(shape) if isinstance(shape, Shape) else OfFunction(shape)
         if work > 0.0 and not profile.least_exponent > 0.5:
             raise OutOfRange(f"exponent is {profile.least_exponent:g}; with adhesion (work > 0) it must be above 1/2")

@@ -13,8 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows, Table, panels
+from roughmdr.schema.arguments import check_values
 from roughmdr.spectrum import RING, Moments
 from roughmdr.theory.ellipse import Ellipses
 from roughmdr.theory.equal_summits import Variable, check_variable, representable
@@ -37,8 +38,7 @@ def mean_over_summits(
     contacts: Contacts, separation: ArrayLike, effective_modulus: float, moments: Moments, variable: Variable
 ) -> Floats:
     """``variable`` at separations [m] from the mean plane of the surface."""
-    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
-    given = check_values("separation", separation)
+    given = check_values("separation", separation, "m")
     power, _ = _POWERS[check_variable(variable)]
     deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
     unit = {

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows, integrate
+from roughmdr.schema.arguments import check_number, exactly_one
 
 # Where a normal density is cut: below, by what is nothing beside the rest; above, where it is no longer a float.
 NORMAL_EDGES = np.array([-9.0, -5.0, -2.0, 0.0, 2.0, 5.0, 9.0, 16.0, 39.0])
@@ -42,10 +43,9 @@ class Heights(NamedTuple):
     """Whether it goes on beyond the last edge."""
 
     @classmethod
-    def of(cls, std: float | None, heights: Distribution | None) -> "Heights":
-        """Normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
-        if (std is None) == (heights is None):
-            raise RoughmdrError("heights takes either std [m], for normal heights, or a distribution; exactly one")
+    def of(cls, owner: str, std: float | str | None, heights: Distribution | None) -> "Heights":
+        """Return normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
+        exactly_one(owner, std=std, heights=heights)
         return _of_distribution(heights) if std is None else _normal(check_number("std", std, "m"))
 
     def mean(self, start: Floats, carried: Callable[[Rows, Floats], Floats]) -> Floats:
