@@ -123,7 +123,7 @@ class Contact(NamedTuple):
         lowest = -scale[0] if law.adhesive else 0.0
         if (force < lowest).any():
             worst = float(force.min())
-            raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
+            raise OutOfRange(f"force is {worst!r} N; it must be at least the pull-off force, {lowest!r} N")
         touching = (force >= lowest) if law.adhesive else (force > 0.0)
         distance = np.where(touching, self.reduced(force, scale), 1.0)
         state = apply(law.state_of_force, distance, params)
