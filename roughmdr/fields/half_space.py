@@ -71,7 +71,7 @@ class HalfSpace(NamedTuple):
         else:
             profile_of(type(shape)).precompute(params)
             stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
-        state = float(t[0]) if law.curved else a / width
+        state = float(t[0]) if law.iterative else a / width
         return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, params)
 
     @property
