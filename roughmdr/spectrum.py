@@ -17,8 +17,8 @@ from roughmdr.schema.arguments import check_number, exactly_one
 
 __all__ = ["Moments", "SelfAffine", "Spectrum"]
 
-RING = 1.5
-"""Nayak's parameter alpha of waves of one length, all directions: the least of all isotropic surfaces."""
+MIN_ALPHA = 1.5
+"""Nayak's parameter alpha of waves of one length in all directions; every other isotropic surface has a larger one."""
 
 
 class Moments(NamedTuple):
@@ -34,12 +34,12 @@ class Moments(NamedTuple):
     @classmethod
     def checked(cls, m0: float | str, m2: float, m4: float | str) -> Moments:
         """Return the moments; OutOfRange unless all are above 0 and m0 m4/m2^2 above 3/2."""
-        given = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "m-2"))
-        if not RING < given.alpha < math.inf:
+        moments = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "m-2"))
+        if not MIN_ALPHA < moments.alpha < math.inf:
             raise OutOfRange(
-                f"alpha = m0 m4/m2^2 is {given.alpha:g}; it must be above 3/2, as it is for every isotropic surface"
+                f"alpha = m0 m4/m2^2 is {moments.alpha:g}; it must be above 3/2, as it is for every isotropic surface"
             )
-        return given
+        return moments
 
     @property
     def alpha(self) -> float:
@@ -48,7 +48,7 @@ class Moments(NamedTuple):
 
     @property
     def summit_density(self) -> float:
-        """Summits of a unit of area, m4/(6 pi sqrt(3) m2) [1/m2] (Nayak)."""
+        """Summits per unit area, m4/(6 pi sqrt(3) m2) [1/m2] (Nayak)."""
         return self.m4 / self.m2 / (6.0 * math.pi * math.sqrt(3.0))
 
 
@@ -57,38 +57,38 @@ class Spectrum(Protocol):
 
     @property
     def long_wave(self) -> float:
-        """The longest wavelength [m]."""
+        """Longest wavelength [m]."""
 
     @property
     def short_wave(self) -> float:
-        """The shortest [m]."""
+        """Shortest wavelength [m]."""
 
     def __call__(self, q: Floats) -> Floats:
-        """C(q) [m4] at wave numbers q [1/m] between those of the two."""
+        """Return C(q) [m4] at wave numbers q [1/m] between those of the two."""
 
 
-def wave_numbers(spectrum: Spectrum) -> tuple[float, float]:
+def wave_number_range(spectrum: Spectrum) -> tuple[float, float]:
     """Return the smallest and the largest wave number [1/m] of a spectrum.
 
-    RoughmdrError where it is none, OutOfRange where its wavelengths are not above 0 and in order.
+    RoughmdrError unless it is a spectrum, OutOfRange unless its wavelengths are above 0 and in order.
     """
     if not (callable(spectrum) and hasattr(spectrum, "long_wave") and hasattr(spectrum, "short_wave")):
         raise RoughmdrError(
             f"spectrum is {spectrum!r}; it must be C(q) with long_wave and short_wave, as SelfAffine is"
         )
-    long_wave, short_wave = check_waves(spectrum.long_wave, spectrum.short_wave)
+    long_wave, short_wave = check_wavelengths(spectrum.long_wave, spectrum.short_wave)
     return 2.0 * math.pi / long_wave, 2.0 * math.pi / short_wave
 
 
-def levels(spectrum: Spectrum, q: Floats) -> Floats:
+def spectral_density(spectrum: Spectrum, q: Floats) -> Floats:
     """Return C(q) [m4]; OutOfRange unless it is finite and at least 0."""
-    level = np.asarray(spectrum(q), dtype=np.float64)
-    if not (np.isfinite(level).all() and (level >= 0.0).all()):
-        raise OutOfRange("spectrum has levels that are not finite or below 0; C(q) must be finite and at least 0")
-    return level
+    density = np.asarray(spectrum(q), dtype=np.float64)
+    if not (np.isfinite(density).all() and (density >= 0.0).all()):
+        raise OutOfRange("spectrum has values that are not finite or below 0; C(q) must be finite and at least 0")
+    return density
 
 
-def check_waves(long_wave: float | str, short_wave: float | str) -> tuple[float, float]:
+def check_wavelengths(long_wave: float | str, short_wave: float | str) -> tuple[float, float]:
     """Return both wavelengths [m]; OutOfRange unless they are above 0 and in order."""
     long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
     if not short_wave < long_wave:
@@ -157,7 +157,7 @@ class SelfAffine(NamedTuple):
         hurst = check_number("hurst", hurst, "1", zero=True)
         if hurst > 1.0:
             raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
-        long_wave, short_wave = check_waves(long_wave, short_wave)
+        long_wave, short_wave = check_wavelengths(long_wave, short_wave)
         one = cls(hurst, long_wave, short_wave, 1.0)
         name, value = exactly_one("a self-affine spectrum", rms_height=rms_height, rms_slope=rms_slope)
         unit = {"rms_height": "m", "rms_slope": "1"}[name]
@@ -177,17 +177,16 @@ class SelfAffine(NamedTuple):
 
     @property
     def moments(self) -> Moments:
-        """2 pi ∫ q C, pi ∫ q^3 C and (3 pi/4) ∫ q^5 C dq."""
-        return Moments(
-            2.0 * math.pi * self._integral(1), math.pi * self._integral(3), 0.75 * math.pi * self._integral(5)
-        )
+        """Moments of a profile: 2 pi ∫ q C dq, pi ∫ q^3 C dq and (3 pi/4) ∫ q^5 C dq."""
+        one, three, five = (self._integral(k) for k in (1, 3, 5))
+        return Moments(2.0 * math.pi * one, math.pi * three, 0.75 * math.pi * five)
 
     @property
     def rms_height(self) -> float:
-        """sqrt(<h^2>) [m]."""
+        """Root of <h^2> [m]."""
         return math.sqrt(self.moments.m0)
 
     @property
     def rms_slope(self) -> float:
-        """sqrt(<|grad h|^2>) [1]."""
+        """Root of <|grad h|^2> [1]."""
         return math.sqrt(2.0 * self.moments.m2)

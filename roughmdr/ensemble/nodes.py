@@ -10,6 +10,7 @@ import numpy as np
 from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 
 END = 10.0
 """The normal score beyond which heights are left out where tails are light: their share is 1e-23."""
@@ -159,8 +160,7 @@ class Rule(NamedTuple):
     def between(cls, cuts: list[float], order: int) -> "Rule":
         """Gauss's rule for what is smooth in the root of the distance to ``cuts``: ``order`` scores in each part."""
         ends = np.unique(np.clip([-LAST, *cuts, LAST], -LAST, LAST))
-        nodes, weights = np.polynomial.legendre.leggauss(order)
-        y, weights = 0.5 * (1.0 + nodes), 0.5 * weights
+        y, weights = unit_gauss(order)
         scores, shares = [], []
         for low, high in pairwise(ends):
             begins, ends_there = low > -LAST, high < LAST

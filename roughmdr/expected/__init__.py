@@ -1,4 +1,4 @@
-"""The expected law of an ensemble: integrals over the distribution that asperities are drawn from, instead of draws."""
+"""The expected law of an ensemble: integrals over the distribution of its asperities, instead of draws from it."""
 
 from roughmdr.expected.compute import compute, prepare
 

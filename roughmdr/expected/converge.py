@@ -1,6 +1,7 @@
-"""A rule over the shape parameters with so many nodes that more change nothing, and how far it may be off.
+"""The choice of a rule over the shape parameters that more nodes do not change, and the error bound of that rule.
 
-Gauss's rule for smooth functions, of ever higher order; where it does not converge over a single parameter, panels.
+It is Gauss's rule for smooth functions, of increasing order; where that does not converge over a single parameter,
+panels.
 """
 
 import math
@@ -14,125 +15,128 @@ import numpy as np
 from roughmdr.aggregate.totals import STIFFNESS
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
-from roughmdr.expected.kinks import Parted
-from roughmdr.expected.node import Node, Problem, dissipated_of, set_up, totals_of
-from roughmdr.expected.panels import AGREE, Curves, halve_panels
+from roughmdr.expected.kinks import KinkSplit
+from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of
+from roughmdr.expected.panels import RTOL_PANEL, Curves, halve_panels
 from roughmdr.numerics.arguments import Floats
 
 FIRST_ORDER = 8
+WARNED_ERROR = 1e-3
+"""Of the largest force: users are warned of larger errors."""
 _ORDERS = (12, 18, 27, 40, 60, 90, 135)
-_MOST_NODES = 6_000
-_AGREE = 1e-11  # of the largest force: orders whose forces part by less are both right
-DOUBTFUL = 1e-3
-"""Of the largest force: an error that users are warned of."""
-_ROUGH = 1e-6  # of the largest: an error for which one parameter is integrated over panels
-_KINKED = 1e-7  # of the greatest values: panels agree so far where kinks make more too dear
-_BY_CHANCE = 10.0  # times what panels part by, where kinks between their nodes may be seen by none
-_SLOW = 0.3  # a higher order that leaves so much of the difference does not help
-_SLOWEST = 0.9  # as if each difference were at most so much of the one before
-_POWERS = (0.5, 1.0)  # of a parameter that forces go with
-_PANELS, _PANEL_ORDER = np.arange(-8.0, 8.5, 0.5).tolist(), 12  # ends of panels over normal scores
-_ROUNDED = 1e-10  # means that part by less do so by roundings and by what is left out
-_PROBES = 5  # steps at which they are compared where all are alike: where nothing lets go
+_MAX_NODES = 6_000
+_RTOL_ORDER = 1e-11  # of the largest force: orders whose forces differ by less are both right
+_MAX_ERROR = 1e-6  # of the largest: one parameter with a larger error is integrated over panels
+_RTOL_KINKED = 1e-7  # of the largest values: agreement of panels where kinks make more too expensive
+_KINK_FACTOR = 10.0  # times the change by halving panels, where no node may see the kinks between nodes
+_SLOW = 0.3  # a higher order that leaves more of the difference does not help
+_SLOWEST = 0.9  # a difference is taken to be at most so much of the one before
+_EXPONENTS = (0.5, 1.0)  # forces are about proportional to such powers of a parameter
+_PANEL_ENDS, _PANEL_ORDER = np.arange(-8.0, 8.5, 0.5).tolist(), 12  # normal scores
+_MEAN_ROUNDING = 1e-10  # relative: means that differ by less do so by roundings and by what is left out
+_PROBES = 5  # steps that are compared where no contact is hysteretic
 
 
 class Converged(NamedTuple):
     """A rule with its nodes."""
 
     rule: Rule
-    nodes: list[Node]
-    doubt: float
-    """How far the force may be off over its largest value; inf where that is not known."""
-    doubt_of_others: float
-    """Likewise of what else is asked for, but for the stiffness, which runs off where contacts let go."""
+    nodes: list[QuadratureNode]
+    error: float
+    """Error bound of the force over its largest value; inf where there is none."""
+    error_of_others: float
+    """Likewise of the other rows, except for the stiffness, which is infinite at detachment."""
 
 
-def converge(asked: Problem, parted: Parted | None, *, dissipating: bool) -> Converged:
-    """The rule for all that is asked for; RoughmdrError where a contact is not representable.
+def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) -> Converged:
+    """Return the rule for all rows; RoughmdrError where a contact is not representable.
 
-    Steps at which the rule is parted do not count.
+    Steps at which the rule is split are not considered.
     """
-    separation = asked.path.separation
-    steps = [step for step in range(separation.size) if parted is None or step not in parted.cuts]
-    if not asked.hysteretic:
+    separation = problem.path.separation
+    steps = [step for step in range(separation.size) if split is None or step not in split.cuts]
+    if not problem.hysteretic:
         steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
         steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
-    rows = tuple(row for row in asked.rows if row != STIFFNESS)
+    rows = tuple(row for row in problem.rows if row != STIFFNESS)
 
-    def curves(nodes: list[Node]) -> Floats:
-        """Of the force and all others: [curve, step]."""
-        found = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
-        return np.vstack([found, dissipated_of(nodes, separation.size)[steps]]) if dissipating else found
+    def curves(nodes: list[QuadratureNode]) -> Floats:
+        """Return the force and all others: [curve, step]."""
+        totals = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
+        return np.vstack([totals, dissipated_of(nodes, separation.size)[steps]]) if dissipating else totals
 
-    def off(rule: Rule) -> float:
-        return sum(_off(parameter, rule) for parameter in asked.source.drawn_parameters)
+    def mean_error(rule: Rule) -> float:
+        return sum(_mean_error(parameter, rule) for parameter in problem.source.drawn_parameters)
 
-    if not asked.source.one_parameter:
-        product = _smooth(asked, curves)
-        own = off(product.rule)
-        others = max(product.doubt_of_others, own if len(rows) > 1 or dissipating else 0.0)
-        return product._replace(doubt=max(product.doubt, own), doubt_of_others=others)
-    # A contact that lets go makes a kink in what goes with the parameter, each step another one.
-    rough, agree, chance = (DOUBTFUL, _KINKED, _BY_CHANCE) if asked.hysteretic else (_ROUGH, AGREE, 1.0)
+    if not problem.source.one_parameter:
+        product = _converge_order(problem, curves)
+        of_means = mean_error(product.rule)
+        others = max(product.error_of_others, of_means if len(rows) > 1 or dissipating else 0.0)
+        return product._replace(error=max(product.error, of_means), error_of_others=others)
+    # A contact that detaches makes a kink over the parameter, at each step another one.
+    limit, rtol, factor = (
+        (WARNED_ERROR, _RTOL_KINKED, _KINK_FACTOR) if problem.hysteretic else (_MAX_ERROR, RTOL_PANEL, 1.0)
+    )
     smooth: Converged | None = None
-    with suppress(RoughmdrError):  # of parameters that next to no asperity has
-        smooth = _smooth(asked, curves)
-    if smooth is not None and max(smooth.doubt, smooth.doubt_of_others, off(smooth.rule)) <= rough:
+    with suppress(RoughmdrError):  # of parameters that almost no asperity has
+        smooth = _converge_order(problem, curves)
+    if smooth is not None and max(smooth.error, smooth.error_of_others, mean_error(smooth.rule)) <= limit:
         return smooth
-    rule, nodes, doubts = halve_panels(partial(set_up, asked), curves, agree)
-    doubts *= chance
-    if smooth is not None and max(smooth.doubt, smooth.doubt_of_others) <= doubts.max():
+    rule, nodes, errors = halve_panels(partial(set_up, problem), curves, rtol)
+    errors *= factor
+    if smooth is not None and max(smooth.error, smooth.error_of_others) <= errors.max():
         return smooth
-    return Converged(rule, nodes, float(doubts[0]), float(doubts[1:].max(initial=0.0)))
+    return Converged(rule, nodes, float(errors[0]), float(errors[1:].max(initial=0.0)))
 
 
-def _smooth(asked: Problem, curves: Curves) -> Converged:
-    """Gauss's rule for smooth functions."""
+def _converge_order(problem: Problem, curves: Curves) -> Converged:
+    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help."""
     rule = Rule.smooth(FIRST_ORDER)
-    nodes = set_up(asked, rule)
+    nodes = set_up(problem, rule)
     found = curves(nodes)
-    before = doubts = np.full(len(found), math.inf)
+    last = changes = np.full(len(found), math.inf)
     for order in _ORDERS:
         finer_rule = Rule.smooth(order)
-        count = asked.source.nodes(finer_rule).share.size
+        count = problem.source.nodes(finer_rule).share.size
         if count == len(nodes):  # no parameter is drawn
             return Converged(rule, nodes, 0.0, 0.0)
-        if count > _MOST_NODES:
+        if count > _MAX_NODES:
             break
-        finer = set_up(asked, finer_rule)
-        again = curves(finer)
-        largest, apart = (np.abs(values).max(axis=1, initial=0.0) for values in (again, again - found))
-        before, doubts = doubts, apart / np.where(largest > 0.0, largest, 1.0)
-        wanting = doubts > _AGREE
-        if not wanting.any():
+        finer_nodes = set_up(problem, finer_rule)
+        finer = curves(finer_nodes)
+        largest, change = (np.abs(values).max(axis=1, initial=0.0) for values in (finer, finer - found))
+        last, changes = changes, change / np.where(largest > 0.0, largest, 1.0)
+        too_large = changes > _RTOL_ORDER
+        if not too_large.any():
             break
-        rule, nodes, found = finer_rule, finer, again
-        if (doubts > _SLOW * before)[wanting].all():
+        rule, nodes, found = finer_rule, finer_nodes, finer
+        if (changes > _SLOW * last)[too_large].all():
             break
-    off = [_left(doubt, last, asked.hysteretic) for doubt, last in zip(doubts.tolist(), before.tolist(), strict=True)]
-    return Converged(rule, nodes, off[0], max(off[1:], default=0.0))
+    pairs = zip(changes.tolist(), last.tolist(), strict=True)
+    errors = [_changes_to_come(change, before, problem.hysteretic) for change, before in pairs]
+    return Converged(rule, nodes, errors[0], max(errors[1:], default=0.0))
 
 
-def _off(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
-    """How far a rule over the scores of a parameter is off, relative, in the means of powers that forces go with.
+def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
+    """Return the relative error of a rule in the means of powers of a parameter that forces are proportional to.
 
-    Rules may agree with each other and all be off where a parameter has a pole.
+    Where a parameter has a pole, rules may agree with each other and all be wrong.
     """
-    fine = Rule.between(_PANELS, _PANEL_ORDER)
+    fine = Rule.between(_PANEL_ENDS, _PANEL_ORDER)
     values, exact = parameter(rule.scores), parameter(fine.scores)
     worst = 0.0
-    for power in _POWERS:
-        mean = float(fine.weights @ exact**power)
+    for exponent in _EXPONENTS:
+        mean = float(fine.weights @ exact**exponent)
         if math.isfinite(mean):
-            worst = max(worst, abs(float(rule.weights @ values**power) / mean - 1.0))
-    return worst if worst > _ROUNDED else 0.0
+            worst = max(worst, abs(float(rule.weights @ values**exponent) / mean - 1.0))
+    return worst if worst > _MEAN_ROUNDING else 0.0
 
 
-def _left(doubt: float, last: float, hysteretic: bool) -> float:
-    """The sum of all differences to come: they fall as the last two did, or more slowly."""
-    fall = min(doubt / last, _SLOWEST) if last > 0.0 else _SLOWEST
-    if doubt <= _AGREE or last == math.inf:  # either of the two may be nearer, and the coarser one is taken
-        return 2.0 * doubt
-    if hysteretic or doubt > _SLOW * last:  # between kinks two orders may agree by chance
-        doubt = max(doubt, last)
-    return doubt * max(fall / (1.0 - fall), 1.0)
+def _changes_to_come(change: float, before: float, hysteretic: bool) -> float:
+    """Return the sum of all later changes, which decrease as the last two did or more slowly."""
+    ratio = min(change / before, _SLOWEST) if before > 0.0 else _SLOWEST
+    if change <= _RTOL_ORDER or before == math.inf:  # either of the two may be nearer, and the coarser one is taken
+        return 2.0 * change
+    if hysteretic or change > _SLOW * before:  # between kinks two orders may agree by chance
+        change = max(change, before)
+    return change * max(ratio / (1.0 - ratio), 1.0)

@@ -1,7 +1,7 @@
-"""What one contact bears on each of its stable branches, as tables over the root of the distance to where it begins.
+"""Force, area and other quantities of one contact on each of its stable branches, tabulated.
 
-With x the reduced distance to the onset of contact and x = foot + s^2, every quantity is smooth in s even at a fold,
-but for the stiffness, which runs off as 1/s: of that 2 s times it is tabulated.
+x is the reduced distance to the onset of contact. On a branch that begins at x = foot every quantity is smooth in
+s = sqrt(x - foot), even at a fold; but the stiffness grows as 1/s there, and is tabulated times 2 s.
 """
 
 import math
@@ -15,35 +15,33 @@ from roughmdr.aggregate.totals import AREA, COUNT, ENERGY, FORCE, RADIUS, STIFFN
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights
 from roughmdr.errors import OutOfRange
-from roughmdr.expected.table import Table
+from roughmdr.expected.table import AdaptiveTable
 from roughmdr.kernels.elementwise import apply, apply_all
-from roughmdr.kernels.profile import layout as places
+from roughmdr.kernels.profile import layout
 from roughmdr.numerics.arguments import Floats
 
-_TOLERANCE, _TOLERANCE_STIFFNESS = 2e-12, 1e-10
-"""Of the greatest value on a piece: about what the kernels themselves are right to away from a fold."""
+# Of the largest value on a piece: about the error of the kernels themselves away from a fold.
+_RTOL, _RTOL_STIFFNESS = 2e-12, 1e-10
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
-_LAST_BITS = 2.0**-44
-# Of the width of the heights: where what is less deep adds nothing, and where without adhesion the first piece ends.
-_NEAREST, _SHALLOW = 1e-7, 1e-2
-_ALIKE = math.log(1e6)  # heights that differ less beside the depths of their contacts
-_WIDER, _MOST_EDGES = 4.0, 100  # how much wider than the one before it a piece may be at first
+_ROUNDING = 2.0**-44
+# Of the width of the heights: where smaller indentations add nothing, and where without adhesion the first piece ends.
+_NEGLIGIBLE_INDENTATION, _FIRST_EDGE = 1e-7, 1e-2
+_LOG_COMMON_RANGE = math.log(1e6)  # heights over depths that differ by less share a table
+_GROWTH, _MAX_EDGES = 4.0, 100  # of the width of a piece over that of the one before, before any is halved
 
 
 class Curve(NamedTuple):
-    """The tables of all branches of one contact, one after the other; rows over their natural scales, the stiffness
-    times 2 s.
-    """
+    """The tables of all branches of one contact, one after the other; rows over their natural scales."""
 
     first: NDArray[np.int64]
-    """The first piece of each branch, and the number of all: [branch + 1]."""
-    foot: Floats
-    """x where each branch begins: [branch]."""
-    table: Table
+    """The first piece of each branch, and the number of all pieces: [branch + 1]."""
+    offset: Floats
+    """s^2 less the indentation over the depth: [branch]."""
+    table: AdaptiveTable
 
 
 def scales_of(contact: Contact, rows: Sequence[int]) -> Floats:
-    """What the rows of a curve are multiplied by."""
+    """Return the natural scale of each row."""
     scales = {
         FORCE: contact.force,
         RADIUS: contact.radius,
@@ -56,79 +54,82 @@ def scales_of(contact: Contact, rows: Sequence[int]) -> Floats:
 
 
 def curves_of(
-    contacts: list[Contact], heights: tuple[Heights, ...], deepest: float, rows: tuple[int, ...]
+    contacts: list[Contact], heights: tuple[Heights, ...], closest: float, rows: tuple[int, ...]
 ) -> list[Curve]:
-    """The curve of each contact, as far as the flat at ``deepest`` [m] presses its highest summit.
+    """Return the curve of each contact, up to the indentation of its highest summit by the flat at ``closest`` [m].
 
-    Contacts that differ in their scales alone share one, unless the heights differ much beside them.
+    Contacts with equal parameters share one, unless their ranges of heights over depths are very different.
     """
     ranges = [
-        (max(own.edges[-1] - (deepest - own.origin), own.scale) / contact.depth[0], own.scale / contact.depth[0])
+        (max(own.edges[-1] - (closest - own.origin), own.scale) / contact.depth[0], own.scale / contact.depth[0])
         for contact, own in zip(contacts, heights, strict=True)
     ]
     groups: dict[tuple[bytes, int], list[int]] = {}
-    for number, (contact, (_, typical)) in enumerate(zip(contacts, ranges, strict=True)):
-        decade = round(math.log(typical) / _ALIKE) if 0.0 < typical < math.inf else 0
-        groups.setdefault((np.asarray(contact.params).tobytes(), decade), []).append(number)
+    for number, (contact, (_, width)) in enumerate(zip(contacts, ranges, strict=True)):
+        magnitude = round(math.log(width) / _LOG_COMMON_RANGE) if 0.0 < width < math.inf else 0
+        groups.setdefault((np.asarray(contact.params).tobytes(), magnitude), []).append(number)
     curves: dict[int, Curve] = {}
-    for alike in groups.values():
-        farthest, typical = max(ranges[number][0] for number in alike), min(ranges[number][1] for number in alike)
-        curves |= dict.fromkeys(alike, _curve(contacts[alike[0]], farthest, typical, rows))
+    for group in groups.values():
+        deepest, width = max(ranges[number][0] for number in group), min(ranges[number][1] for number in group)
+        curves |= dict.fromkeys(group, _curve(contacts[group[0]], deepest, width, rows))
     return [curves[number] for number in range(len(contacts))]
 
 
-def _curve(contact: Contact, farthest: float, typical: float, rows: tuple[int, ...]) -> Curve:
-    """Up to the reduced indentation ``farthest``, for heights that are as wide as ``typical``."""
-    tolerance = np.array([_TOLERANCE_STIFFNESS if row == STIFFNESS else _TOLERANCE for row in rows])
+def _curve(contact: Contact, deepest: float, width: float, rows: tuple[int, ...]) -> Curve:
+    """Tabulate up to the indentation ``deepest``, for heights of this width, both over the depth."""
     adhesive = contact.law.adhesive
-    least = _FOLD if adhesive else math.sqrt(_NEAREST * typical)
-    first_edge = 1.0 if adhesive else math.sqrt(_SHALLOW * typical)
+    rtol = np.array([_RTOL_STIFFNESS if row == STIFFNESS else _RTOL for row in rows])
+    nearest = _FOLD if adhesive else math.sqrt(_NEGLIGIBLE_INDENTATION * width)
+    first_edge = 1.0 if adhesive else math.sqrt(_FIRST_EDGE * width)
 
-    def narrow(low: Floats, high: Floats) -> Floats:
-        return np.where(low <= least, least, _LAST_BITS * high)
+    def min_width(low: Floats, high: Floats) -> Floats:
+        return np.where(low <= nearest, nearest, _ROUNDING * high)
 
     def weight(low: Floats, high: Floats, _: Floats) -> Floats:
         return (high - low) / high
 
     feet, tops = branch_ends(contact)
-    last = max(farthest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
+    last = max(deepest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
     tables = []
-    for rung, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
+    for branch, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
 
-        def bears(s: Floats, rung: int = rung, foot: float = foot) -> Floats:
-            return _quantities(contact, s, foot, rung, rows)
+        def quantities(s: Floats, branch: int = branch, foot: float = foot) -> Floats:
+            return _quantities(contact, s, foot, branch, rows)
 
-        # A piece that reaches far higher than another begins would not hold what is small there.
+        # On a piece that ends far higher than it begins, small values at its begin would be lost.
         end = math.sqrt(top - foot)
-        if end > first_edge * _WIDER**_MOST_EDGES:
+        if end > first_edge * _GROWTH**_MAX_EDGES:
             raise OutOfRange(
-                f"the heights reach {farthest:.3g} times the natural depth of {contact.shape}; the expected law "
-                f"goes up to {(first_edge * _WIDER**_MOST_EDGES) ** 2:.3g} times, estimator 'sampled' has no such limit"
+                f"the heights reach {deepest:.3g} times the natural depth of {contact.shape}; the expected law "
+                f"goes up to {(first_edge * _GROWTH**_MAX_EDGES) ** 2:.3g} times, estimator 'sampled' has no such limit"
             )
-        edges = [0.0, *(first_edge * _WIDER**k for k in range(_MOST_EDGES) if first_edge * _WIDER**k < end), end]
-        tables.append(Table.of(bears, np.array(edges), tolerance, narrow, weight))
+        edges = [0.0, *(first_edge * _GROWTH**k for k in range(_MAX_EDGES) if first_edge * _GROWTH**k < end), end]
+        tables.append(AdaptiveTable.of(quantities, np.array(edges), rtol, min_width, weight))
     first = np.cumsum([0, *(table.low.size for table in tables)])
-    merged = Table(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
-    return Curve(first, np.array(feet), merged)
+    merged = AdaptiveTable(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
+    return Curve(first, float(adhesive) - np.array(feet), merged)
 
 
 def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
-    """x where each stable branch begins, and where each but the last ends."""
-    row = contact.params
-    if not contact.law.branched or row.size < -places.TOP_X:  # the row of a punch has no place for others
+    """Return x where each stable branch begins, and where each but the last ends."""
+    params = contact.params
+    if not contact.law.branched or params.size < -layout.TOP_X:  # those of a punch hold one branch only
         return [0.0], []
-    count = int(row[places.COUNT])
-    feet = np.maximum(row[places.FOOT_X : places.FOOT_X + count], 0.0).tolist()
-    return feet, row[places.TOP_X : places.TOP_X + count - 1].tolist()
+    count = int(params[layout.COUNT])
+    feet = np.maximum(params[layout.FOOT_X : layout.FOOT_X + count], 0.0).tolist()
+    return feet, params[layout.TOP_X : layout.TOP_X + count - 1].tolist()
 
 
-def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple[int, ...]) -> Floats:
-    """The wanted quantities at s, the stiffness times 2 s: [row, s]."""
-    law, params = contact.law, contact.params
+def _quantities(contact: Contact, s: Floats, foot: float, branch: int, rows: tuple[int, ...]) -> Floats:
+    """Return the quantities at s, the stiffness times 2 s: [row, s]."""
+    kernels, params = contact.law, contact.params
     x = foot + s * s
-    state = apply(law.state_on_branch, x, float(rung), params) if law.branched else apply(law.state, x, params)
-    radius, force, stiffness = apply_all(law.radius_force_stiffness, state, params)
-    found = {
+    if kernels.branched:
+        state = apply(kernels.state_on_branch, x, float(branch), params)
+    else:
+        state = apply(kernels.state, x, params)
+    radius, force, stiffness = apply_all(kernels.radius_force_stiffness, state, params)
+    quantities = {
         FORCE: force,
         RADIUS: radius,
         AREA: radius * radius,
@@ -136,5 +137,5 @@ def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple
         COUNT: np.where(radius > 0.0, 1.0, 0.0),
     }
     if ENERGY in rows:
-        found[ENERGY] = apply(law.energy, state, params)
-    return np.array([found[row] for row in rows])
+        quantities[ENERGY] = apply(kernels.energy, state, params)
+    return np.array([quantities[row] for row in rows])

@@ -1,4 +1,4 @@
-"""Which summits are in contact at each step of the path, and on which branch: intervals of their height."""
+"""Intervals of the heights of the summits that are in contact at each step of the path, with their branches."""
 
 import math
 from itertools import pairwise
@@ -15,91 +15,95 @@ from roughmdr.numerics.arguments import Floats
 
 
 class Intervals(NamedTuple):
-    """Summits from ``begin`` to ``end`` [m] at a step; on a branch, or moved from one branch to another, 0 for none."""
+    """Summits from ``begin`` to ``end`` [m] that at a step are on a branch, or jump from one to another; 0 is none."""
 
     step: NDArray[np.int64]
-    before: NDArray[np.int64]
-    rung: NDArray[np.int64]
+    branch_before: NDArray[np.int64]
+    branch: NDArray[np.int64]
     begin: Floats
     end: Floats
 
     @classmethod
-    def of(cls, found: list[tuple[int, int, int, float, float]]) -> "Intervals":
-        """From tuples in the order of the fields."""
-        columns = np.array(found, dtype=np.float64).reshape(-1, 5).T
-        step, before, rung = columns[:3].astype(np.int64)
-        return cls(step, before, rung, columns[3], columns[4])
+    def of(cls, rows: list[tuple[int, int, int, float, float]]) -> "Intervals":
+        """Return intervals from tuples in the order of the fields."""
+        columns = np.array(rows, dtype=np.float64).reshape(-1, 5).T
+        step, before, branch = columns[:3].astype(np.int64)
+        return cls(step, before, branch, columns[3], columns[4])
+
+    def at_steps(self, selected: NDArray[np.bool_]) -> "Intervals":
+        """Return the intervals of the steps that are ``selected`` [step]."""
+        kept = selected[self.step]
+        step, before, branch, begin, end = self
+        return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
 
 
-def remember(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
-    """Where summits are in contact at each step, and where they jumped on the way to it."""
+def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
+    """Return the summits in contact at each step, and those that jumped since the step before."""
     if contact.law.branched:
-        return _on_branches(contact, path.separation)
-    return _on_one(contact, path)
+        return _with_branches(contact, path.separation)
+    return _without_branches(contact, path)
 
 
-def _on_one(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
-    """Without branches all summits above one height are in contact: that of the lowest step of the staircase."""
+def _without_branches(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
+    """Return one interval a step: all summits above the lowest height that a step of the staircase holds."""
     depth = contact.depth[0] if contact.law.adhesive else 0.0
     memory = path.memory
-    each = np.maximum(memory.bottom, memory.top - depth)
-    lowest = np.minimum.reduceat(each, memory.first[:-1])
+    lowest = np.minimum.reduceat(np.maximum(memory.bottom, memory.top - depth), memory.first[:-1])
     steps = np.arange(lowest.size)
-    one = np.ones_like(steps)
-    held = Intervals(steps, one, one, lowest, np.full_like(lowest, math.inf))
-    earlier = np.concatenate([[math.inf], lowest[:-1]])
-    made = (lowest < earlier).astype(np.int64)
-    moved = Intervals(steps, 1 - made, made, np.minimum(lowest, earlier), np.maximum(lowest, earlier))
-    return held, moved
+    ones = np.ones_like(steps)
+    in_contact = Intervals(steps, ones, ones, lowest, np.full_like(lowest, math.inf))
+    lowest_before = np.concatenate([[math.inf], lowest[:-1]])
+    made = (lowest < lowest_before).astype(np.int64)
+    jumped = Intervals(steps, 1 - made, made, np.minimum(lowest, lowest_before), np.maximum(lowest, lowest_before))
+    return in_contact, jumped
 
 
-def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
-    """With branches: the heights are cut wherever a jump begins, and each interval moves as one."""
-    row, depth, reach = contact.params, contact.depth[0], contact.adhesion.range
+def _with_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
+    """Divide the heights wherever a jump begins, and follow the branch of each interval from step to step."""
+    params, depth, adhesion_range = contact.params, contact.depth[0], contact.adhesion.range
     feet, tops = branch_ends(contact)
-    offsets = [(mark - 1.0) * depth for mark in (*feet, *tops, float(row[ONSET]))]
-    bounds, rungs = [-math.inf, math.inf], [0]
-    held, moved = [], []
+    offsets = [*((x - 1.0) * depth for x in (*feet, *tops, float(params[ONSET]))), -adhesion_range]
+    bounds, branches = [-math.inf, math.inf], [0]
+    in_contact, jumped = [], []
     for step, h in enumerate(separation.tolist()):
-        cuts = sorted({*bounds, *(h + offset for offset in offsets), h - reach})
+        cuts = sorted({*bounds, *(h + offset for offset in offsets)})
         befores, afters = [], []
-        at = 0
+        number = 0
         for low, high in pairwise(cuts):
-            while bounds[at + 1] <= low:
-                at += 1
-            z = _within(low, high, depth)
+            while bounds[number + 1] <= low:
+                number += 1
+            z = _inside(low, high, depth)
             x = max(((z - h) + depth) / depth, 0.0)
-            befores.append(rungs[at])
-            afters.append(int(contact.law.branch(x, float(rungs[at]), z >= h - reach, row)))
-        bounds, rungs = [-math.inf], []
+            befores.append(branches[number])
+            afters.append(int(contact.law.branch(x, float(branches[number]), z >= h - adhesion_range, params)))
+        bounds, branches = [-math.inf], []
         for (low, high), before, after in zip(pairwise(cuts), befores, afters, strict=True):
             if before != after:
-                moved.append((step, before, after, low, high))
-            if rungs and rungs[-1] == after:
+                jumped.append((step, before, after, low, high))
+            if branches and branches[-1] == after:
                 bounds[-1] = high
             else:
-                rungs.append(after)
+                branches.append(after)
                 bounds.append(high)
-        held += [
-            (step, rung, rung, low, high) for rung, (low, high) in zip(rungs, pairwise(bounds), strict=True) if rung > 0
-        ]
-    return Intervals.of(held), Intervals.of(moved)
+        found = zip(branches, pairwise(bounds), strict=True)
+        in_contact += [(step, branch, branch, low, high) for branch, (low, high) in found if branch > 0]
+    return Intervals.of(in_contact), Intervals.of(jumped)
 
 
-def _within(low: float, high: float, depth: float) -> float:
-    """A height between two, of which one may be infinite."""
+def _inside(low: float, high: float, depth: float) -> float:
+    """Return a height between two, of which one may be infinite."""
     if low == -math.inf:
         return high - depth
     return low + depth if high == math.inf else 0.5 * (low + high)
 
 
-def lost(contact: Contact, moved: Intervals) -> Floats:
-    """The energy over its natural scale that each of these jumps costs a contact."""
-    law, row = contact.law, contact.params
-    if not law.adhesive:
-        return np.zeros(moved.step.size)
-    if law.branched:
-        jumps = zip(moved.before.astype(float), moved.rung.astype(float), strict=True)
-        return np.array([law.jump_energy(before, after, row) for before, after in jumps])
-    on, off = (law.energy(law.state(x, row), row) for x in (1.0, 0.0))
-    return np.where(moved.rung > 0, -on, off)
+def jump_energies(contact: Contact, jumped: Intervals) -> Floats:
+    """Return the energy over its natural scale that a contact loses in each of these jumps."""
+    kernels, params = contact.law, contact.params
+    if not kernels.adhesive:
+        return np.zeros(jumped.step.size)
+    if kernels.branched:
+        jumps = zip(jumped.branch_before.astype(float), jumped.branch.astype(float), strict=True)
+        return np.array([kernels.jump_energy(before, after, params) for before, after in jumps])
+    made, lost = (kernels.energy(kernels.state(x, params), params) for x in (1.0, 0.0))
+    return np.where(jumped.branch > 0, -made, lost)

@@ -1,4 +1,4 @@
-"""A function as a row of polynomials, on pieces that are halved until each holds it."""
+"""Several functions of one variable as Chebyshev series on pieces that are halved until each series is right."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -6,26 +6,24 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.chebyshev import chebyshev_nodes
 
 ORDER = 16
-"""Coefficients of each polynomial."""
-_MOST_HALVINGS = 400  # as many as a tail as heavy as any needs
-_MOST_AT_ONCE = 2**12  # pieces: of a function that no polynomial fits, halving would make more and more
-_NOISE, _BETTER = 1e-8, 0.25  # tails so small that halving does not lessen are the function's own roundings
-_NOTHING = 1e-16  # of the greatest value: such coefficients are roundings, and cost time
+"""Coefficients of each series."""
+_MAX_HALVINGS = 400  # as many as the heaviest tail needs
+_MAX_PIECES_AT_ONCE = 2**12  # a function that no polynomial fits would make more and more of them
+_NOISE, _BETTER = 1e-8, 0.25  # last coefficients so small that halving does not lessen are the function's own roundings
+_NEGLIGIBLE = 1e-16  # of the largest value: such coefficients are roundings, and cost time
+_LAST = 2  # of the coefficients, which tell how far the series is off
 
-_ANGLES = np.pi * (np.arange(ORDER) + 0.5) / ORDER
-_NODES = np.cos(_ANGLES)
-_TO_COEFFICIENTS = 2.0 / ORDER * np.cos(np.outer(np.arange(ORDER), _ANGLES))
-_TO_COEFFICIENTS[0] *= 0.5
+_NODES, _TO_COEFFICIENTS = chebyshev_nodes(ORDER)
 _ENDS = np.array([-1.0, 1.0]) * (1.0 - 2.0**-26)  # just inside: what a function does there alone, no node sees
 _AT_ENDS = np.polynomial.chebyshev.chebvander(_ENDS, ORDER - 1)
 _POINTS = np.concatenate([_NODES, _ENDS])
-_TAIL = 2  # of the last coefficients, which tell how far the polynomial is off
 
 
-class Table(NamedTuple):
-    """Pieces from low to high, one after the other, each with Chebyshev coefficients of all rows."""
+class AdaptiveTable(NamedTuple):
+    """Consecutive pieces from low to high, each with the Chebyshev coefficients of all functions (rows)."""
 
     low: Floats
     """[piece]"""
@@ -33,8 +31,8 @@ class Table(NamedTuple):
     """[piece]"""
     coefficients: Floats
     """[piece, row, order]"""
-    slack: Floats
-    """How far the polynomials may be off: [piece, row]."""
+    error_bound: Floats
+    """How far the series may be off: [piece, row]."""
 
     @classmethod
     def of(
@@ -42,44 +40,44 @@ class Table(NamedTuple):
         function: Callable[[Floats], Floats],
         edges: Floats,
         tolerance: Floats,
-        narrow: Callable[[Floats, Floats], Floats],
+        min_width: Callable[[Floats, Floats], Floats],
         weight: Callable[[Floats, Floats, Floats], Floats],
-        ratio: float = np.inf,
+        max_ratio: float = np.inf,
         rounding: float = 0.0,
-    ) -> "Table":
-        """The table of ``function``, points -> [row, point], between ``edges``.
+    ) -> "AdaptiveTable":
+        """Tabulate ``function``, points -> [row, point], between ``edges``.
 
-        A piece is held where its last coefficients and what it is off at its ends, times the ``weight`` of the piece
-        (its ends, the greatest value of the first row -> weight), are below ``tolerance`` [row] of the greatest value
-        on it, or are roundings, and the first row's values do not vary by more than ``ratio``; or where it is
-        ``narrow`` (its ends -> how narrow). The function may be off as if its points were, by ``rounding`` relative to
-        themselves.
+        The error of a piece is taken from its last coefficients and from its deviation at the ends. A piece is accepted
+        where ``weight(low, high, largest value of row 0)`` times its error is below ``tolerance`` [row] times its
+        largest value, or where the error is rounding, and where row 0 does not vary by more than ``max_ratio``; or
+        where it is not wider than ``min_width(low, high)``. The arguments of the function have a relative error of
+        ``rounding``.
         """
         low, high = edges[:-1], edges[1:]
-        held: list[tuple[Floats, ...]] = []
-        before = np.full((low.size, tolerance.size), np.inf)
-        for halvings in range(_MOST_HALVINGS + 1):
+        accepted: list[tuple[Floats, ...]] = []
+        error_before = np.full((low.size, tolerance.size), np.inf)
+        for halvings in range(_MAX_HALVINGS + 1):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
             values = function((middle[:, None] + half[:, None] * _POINTS).ravel())
             values = values.reshape(values.shape[0], -1, _POINTS.size).swapaxes(0, 1)
-            values, ends = values[..., :ORDER], values[..., ORDER:]
+            values, at_ends = values[..., :ORDER], values[..., ORDER:]
             coefficients = values @ _TO_COEFFICIENTS.T
-            tail = np.abs(coefficients[..., -_TAIL:]).max(axis=-1)
-            tail = np.maximum(tail, np.abs(coefficients @ _AT_ENDS.T - ends).max(axis=-1))
-            greatest = np.abs(values).max(axis=-1)
-            coefficients[np.abs(coefficients) < _NOTHING * greatest[..., None]] = 0.0
-            least = np.abs(values[:, 0]).min(axis=-1)
-            noise = (tail <= _NOISE * greatest) & (tail > _BETTER * before)
-            noise |= tail <= (rounding * np.maximum(np.abs(low), np.abs(high)) / half)[:, None] * greatest
-            small = weight(low, high, greatest[:, 0])[:, None] * tail <= tolerance * greatest
-            fine = (small | noise).all(axis=-1) & (greatest[:, 0] / ratio <= least)
-            done = fine | (half <= 0.5 * narrow(low, high)) | (middle <= low) | (middle >= high)
-            done |= (low.size > _MOST_AT_ONCE) | (halvings == _MOST_HALVINGS)
-            held.append((low[done], high[done], coefficients[done], tail[done]))
-            low, middle, high, tail = low[~done], middle[~done], high[~done], tail[~done]
+            error = np.abs(coefficients[..., -_LAST:]).max(axis=-1)
+            error = np.maximum(error, np.abs(coefficients @ _AT_ENDS.T - at_ends).max(axis=-1))
+            largest = np.abs(values).max(axis=-1)
+            coefficients[np.abs(coefficients) < _NEGLIGIBLE * largest[..., None]] = 0.0
+            is_rounding = (error <= _NOISE * largest) & (error > _BETTER * error_before)
+            is_rounding |= error <= (rounding * np.maximum(np.abs(low), np.abs(high)) / half)[:, None] * largest
+            is_small = weight(low, high, largest[:, 0])[:, None] * error <= tolerance * largest
+            is_even = largest[:, 0] / max_ratio <= np.abs(values[:, 0]).min(axis=-1)
+            done = (is_small | is_rounding).all(axis=-1) & is_even
+            done |= (half <= 0.5 * min_width(low, high)) | (middle <= low) | (middle >= high)
+            done |= (low.size > _MAX_PIECES_AT_ONCE) | (halvings == _MAX_HALVINGS)
+            accepted.append((low[done], high[done], coefficients[done], error[done]))
+            low, middle, high, error = low[~done], middle[~done], high[~done], error[~done]
             if low.size == 0:
                 break
-            low, high, before = (np.concatenate(pair) for pair in ((low, middle), (middle, high), (tail, tail)))
-        low, high, coefficients, slack = (np.concatenate(parts) for parts in zip(*held, strict=True))
+            low, high, error_before = (np.concatenate(pair) for pair in ((low, middle), (middle, high), (error, error)))
+        low, high, coefficients, error = (np.concatenate(parts) for parts in zip(*accepted, strict=True))
         order = np.argsort(low, kind="stable")
-        return cls(low[order], high[order], np.ascontiguousarray(coefficients[order]), slack[order])
+        return cls(low[order], high[order], np.ascontiguousarray(coefficients[order]), error[order])

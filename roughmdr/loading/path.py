@@ -1,4 +1,4 @@
-"""The way of the flat, step by step."""
+"""The path of the flat, step by step."""
 
 from typing import NamedTuple
 
@@ -12,37 +12,40 @@ from roughmdr.variables import COORDINATES
 
 
 class LoadingPath(NamedTuple):
-    """A path of the flat, with what the contacts remember of it."""
+    """The separation at each step [m], and the memory that the contacts have of the steps before."""
 
     separation: Floats
     memory: Staircase
 
     @classmethod
-    def along(cls, way_in: Floats, *, unload: bool, adhesive: bool) -> "LoadingPath":
-        """The way in [m] and, with ``unload``, the way back with the turning point repeated."""
-        separation = np.concatenate([way_in, way_in[::-1]]) if unload else way_in
+    def along(cls, approach: Floats, *, unload: bool, adhesive: bool) -> "LoadingPath":
+        """Return the path of these separations [m]; ``unload`` adds them in reverse, the turning point repeated."""
+        separation = np.concatenate([approach, approach[::-1]]) if unload else approach
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
-    def seen_from(self, origin: float) -> "LoadingPath":
-        """The path with separations and memory as differences to ``origin`` [m]."""
+    def relative_to(self, origin: float) -> "LoadingPath":
+        """Return the path with separations and memory as differences to ``origin`` [m]."""
         first, bottom, top = self.memory
         return LoadingPath(self.separation - origin, Staircase(first, bottom - origin, top - origin))
 
     def branch(self) -> Array:
-        """The branch of each step."""
+        """Return the branch of each step, labelled."""
         return Array(("step",), branches(self.separation), {"long_name": COORDINATES["branch"].long_name})
 
-    def snaps(self) -> NDArray[np.bool_]:
-        """Whether contacts may be at the very point of letting go: the flat is as high as ever since it was lower."""
+    def at_detachment(self) -> NDArray[np.bool_]:
+        """Return for each step whether contacts may be exactly at their detachment.
+
+        They may where the flat, after it was lower, is as high as it has been since.
+        """
         last = self.memory.first[1:] - 1
         return np.asarray((self.memory.top[last] == self.separation) & (self.memory.bottom[last] < self.separation))
 
 
 def branches(separation: Floats) -> NDArray[np.str_]:
-    """The branch of each step: unloading where the flat rises, or stands at the turning point for the second time."""
+    """Return "unloading" where the flat rises or stands at the turning point for the second time, else "loading"."""
     before = np.concatenate([[np.inf], separation[:-1]])
     changes = np.flatnonzero(separation[1:] != separation[:-1]) + 1
     following = np.searchsorted(changes, np.arange(separation.size), side="right")
-    ahead = np.append(separation[changes], np.inf)[following]  # the next separation that is another one
-    rises = (separation > before) | ((separation == before) & (ahead > separation))
+    next_other = np.append(separation[changes], np.inf)[following]
+    rises = (separation > before) | ((separation == before) & (next_other > separation))
     return np.where(rises, "unloading", "loading")

@@ -1,7 +1,7 @@
 """Arithmetic with about 31 digits: a number is an unevaluated sum (hi, lo) of two floats.
 
-Where an asperity lets go, an error in the fold is magnified by the inverse square root of the distance to it; and for
-exponents near 1/2 the scale of the contact is a logarithm divided by a small number. Plain floats lose those answers.
+Next to detachment an error in the fold is magnified by the inverse square root of the distance to it; and for exponents
+near 1/2 the scale of the contact is a logarithm divided by a small number. Single floats have too few digits for both.
 
 Source: T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The Art of Computer Programming 2, 4.2.2 (two_sum).
 """
@@ -20,12 +20,12 @@ _ODD = tuple(1.0 / j for j in range(1, 23, 2))
 _ODD_REST = tuple(float(Fraction(1, j) - Fraction(1.0 / j)) for j in range(1, 23, 2))
 PI = (3.141592653589793, 1.2246467991473532e-16)
 ROUNDING = 2.0**-53
-"""The largest relative error of one rounding of a float."""
+"""Largest relative error of one rounding of a float."""
 
 
 @njit
 def two_sum(a: float, b: float) -> Pair:
-    """a + b exactly."""
+    """Return a + b exactly."""
     s = a + b
     t = s - a
     return s, (a - (s - t)) + (b - t)
@@ -33,7 +33,7 @@ def two_sum(a: float, b: float) -> Pair:
 
 @njit
 def two_product(a: float, b: float) -> Pair:
-    """a * b exactly, while neither factor is above 1e300 nor the product below 1e-290."""
+    """Return a * b exactly, while neither factor is above 1e300 nor the product below 1e-290."""
     p = a * b
     t = _SPLITTER * a
     a1 = t - (t - a)
@@ -46,7 +46,7 @@ def two_product(a: float, b: float) -> Pair:
 
 @njit
 def add(x: Pair, y: Pair) -> Pair:
-    """x + y."""
+    """Return x + y."""
     s, e = two_sum(x[0], y[0])
     t, f = two_sum(x[1], y[1])
     s, e = two_sum(s, e + t)
@@ -55,14 +55,14 @@ def add(x: Pair, y: Pair) -> Pair:
 
 @njit
 def multiply(x: Pair, y: Pair) -> Pair:
-    """x * y."""
+    """Return x * y."""
     p, e = two_product(x[0], y[0])
     return two_sum(p, e + (x[0] * y[1] + x[1] * y[0]))
 
 
 @njit
 def divide(x: Pair, y: Pair) -> Pair:
-    """x / y."""
+    """Return x / y."""
     q = x[0] / y[0]
     p, e = two_product(q, y[0])
     return two_sum(q, ((((x[0] - p) - e) + x[1]) - q * y[1]) / y[0])
@@ -70,7 +70,7 @@ def divide(x: Pair, y: Pair) -> Pair:
 
 @njit
 def log(x: Pair) -> Pair:
-    """Natural logarithm of x > 0: x = m 2^k with m near 1, ln m = 2 artanh((m - 1)/(m + 1)) as a power series."""
+    """Return ln x for x > 0: x = m 2^k with m near 1, ln m = 2 artanh((m - 1)/(m + 1)) as a power series."""
     m, k = math.frexp(x[0])
     if m < math.sqrt(0.5):
         m *= 2.0
@@ -90,7 +90,7 @@ def log(x: Pair) -> Pair:
 
 @njit
 def exp(x: Pair) -> Pair:
-    """e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, and x[1]^2/2."""
+    """Return e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, and x[1]^2/2."""
     y = math.exp(x[0])
     error = add(x, multiply((-1.0, 0.0), log((y, 0.0))))
     return two_sum(y, y * (error[0] + error[1]))
@@ -98,7 +98,7 @@ def exp(x: Pair) -> Pair:
 
 @njit
 def sqrt(x: Pair) -> Pair:
-    """The square root of x > 0: the rounded root and what its exact square leaves."""
+    """Return the square root of x > 0: the rounded root, corrected by the remainder of its exact square."""
     root = math.sqrt(x[0])
     p, e = two_product(root, root)
     return two_sum(root, (((x[0] - p) - e) + x[1]) / (2.0 * root))

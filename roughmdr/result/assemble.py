@@ -37,7 +37,7 @@ def assemble(
     cells = tuple(plan.sizes.values())
     dims = swept if statistics else (*swept, "realization")
     shape = cells if statistics else (*cells, found.values.shape[1])
-    snaps = np.array([cell.path.snaps() for cell in plan.cells])
+    snaps = np.array([cell.path.at_detachment() for cell in plan.cells])
     data: dict[str, Array] = {}
     for name in scene.output.variables:
         row = list(variables).index(name)

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -171,9 +171,9 @@ class ProfileShape(Shape):
         from mpmath import mp
 
         def remake(function: Callable[..., Any]) -> Callable[..., Any]:
-            if function.__module__ == vector_math.__name__:
-                return getattr(mp, function.__name__, function)
-            return rebuilt(function, {"math": mp, "NEAR": -1.0}, remake)
+            if function.__module__ == vector_math.__name__ and hasattr(mp, function.__name__):
+                return cast(Callable[..., Any], getattr(mp, function.__name__))
+            return rebuilt(function, {"math": mp, "SERIES_UP_TO": -1.0}, remake)
 
         lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
         with mp.workdps(40 + int(4.0 * lost)):

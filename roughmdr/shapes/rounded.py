@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import atan, sqrt
+from roughmdr.numerics.vector_math import atan, atan_minus_cubic, q_minus_atan, sqrt
 from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
-from roughmdr.shapes.special import less_atan, less_atan_and_cube
 
 _CONE_DIP = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
@@ -35,7 +34,7 @@ def _cone_mdr_integral(a: float, params: Params) -> float:
     if a <= 1.0:
         return a * a * a / 3.0
     q = sqrt((a - 1.0) * (a + 1.0))
-    return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - less_atan(q))
+    return (a * a + a * q + q * q) / (a + q) / 3.0 + 0.5 * (q * q * atan(q) - q_minus_atan(q))
 
 
 def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
@@ -98,16 +97,16 @@ class RoundedCone(ProfileShape):
 
 def _punch_mdr_profile(q: float, params: Params) -> tuple[float, float, float, float]:
     """g = a (q - atan q), a = sqrt(1 + q^2)."""
-    a, excess = sqrt(1.0 + q * q), less_atan(q)
+    a, excess = sqrt(1.0 + q * q), q_minus_atan(q)
     return a, q / a, a * excess, q * (excess + q) / a
 
 
 def _punch_reduced_load(q: float, params: Params) -> float:
-    return q * q * q / 6.0 + 0.5 * (1.0 + q * q) * less_atan(q)
+    return q * q * q / 6.0 + 0.5 * (1.0 + q * q) * q_minus_atan(q)
 
 
 def _punch_mdr_integral(q: float, params: Params) -> float:
-    return 0.5 * (q * q * less_atan(q) - less_atan_and_cube(q))
+    return 0.5 * (q * q * q_minus_atan(q) - atan_minus_cubic(q))
 
 
 def _punch_roundings(params: Params) -> float:

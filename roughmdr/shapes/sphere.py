@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import expm1, tanh
+from roughmdr.numerics.vector_math import expm1, t_minus_tanh, tanh
 from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Params, Profile
-from roughmdr.shapes.special import beyond_tanh
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
@@ -25,13 +24,13 @@ def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
 def _reduced_load(t: float, params: Params) -> float:
     """[(1 + a^2) artanh a - a]/2."""
     a = tanh(t)
-    return 0.5 * (beyond_tanh(t, a) + a * a * t)
+    return 0.5 * (t_minus_tanh(t, a) + a * a * t)
 
 
 def _mdr_integral(t: float, params: Params) -> float:
     """[(a^2 - 1) artanh a + a]/2."""
     a = tanh(t)
-    return 0.5 * (a * a * t - beyond_tanh(t, a))
+    return 0.5 * (a * a * t - t_minus_tanh(t, a))
 
 
 def _roundings(params: Params) -> float:

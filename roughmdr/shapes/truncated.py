@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import atan, sqrt
+from roughmdr.numerics.vector_math import atan, q_minus_atan, sqrt
 from roughmdr.shapes.base import ProfileShape, radii
 from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
-from roughmdr.shapes.special import less_atan
 
 # Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
 _CONE_DIP = 1.0424561234141570
@@ -40,7 +39,7 @@ def _cone_reduced_load(q: float, params: Params) -> float:
 
 
 def _cone_mdr_integral(q: float, params: Params) -> float:
-    return 0.5 * (q * q * atan(q) - less_atan(q))
+    return 0.5 * (q * q * atan(q) - q_minus_atan(q))
 
 
 def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:

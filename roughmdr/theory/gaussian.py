@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.quadrature import Rows, Table, panels
+from roughmdr.numerics.chebyshev import PiecewiseChebyshev
+from roughmdr.numerics.quadrature import Rows, panel_rule
 from roughmdr.schema.arguments import check_values
-from roughmdr.spectrum import RING, Moments
+from roughmdr.spectrum import MIN_ALPHA, Moments
 from roughmdr.theory.ellipse import Ellipses
 from roughmdr.theory.equal_summits import Variable, check_variable, representable
 from roughmdr.theory.heights import NORMAL_EDGES, Heights
@@ -62,9 +63,9 @@ def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
 
     It is phi(zeta) Q(zeta) with Q = ∫ phi(x) G(rho zeta + c x) dx over S = rho zeta + c x > 0, c^2 = 1 - rho^2.
     """
-    rho, c = math.sqrt(RING / alpha), math.sqrt((alpha - RING) / alpha)
+    rho, c = math.sqrt(MIN_ALPHA / alpha), math.sqrt((alpha - MIN_ALPHA) / alpha)
     weight = _weight_of_curvature(contacts, variable)
-    steps, share = (part.ravel() for part in panels(np.linspace(0.0, 1.0, 7)))
+    steps, share = (part.ravel() for part in panel_rule(np.linspace(0.0, 1.0, 7)))
 
     def smoothed(zeta: Floats) -> Floats:
         """Q, over the root of the distance to S = 0, where G goes as a half-integer power."""
@@ -79,7 +80,7 @@ def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
     # Q bends at heights of about c/rho, where S = 0 comes within its deviation.
     bends = c * 2.0 ** np.arange(-1, math.ceil(math.log2(NORMAL_EDGES[-1] / c)))
     edges = np.concatenate([NORMAL_EDGES[[0, -1]], [0.0], -bends[bends < -NORMAL_EDGES[0]], bends])
-    Q = Table.of(smoothed, np.unique(edges), 24)
+    Q = PiecewiseChebyshev.of(smoothed, np.unique(edges), 24)
     return Heights(lambda zeta: np.exp(-0.5 * zeta * zeta) / (2.0 * math.pi) * Q(zeta), NORMAL_EDGES)
 
 
@@ -89,7 +90,7 @@ def _weight_of_curvature(contacts: Contacts, variable: Variable) -> Callable[[Fl
     sqrt(12) = sqrt(6/pi) sqrt(2 pi). With q = (r S)^2 the integral is over the spread r of the curvatures, and r is
     known from the axes of the contact.
     """
-    ratio, share = (part.ravel() for part in panels(_RATIOS))
+    ratio, share = (part.ravel() for part in panel_rule(_RATIOS))
     ellipses = Ellipses.of(ratio)
     r, dr = ellipses.spread, -share * ellipses.spread_slope
     _, p = _POWERS[variable]
@@ -100,5 +101,5 @@ def _weight_of_curvature(contacts: Contacts, variable: Variable) -> Callable[[Fl
     def over_power(S: Floats) -> Floats:
         return np.asarray(np.exp(-((S[:, None] * r) ** 2)) @ weights)
 
-    table = Table.of(over_power, np.append(0.0, 2.0 ** np.arange(0, math.log2(_LARGEST) + 0.5, 0.5)), 20)
+    table = PiecewiseChebyshev.of(over_power, np.append(0.0, 2.0 ** np.arange(0, math.log2(_LARGEST) + 0.5, 0.5)), 20)
     return lambda S: np.asarray(S ** (4.0 - p) * table(S))

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.quadrature import gauss
+from roughmdr.numerics.gauss import gauss
 from roughmdr.schema.arguments import check_number, check_values
 from roughmdr.schema.material import Material, effective_modulus_of
-from roughmdr.spectrum import Spectrum, levels, wave_numbers
+from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
 
 
@@ -140,7 +140,7 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
     >>> f"{z.std():.3g} m"
     '2e-06 m'
     """
-    q0, q1 = wave_numbers(spectrum)
+    q0, q1 = wave_number_range(spectrum)
     length = check_number("length", length, "m")
     points, seed = _check_whole("points", points), _check_whole("seed", seed)
     step = 2.0 * math.pi / length
@@ -153,7 +153,7 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
     low, high = np.maximum(q0, (waves - 0.5) * step), np.minimum(q1, (waves + 0.5) * step)
     half = 0.5 * np.maximum(high - low, 0.0)[:, None]
     q = np.clip(low[:, None] + half * (1.0 + nodes), q0, q1)
-    weight = half[:, 0] * ((math.pi * q * levels(spectrum, q)) @ weights)
+    weight = half[:, 0] * ((math.pi * q * spectral_density(spectrum, q)) @ weights)
     phase = 2.0 * math.pi * 2.0**-64 * np.random.Philox(np.random.SeedSequence(seed)).random_raw(len(waves))
     coefficients = np.zeros(points // 2 + 1, dtype=np.complex128)
     coefficients[1 : len(waves) + 1] = np.sqrt(weight) * points * np.exp(1j * phase)

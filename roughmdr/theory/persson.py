@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.quadrature import Table, panels, refined, running
+from roughmdr.numerics.chebyshev import PiecewiseChebyshev
+from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
 from roughmdr.schema.arguments import check_number, check_values
 from roughmdr.schema.material import Material, effective_modulus_of
-from roughmdr.spectrum import SelfAffine, Spectrum, levels, wave_numbers
+from roughmdr.spectrum import SelfAffine, Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.bush import check_load
 from roughmdr.theory.equal_summits import representable
 
@@ -195,7 +196,7 @@ def persson_pressure(
 
 def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
     """Return wave numbers q, w(q)^-2 = pi ∫_q0^q q'^3 C dq' at each, and its change over the interval of each."""
-    q0, q1 = wave_numbers(spectrum)
+    q0, q1 = wave_number_range(spectrum)
     octaves = math.log(q1 / q0)
     near = min(octaves, 1.0)
     far = np.linspace(near, octaves, 1 + math.ceil(octaves - near))[1:]
@@ -207,14 +208,14 @@ def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
 
     def slope(v: Floats) -> Floats:
         q = wave_number(v)
-        return np.asarray(2.0 * math.pi * v * q * q * (q * q * levels(spectrum, q)))
+        return np.asarray(2.0 * math.pi * v * q * q * (q * q * spectral_density(spectrum, q)))
 
-    edges = refined(slope, edges)
-    v, weights = panels(edges)
+    edges = refine_edges(slope, edges)
+    v, weights = panel_rule(edges)
     change = slope(v)
     if not change.flat[0] > 0.0:
         raise OutOfRange("spectrum is 0 at its longest wave; it must be above 0")
-    return wave_number(v).ravel(), running(change, edges).ravel(), (change * weights).ravel()
+    return wave_number(v).ravel(), running_integral(change, edges).ravel(), (change * weights).ravel()
 
 
 def _over_pressure(x: Floats, gamma: float) -> Floats:
@@ -229,14 +230,14 @@ def _over_pressure(x: Floats, gamma: float) -> Floats:
 
 
 @cache
-def _square_term() -> Table:
+def _square_term() -> PiecewiseChebyshev:
     """2 exp(x^2) ∫_x^∞ erf^2(t) exp(-t^2)/t dt, with t^2 = x^2 + s."""
     from scipy.special import erf
 
-    s, weights = (part.ravel() for part in panels(np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0])))
+    s, weights = (part.ravel() for part in panel_rule(np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0])))
 
     def value(x: Floats) -> Floats:
         square = x[:, None] ** 2 + s
         return np.asarray((erf(np.sqrt(square)) ** 2 / square) @ (np.exp(-s) * weights))
 
-    return Table.of(value, np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]), 20)
+    return PiecewiseChebyshev.of(value, np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]), 20)

@@ -1,6 +1,6 @@
-"""The expected law where densities have poles or heavy tails: within the error that it states, or refused.
+"""The expected law where densities have poles or heavy tails: within its error bound, or refused.
 
-Most of these distributions stand within one rounding of an end, or bear most where next to none of them stands.
+Most values of these distributions lie within one rounding of an end, or very few of them bear most of the force.
 """
 
 import copy
@@ -51,7 +51,7 @@ def expected(height: dict[str, object], separation: list[float], **more: object)
 @pytest.mark.parametrize(("family", "own"), POLES)
 @pytest.mark.parametrize(("loc", "unit"), [(0.0, UM), (1e-3, UM), (-2.0, 1e-2)])
 def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], loc: float, unit: float) -> None:
-    """Each height counts, however near to the pole, wherever it lies and whatever the unit."""
+    """All heights count, however near to the pole; wherever the pole lies and whatever the unit."""
     height = {"distribution": family, **own, "loc": loc, "scale": 2.0 * unit}
     separation = [loc + unit, loc + 0.01 * unit, loc, loc - unit]
     law = expected(height, separation, asperities={"radius": 50.0 * unit})
@@ -68,7 +68,7 @@ def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], lo
 
 @pytest.mark.parametrize(("df", "worst"), [(1.8, 2e-12), (1.6, 1e-7), (1.55, 2e-4)])
 def test_heights_of_heavy_tails(df: float, worst: float) -> None:
-    """E[T^1.5; T > 0] of Student's t is a closed form; next to none of the heights bear most of it."""
+    """E[T^1.5; T > 0] of Student's t has a closed form; very few of the heights bear most of it."""
     law = expected({"distribution": "t", "df": df, "loc": 0.0, "scale": "2 um"}, [0.0])
     with mp.workdps(30):
         n, p = mpf(df), mpf(3) / 2
@@ -113,7 +113,7 @@ def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[s
 
 @pytest.mark.parametrize("c", [0.6, 0.8, 0.95, 1.2])
 def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
-    """The mean force of Lomax's radii goes with that of their root, the area with that of the radii themselves."""
+    """With Lomax's radii the mean force depends on their mean root, the mean area on their mean."""
     height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
     radius = {"distribution": "lomax", "c": c, "loc": 0.0, "scale": "50 um"}
     both = {"asperities": {"radius": radius}, "output": {"variables": ["force", "contact_area"]}}
@@ -131,7 +131,7 @@ def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
 
 @pytest.mark.parametrize("h", [1e-18, 1e-20, 1e-22, 1e-25, 0.0])
 def test_a_count_next_to_a_pole_is_right_or_refused(h: float) -> None:
-    """No more than the roundings of the scale from a pole: so near to it stand most of the heights."""
+    """Most of the heights lie within a rounding of the scale from the pole."""
     height = {"distribution": "gamma", "a": 0.01, "loc": 0.0, "scale": UM}
     try:
         count = float(expected(height, [UM, h]).contact_count[1])
@@ -155,10 +155,10 @@ BOUNDED = [
 
 
 @pytest.mark.parametrize(("family", "own", "spearman"), BOUNDED)
-def test_heights_that_go_with_an_extreme_radius_may_all_be_one(
+def test_heights_correlated_with_an_extreme_radius_may_all_be_equal(
     family: str, own: dict[str, float], spearman: float
 ) -> None:
-    """With the smallest or the largest radii all heights stand next to an end, where no float tells them apart."""
+    """With the smallest or the largest radii all heights lie next to an end, where floats cannot distinguish them."""
     frozen = getattr(scipy.stats, family)(**own, scale=2 * UM)
     separation = frozen.ppf([0.6, 0.3, 0.01]).tolist()
     s = math.sqrt(math.log(1.01))  # of radii whose std is a tenth of their mean
@@ -177,8 +177,8 @@ def test_heights_that_go_with_an_extreme_radius_may_all_be_one(
     assert float(law.numerical_error) < 1e-7
 
 
-def test_heights_that_are_all_one_are_all_counted() -> None:
-    """Next to a pole so steep that no node of a rule stands where all heights do."""
+def test_heights_that_are_all_equal_are_all_counted() -> None:
+    """Next to a pole so steep that no node of a rule lies where all heights do."""
     h, k = 11.246767058155399, 21.12384885324702
     law = expected({"distribution": "kappa4", "h": h, "k": k, "loc": 0.0, "scale": 2 * UM}, [0.0, -UM])
     force = 1000.0 * 4.0 / 3.0 * 4e6 * math.sqrt(5e-5) * (2 * UM / k + np.array([0.0, UM])) ** 1.5
@@ -187,8 +187,8 @@ def test_heights_that_are_all_one_are_all_counted() -> None:
 
 
 @pytest.mark.parametrize("cut", [{"max": "2 um"}, {"max": "4 um"}, {"min": "-2 um"}, {"min": 0.0}])
-def test_heights_that_are_cut_and_go_with_the_radius(cut: dict[str, object]) -> None:
-    """Of draws as many as tell 1 % the mean is no other."""
+def test_truncated_heights_correlated_with_the_radius(cut: dict[str, object]) -> None:
+    """So many draws that their mean is right to 1 %."""
     height = {"distribution": "normal", "std": "1 um", "mean": 0.0, **cut}
     radius = {"distribution": "lognormal", "mean": 5e-5, "std": 5e-6}
     more = {"asperities": {"radius": radius, "correlation": {"radius": -0.9}}}
@@ -198,8 +198,8 @@ def test_heights_that_are_cut_and_go_with_the_radius(cut: dict[str, object]) -> 
     np.testing.assert_allclose(law.force, drawn.force_mean, rtol=0.01)
 
 
-def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
-    """What the expected law states decides whether it is enough: here of heights next to a pole."""
+def test_a_requested_error_is_reached_next_to_a_pole() -> None:
+    """The error bound of the expected law decides whether it is accurate enough."""
     for own, relative in (({"a": 0.03}, 1e-2), ({"a": 3.0, "b": 0.05}, 1e-2)):
         family = "powerlaw" if len(own) == 1 else "beta"
         height = {"distribution": family, **own, "loc": 0.0, "scale": "2 um"}
@@ -213,23 +213,23 @@ def test_an_asked_error_is_not_reached_by_a_law_that_cannot_tell() -> None:
 
 @settings(deadline=None, max_examples=30)
 @given(st.floats(0.02, 5.0), st.floats(0.02, 5.0), st.sampled_from([0.0, 1e-3]), st.floats(-0.5, 1.5))
-def test_the_table_of_heights_counts_them_all(a: float, b: float, loc: float, at: float) -> None:
-    """Below any height as many as the distribution has there, give or take what the table does not know."""
+def test_the_table_of_heights_counts_all_of_them(a: float, b: float, loc: float, at: float) -> None:
+    """The fraction below any height is that of the distribution, within the doubt of the table."""
     distribution = Distribution("beta", (a, b), loc, 2 * UM)
     with np.errstate(all="ignore"):
         table = HeightTable.of(Heights.of(distribution))
     y = np.array([2 * UM * at])
     below = table.between(np.array([-UM]), y)[0]
-    loose = table.doubt[(table.low < y[0]) & (y[0] < table.high), 1].sum()
+    anywhere = table.doubt[(table.low < y[0]) & (y[0] < table.high), 1].sum()
     unknown = table.doubt[:, 2].sum() + 1e-12
-    assert abs(below - scipy.stats.beta(a, b).cdf(at)) <= loose + unknown
+    assert abs(below - scipy.stats.beta(a, b).cdf(at)) <= anywhere + unknown
     assert abs(table.below[-1] - 1.0) <= unknown
     assert unknown < 1e-8
     np.testing.assert_array_equal(table.low[1:], table.high[:-1])
 
 
 def of_all_families(seed: int, scenes: int) -> None:
-    """So many random scenes, of heights and of radii; none may be wrong, and few are refused."""
+    """Judge so many random scenes, of heights and of radii: none may be wrong, and few are refused."""
     generator = np.random.default_rng(seed)
     names, outcomes = families(), []
     wrong: list[Scene] = []
@@ -258,8 +258,8 @@ def test_many_random_distributions_of_scipy(seed: int) -> None:
 @pytest.mark.parametrize(
     "radius", [{"distribution": "pareto", "b": 0.8}, {"distribution": "beta", "a": 0.05, "b": 0.05}]
 )
-def test_where_the_path_has_its_steps_changes_nothing(radius: dict[str, object]) -> None:
-    """Without adhesion contacts have no memory: a force that most steps do not have is as right as one that they do."""
+def test_the_steps_of_the_path_do_not_change_the_force(radius: dict[str, object]) -> None:
+    """Without adhesion contacts have no memory; a large force at one step among many is as accurate as at most of them."""
     height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
     paths = [[2 * UM, 0.0], [2 * UM, 0.0] * 4 + [2 * UM], [2 * UM, 1.9 * UM, 1.8 * UM, 1.7 * UM, 0.0, 2 * UM]]
     laws = [expected(height, path, asperities={"radius": {**radius, "loc": 0.0, "scale": "50 um"}}) for path in paths]
@@ -269,7 +269,7 @@ def test_where_the_path_has_its_steps_changes_nothing(radius: dict[str, object])
 
 @pytest.mark.parametrize("s", [0.5, 3.0, 5.0])
 def test_a_step_back_leaves_the_loading_as_it_is(s: float) -> None:
-    """Large radii bear what next to none of the asperities have; a rule with cuts must not leave them out."""
+    """Very few asperities have the large radii that bear the force; a rule with cuts must not leave them out."""
     height = {"distribution": "expon", "loc": 0.0, "scale": UM}
     more = {
         "material": {"effective_modulus": 1e9},

@@ -1,4 +1,4 @@
-"""``numerical_error`` against the true error of random scenes, from references that are ten times finer."""
+"""``numerical_error`` and the true error of random scenes, from references that are ten times finer."""
 
 from pathlib import Path
 
@@ -10,25 +10,25 @@ from stated_error_scenes import ESTIMATORS, scene
 ONE_OF_EACH = (0, 2, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
 
 
-def of_random_scenes(count: int) -> None:
-    """The stated error of so many scenes; it is a bound in all of them, and none is refused."""
+def judge_random_scenes(count: int) -> None:
+    """Check that the stated error is a bound in so many scenes, of which none is refused."""
     drawn = [scene(number) for number in range(count)]
     result = study.judgement(drawn, [study.judge(one) for one in drawn])
     assert result.attrs["refused"] == 0
     assert result.honest.all(), study.tell(result)
     assert set(result.estimator.to_numpy()) == set(ESTIMATORS)
     ordinary = result.stated_error.groupby(result.estimator).median()
-    assert (ordinary < 1e-10).all(), "a bound that says nothing"
+    assert (ordinary < 1e-10).all(), "the bound is useless"
 
 
 @pytest.mark.slow
 def test_the_stated_error_is_honest() -> None:
-    of_random_scenes(study.QUICK)
+    judge_random_scenes(study.QUICK)
 
 
 @pytest.mark.large
 def test_the_stated_error_of_many_scenes_is_honest() -> None:
-    of_random_scenes(study.SCENES)
+    judge_random_scenes(study.SCENES)
 
 
 def test_the_study_is_carried_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,17 +49,17 @@ def test_the_judge_finds_forces_that_are_off_by_a_few_stated_errors(number: int)
     assert not study.judge(scene(number), disturbance=-3.0).honest
 
 
-def test_orders_that_agree_by_chance_are_not_believed() -> None:
-    """Punches of many radii, of which some have let go and others not: the rule over the radii meets kinks."""
+def test_orders_that_agree_by_chance_are_not_accepted() -> None:
+    """Of punches of many radii some have detached: there are kinks over the radii."""
     assert study.judge(scene(44)).honest
 
 
-def test_a_force_that_all_but_leaps_has_a_reference() -> None:
-    """For some radii two folds nearly part the branch."""
+def test_a_force_that_almost_jumps_has_a_reference() -> None:
+    """For some radii two folds nearly divide the branch."""
     assert study.judge(scene(188)).honest
 
 
-def test_scenes_that_are_not_honest_are_told_of() -> None:
+def test_scenes_beyond_their_bound_are_listed() -> None:
     drawn = [scene(number) for number in range(4)]
     judged = [study.Judged(1e-15, 1e-13), study.Judged(1e-12, 1e-13), study.Judged(0.0, 0.0), study.Judged(0, 0, "no")]
     said = study.tell(study.judgement(drawn, judged))

@@ -12,7 +12,7 @@ from scipy.special import erfcx
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.quadrature import panels
+from roughmdr.numerics.quadrature import panel_rule
 from roughmdr.theory.ellipse import Ellipses
 
 LAWS = {"elliptic": rm.theory.bush_gibson_thomas, "circular": rm.theory.greenwood_elliptic}
@@ -69,7 +69,9 @@ def by_mpmath(contacts: str, variable: str, h: float, alpha: float) -> float:
     factor = {"pressure": force, "contact_fraction": area, "contact_density": np.ones_like(r)}[variable]
     factor = factor if contacts == "elliptic" else np.ones_like(r)
     total = 0.0
-    for y, share in zip(*(part.ravel() for part in panels(np.linspace(0.0, 3.5 + 0.1 * max(h, 0.0), 12))), strict=True):
+    for y, share in zip(
+        *(part.ravel() for part in panel_rule(np.linspace(0.0, 3.5 + 0.1 * max(h, 0.0), 12))), strict=True
+    ):
         S = y * y
         u = mp.mpf(h - rho * S) / c
         heights = c**n * mp.gamma(n + 1) / mp.sqrt(2 * mp.pi) * mp.exp(-u * u / 4) * mp.pcfd(-n - 1, u)
@@ -97,8 +99,8 @@ def test_greenwood_by_the_closed_joint_law_of_height_and_curvature() -> None:
     """J. A. Greenwood's way: v = S^2 - q; S from sqrt(v) on, at a given height, is a Gaussian integral, so erfc."""
     h, rho2 = 1.5, 1.5 / ALPHA
     c2 = 1.0 - rho2
-    y, over_y = (part.ravel() for part in panels(np.linspace(0.0, 3.0, 10)))
-    t, over_t = (part.ravel()[:, None] for part in panels(np.linspace(0.0, 3.0, 7)))
+    y, over_y = (part.ravel() for part in panel_rule(np.linspace(0.0, 3.0, 10)))
+    t, over_t = (part.ravel()[:, None] for part in panel_rule(np.linspace(0.0, 3.0, 7)))
     z, s = h + t * t, y * y
     # exp(v - 3/2 S^2) times the normal density of z given S, as one Gaussian of S.
     precision = 3.0 + rho2 / c2
@@ -132,7 +134,7 @@ def test_drawn_summits_carry_what_the_laws_say(alpha: float) -> None:
 @pytest.mark.parametrize("alpha", [1.5 * (1.0 + 1e-9), 1.51, 3.0, 1e5])
 def test_the_moments_of_the_heights_of_summits(alpha: float) -> None:
     """Nayak's: as integrals over the number of summits above a height."""
-    h, share = (part.ravel() for part in panels(np.linspace(-9.0, 12.0, 43)))
+    h, share = (part.ravel() for part in panel_rule(np.linspace(-9.0, 12.0, 43)))
     above = rm.theory.bush_gibson_thomas(
         separation=h, effective_modulus=1.0, m0=1.0, m2=1.0, m4=alpha, variable="contact_density"
     ) / (alpha / (6.0 * math.pi * math.sqrt(3.0)))

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike
 from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
 from roughmdr.ensemble.random.distributions import Distribution
 from roughmdr.numerics.arguments import Floats
-from roughmdr.spectrum import RING, Moments
+from roughmdr.numerics.gauss import unit_gauss
+from roughmdr.spectrum import MIN_ALPHA, Moments
 
 _WIDE = 12.0  # in sqrt(v): above it by so much lies next to nothing
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
@@ -64,12 +65,12 @@ class SummitDistribution(NamedTuple):
     @property
     def _tied(self) -> float:
         """c^2 = 3/(2 alpha), the part of the surface's variance that goes with the mean curvature."""
-        return RING / self.moments.alpha
+        return MIN_ALPHA / self.moments.alpha
 
     @property
     def _loose(self) -> float:
         """1 - c^2, without the difference of numbers that are nearly equal."""
-        return (self.moments.alpha - RING) / self.moments.alpha
+        return (self.moments.alpha - MIN_ALPHA) / self.moments.alpha
 
     @property
     def height_spread(self) -> float:
@@ -93,7 +94,7 @@ class SummitDistribution(NamedTuple):
 
     def radius(self, v: ArrayLike) -> Floats:
         """1/sqrt(k1 k2) = 1/sqrt((2 m4/3) v) [m]."""
-        return np.asarray(math.sqrt(RING / self.moments.m4) / np.sqrt(np.asarray(v, dtype=np.float64)))
+        return np.asarray(math.sqrt(MIN_ALPHA / self.moments.m4) / np.sqrt(np.asarray(v, dtype=np.float64)))
 
     def height_density(self, z: ArrayLike, v: ArrayLike) -> Floats:
         """The density [1/m] of the heights z [m] of those summits that have v [1], at least 0.
@@ -122,11 +123,11 @@ def product_of_score(scores: Floats) -> Floats:
     """
     from scipy.special import ndtri
 
-    nodes, weights = np.polynomial.legendre.leggauss(40)
+    nodes, weights = unit_gauss(40)
 
     def score(y: Floats) -> Floats:
-        below = _part(0.5 * y[:, None] * (1.0 + nodes)) @ weights * 0.5 * y
-        above = _part(y[:, None] + 0.5 * _WIDE * (1.0 + nodes)) @ weights * 0.5 * _WIDE
+        below = _part(y[:, None] * nodes) @ weights * y
+        above = _part(y[:, None] + _WIDE * nodes) @ weights * _WIDE
         return np.where(below < above, ndtri(below), -ndtri(above))
 
     grid = np.concatenate([np.geomspace(1e-9, 0.05, 300), np.linspace(0.05, 12.0, 700)[1:]])

@@ -13,9 +13,9 @@ from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, RANGE, STRENGTH
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.shapes.special import less_atan
+from roughmdr.numerics.vector_math import q_minus_atan
 
-_less_atan = compiled(less_atan, small=True)
+_q_minus_atan = compiled(q_minus_atan, small=True)
 
 
 def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
@@ -24,7 +24,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
     sigma = s - 1.0
     e = 1.0 + sigma * sigma
     root, q = math.sqrt(e), 1.0 / sigma
-    beyond = _less_atan(q)
+    beyond = _q_minus_atan(q)
     theta = q - beyond
     spread = (theta + sigma * sigma * beyond) / e
     pull = beta * (theta - 1.0 / (root + sigma)) / root
@@ -39,7 +39,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
 def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L of ``zone``."""
     square = a * a + m * m
-    beyond = _less_atan(m / a) if a > 0.0 else 0.0
+    beyond = _q_minus_atan(m / a) if a > 0.0 else 0.0
     l = 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
     return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
 

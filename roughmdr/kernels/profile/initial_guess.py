@@ -12,9 +12,9 @@ from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.numerics.vector_math import octave
+from roughmdr.numerics.vector_math import binade_cell
 
-_octave = compiled(octave, small=True)
+_binade_cell = compiled(binade_cell, small=True)
 
 _LOWEST = 2.0 ** (OCTAVES // 2)  # over which depth the start without adhesion begins
 _LARGEST = 2.0**OCTAVES
@@ -31,7 +31,7 @@ def y_of_x(x: float, params: Floats) -> float:
 
 def initial_guess(x: float, params: Floats) -> float:
     """t within the octaves; beyond them anything."""
-    node, u = _octave(law.y_of_x(x, params), law.split)
+    node, u = _binade_cell(law.y_of_x(x, params), law.split)
     node = min(max(node, 0), (OCTAVES << law.split) - 1)
     at, parts = (
         law.first_node + 2 * node,

@@ -9,17 +9,12 @@ import math
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
 
-
-def _gauss(count: int) -> tuple[Floats, Floats]:
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (1.0 + nodes), 0.5 * weights
-
-
 _SMALL = 0.02
-_FINE, _FINE_WEIGHTS = _gauss(4)  # enough for a small angle
-_WIDE, _WIDE_WEIGHTS = _gauss(14)  # enough for a right angle
+_FINE, _FINE_WEIGHTS = unit_gauss(4)  # enough for a small angle
+_WIDE, _WIDE_WEIGHTS = unit_gauss(14)  # enough for a right angle
 
 
 @njit

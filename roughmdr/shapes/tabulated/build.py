@@ -3,6 +3,7 @@
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.shapes.tabulated.lookup import DEGREE, HEAD, PIECE, strain_between
 
 _EXACT = 3e-15  # of the largest value on a piece: what the last coefficients may leave
@@ -107,11 +108,11 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
 
     from roughmdr.shapes.tabulated.abel import integrals
 
-    nodes, weights = np.polynomial.legendre.leggauss(DEGREE + 3)
+    nodes, weights = unit_gauss(DEGREE + 3)
     h = np.diff(knots)[:, None]
-    s = 0.5 * h * (1.0 + nodes)
+    s = h * nodes
     c0, c1, c2 = coefficients[:-1].T[:, :, None]
-    excess = 0.5 * h * weights * (c0 + s * (c1 + s * c2) - coefficients[-1, 0])
+    excess = h * weights * (c0 + s * (c1 + s * c2) - coefficients[-1, 0])
     r = knots[:-1, None] + s
     k = np.arange(DEGREE + 1)
     terms = np.array([binom(2 * i, i) / 4.0**i * np.sum(excess * r ** (2 * i)) for i in k])

@@ -10,8 +10,7 @@ kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
 
 import math
 
-import numpy as np
-
+from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.profile import Params, Profile
 
@@ -21,8 +20,7 @@ PIECE = HEAD + 3 * (DEGREE + 1)
 FAR = 3 + DEGREE + 1
 KNOT = 5
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+_NODES, _WEIGHTS = unit_gauss(20)
 
 
 def _piece(t: float, params: Params) -> int:
