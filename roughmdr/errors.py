@@ -9,9 +9,9 @@ class Fault(NamedTuple):
     """One thing that is wrong with a scene."""
 
     key: str
-    """Dotted; empty where no key is at fault."""
+    """Dotted key; empty where no key is at fault."""
     value: str
-    """As in the scene; empty where there is none to show."""
+    """Value as in the scene; empty where there is none to show."""
     message: str
     place: str = ""
     """File and line; empty where there is none."""
@@ -26,29 +26,29 @@ class RoughmdrError(ValueError):
 
 
 class SceneError(RoughmdrError):
-    """What was asked for, in a scene or an ensemble, cannot be computed as it stands."""
+    """A scene, or an ensemble, cannot be computed as it stands."""
 
     faults: tuple[Fault, ...] = ()
-    """What is wrong, one by one; empty where the message says it."""
+    """All faults of the scene; empty where the message alone tells."""
 
     @classmethod
     def of(cls, faults: Sequence[Fault]) -> "SceneError":
-        """The error that names all of ``faults``, each once."""
+        """Return the error that names all of ``faults``, each once."""
         error = cls("\n".join(dict.fromkeys(map(str, faults))))
         error.faults = tuple(dict.fromkeys(faults))
         return error
 
 
 class ShapeError(RoughmdrError):
-    """A shape parameter, or the use of a shape, makes no sense."""
+    """A shape parameter is out of its range, or a shape is used where it cannot be."""
 
 
 class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contract
-    """A number lies outside the range in which there is a right answer."""
+    """A number is outside the range in which there is a right answer."""
 
 
 class LimitWarning(UserWarning):
-    """A result lies where its theory is doubtful."""
+    """A result lies beyond the limits of its theory."""
 
 
 def warn_limits(texts: Iterable[str], stacklevel: int = 3) -> dict[str, str]:

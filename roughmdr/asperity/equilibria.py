@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _NAMES = ("contact_radius", "force", "contact_area", "stiffness")
-_LEAST = 1e-150  # of the radius of the first fold, where the search for a small contact begins
+_SMALLEST = 1e-150  # of the radius of the first fold: where the search for a small contact begins
 
 
 def equilibria(
@@ -94,7 +94,7 @@ def equilibria(
 
 
 def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, float]]:
-    """Contact radius, force and stiffness on each stable branch that reaches delta."""
+    """Yield contact radius, force and stiffness on each branch that is stable under fixed grips at delta."""
     law = contact.law
     onset = -contact.depth[0] if law.adhesive else 0.0
     if delta < onset or (delta == 0.0 and not law.adhesive):
@@ -102,7 +102,7 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
     if law.branched and delta > onset:
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
         for number in range(1, int(contact.params[COUNT]) + 1):
-            # A way that begins on a branch ends there just where the branch reaches so far.
+            # A retraction that begins on a branch stays on it just where the branch extends to delta.
             if law.branch(x, float(number), True, contact.params) == number:
                 state = law.state_on_branch(x, float(number), contact.params)
                 yield (
@@ -116,23 +116,23 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
 
 
 def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, float]]:
-    """The same on the way from each fold to the branch before it, where delta falls as a grows."""
+    """Yield contact radius, force and stiffness between two branches, where delta falls as a grows."""
     from scipy.optimize import brentq
 
     if not contact.law.adhesive:
         return
     shape, effective_modulus = contact.shape, contact.effective_modulus
-    edge = contact.radius if shape.plateau > 0.0 else 0.0
+    edge = contact.radius if shape.flat else 0.0
 
     def stretch(a: float) -> float:
         return release_stretch(a, effective_modulus, contact.adhesion.work)
 
-    def excess(log_a: float, most: float) -> float:
-        a = min(math.exp(log_a), most)
+    def excess(log_a: float, maximum: float) -> float:
+        a = min(math.exp(log_a), maximum)
         g = 0.0 if a <= edge else float(shape.g(a))
         return g - stretch(a) - delta
 
-    for low, high in _falls(contact):
+    for low, high in _falling_ranges(contact):
         ends = math.log(low), math.log(high)
         if not (excess(ends[0], high) > 0.0 > excess(ends[1], high)):
             continue
@@ -144,18 +144,18 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
             yield a, float(results["force"][0]), float(results["stiffness"][0])
 
 
-def _falls(contact: Contact) -> Iterator[tuple[float, float]]:
-    """Contact radii between which the indentation falls."""
+def _falling_ranges(contact: Contact) -> Iterator[tuple[float, float]]:
+    """Yield pairs of contact radii between which the indentation falls."""
     if contact.law.iterative:
         params = contact.params
         radii: Floats = np.array(
             [
-                contact.radius * contact.law.radius(params[place + j], params)
+                contact.radius * contact.law.radius(params[column + j], params)
                 for j in range(int(params[COUNT]))
-                for place in (FOOT, TOP)[: 1 + (j < params[COUNT] - 1)]
+                for column in (FOOT, TOP)[: 1 + (j < params[COUNT] - 1)]
             ]
         )
     else:
         radii = contact.pull_off("displacement")["contact_radius"]
-    turns = [radii[0] * _LEAST, *radii.tolist()]
+    turns = [radii[0] * _SMALLEST, *radii.tolist()]
     yield from list(pairwise(turns))[::2]

@@ -34,8 +34,12 @@ class Shape(ABC):
     """The sets of parameters that describe the shape, any one of them whole."""
     not_below: ClassVar[tuple[tuple[str, str, str], ...]] = ()
     """Pairs of parameters of which the first must not be below the second, and why."""
-    flat_ended: ClassVar[bool] = False
-    """Whether it is flat up to where it ends, so that the contact radius is always that radius."""
+    pinned: ClassVar[bool] = False
+    """Whether the contact radius is the shape's own under every load, as that of a flat punch is."""
+    uses_profile: ClassVar[bool] = False
+    """Whether its kernels are made from its ``Profile`` and describe a contact by the parameter t of that."""
+    flat: ClassVar[bool] = False
+    """Whether the tip is flat to one width."""
 
     @abstractmethod
     def f(self, r: ArrayLike) -> Floats:
@@ -71,13 +75,8 @@ class Shape(ABC):
         return np.full(np.shape(next(iter(parameters.values()))), np.inf)
 
     @property
-    def plateau(self) -> float:
-        """The radius [m] to which the tip is flat."""
-        return 0.0
-
-    @property
     def limit(self) -> float:
-        """The radius [m] beyond which f is undefined; inf where it never is."""
+        """The radius [m] beyond which there is no profile; inf where it goes on for ever."""
         return math.inf
 
     @classmethod
@@ -158,13 +157,16 @@ class ProfileShape(Shape):
         """Whether there can be more than one stable branch with adhesion."""
         return cls.profile.softening_count is not never_softens
 
-    @property
-    def plateau(self) -> float:
-        return self.nondimensional()[0] if self.profile.flat else 0.0
+    uses_profile = True
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "profile" in vars(cls):
+            cls.flat = cls.profile.flat
 
     @property
     def limit(self) -> float:
-        return self.profile.end * self.nondimensional()[0]
+        return math.inf if math.isinf(self.profile.end) else self.profile.end * self.nondimensional()[0]
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         """a [m], g [m] and a g - G [m2] at t with 40 digits."""

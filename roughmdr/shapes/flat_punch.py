@@ -19,11 +19,8 @@ class FlatPunch(Shape):
     name: ClassVar[str] = "flat_punch"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-    flat_ended: ClassVar[bool] = True
-
-    @property
-    def plateau(self) -> float:
-        return self.radius
+    pinned: ClassVar[bool] = True
+    flat: ClassVar[bool] = True
 
     @property
     def limit(self) -> float:

@@ -58,19 +58,19 @@ class Springs(NamedTuple):
     def at_indentation(self, delta: Floats) -> Results:
         """Return the contact as on retraction, up to the last spring that can be in contact; zeros where none can."""
         results = _zeros(delta, "force", "contact_radius", "stiffness")
-        touching = np.flatnonzero((delta > 0.0) | (self.rows.adhesion_length > 0.0))
-        for row, group, count in self.rows.fitted(delta[touching], loaded=False):
-            _fill(results, touching[group], self._state(row, count, delta[touching[group]]))
+        in_contact = np.flatnonzero((delta > 0.0) | (self.rows.adhesion_length > 0.0))
+        for row, group, count in self.rows.fitted(delta[in_contact], loaded=False):
+            _fill(results, in_contact[group], self._state(row, count, delta[in_contact[group]]))
         return results
 
     def at_force(self, force: Floats) -> Results:
         """Return the contact as on retraction under dead load; OutOfRange where no spring can be in contact."""
         results = _zeros(force, "indentation", "contact_radius", "stiffness")
-        touching = np.flatnonzero((force > 0.0) | (self.rows.adhesion_length > 0.0))
-        loads = 0.5 * force[touching] / self.effective_modulus
+        in_contact = np.flatnonzero((force > 0.0) | (self.rows.adhesion_length > 0.0))
+        loads = 0.5 * force[in_contact] / self.effective_modulus
         for row, group, count in self.rows.fitted(loads, loaded=True):
             delta = (loads[group] / row.spacing + row.area[count] / row.spacing) / np.maximum(count, 1)
-            _fill(results, touching[group], {**self._state(row, count, delta), "indentation": delta})
+            _fill(results, in_contact[group], {**self._state(row, count, delta), "indentation": delta})
         lost = (results["contact_radius"] == 0.0) & ((force < 0.0) | (self.rows.adhesion_length > 0.0))
         if lost.any():
             worst, lowest = float(force[lost].min()), self.pull_off_force()
@@ -84,7 +84,7 @@ class Springs(NamedTuple):
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
         if profile.plateau == profile.limit:
             raise ShapeError(
-                f"contact_radius does not tell the state of a flat punch: it is always {profile.plateau:g} m"
+                f"contact_radius does not determine the state of a flat punch: it is always {profile.plateau:g} m"
             )
         on_the_flat = (radius > 0.0) & (radius < profile.plateau)
         if on_the_flat.any():

@@ -30,7 +30,7 @@ class ShapeProfile:
     @property
     def plateau(self) -> float:
         """The radius [m] to which it is known to be flat."""
-        return self.shape.plateau
+        return self.shape.nondimensional()[0] if self.shape.flat else 0.0
 
     @property
     def start(self) -> float:

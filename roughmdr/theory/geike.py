@@ -86,7 +86,7 @@ def rough_line(
     z = line_heights(spectrum=spectrum, length=length, points=points, seed=seed)
     spring = effective_modulus_of(rough_line, material) * (check_number("length", length, "m") / len(z))
     given = check_values("separation", separation, "m")
-    # Depths below the highest point: their sums do not cancel at the first touches.
+    # Depths below the highest point, whose sums do not cancel near first touch.
     top = float(z.max())
     depth = np.sort(top - z)
     below = np.append(0.0, np.cumsum(depth))
