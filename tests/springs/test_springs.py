@@ -244,7 +244,7 @@ def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, o
 
 
 def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(row, "_EXTREME", 480)  # 2^60 m are enough
+    monkeypatch.setattr(row, "_LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
     with pytest.raises(rm.OutOfRange, match="grows without end"):
         rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 
