@@ -18,7 +18,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 _EDGE = 1e-9  # waves as long as a limit of the spectrum count as within it, whatever their rounding
 
@@ -113,7 +114,7 @@ def main(
             },
         )
         output.parent.mkdir(parents=True, exist_ok=True)
-        write(Labelled.of(dataset), output)
+        write_netcdf(Labelled.of(dataset), output)
     except RoughmdrError as error:
         raise click.UsageError(str(error)) from None
     click.echo(f"{output}: {points} x {points} points")

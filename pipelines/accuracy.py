@@ -24,8 +24,10 @@ from roughmdr.batch.moments import MomentTree
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 
 def scene_of(count: int, height: dict[str, Any], work: float = 0.0) -> dict[str, Any]:
@@ -160,8 +162,8 @@ def main(output: Path, quick: bool) -> None:
     """Measure, print, write accuracy.nc and accuracy.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(*((4000, 40) if quick else (25_000, 200)))
-    write(Labelled.of(result), output / "accuracy.nc")
-    with replacing(output / "accuracy.png") as temporary:
+    write_netcdf(Labelled.of(result), output / "accuracy.nc")
+    with replace_atomically(output / "accuracy.png") as temporary:
         draw(result).savefig(temporary, dpi=160, format="png")
     for name in result.scene.to_numpy():
         own = result.sel(scene=name)

@@ -19,8 +19,10 @@ from scipy.stats import norm
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -173,8 +175,8 @@ def main(output: Path, count: int, points: int) -> None:
     """Compute, print, write adhesion_range.nc and adhesion_range.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = adhesion_range(count, points)
-    write(Labelled.of(result), output / "adhesion_range.nc")
-    with replacing(output / "adhesion_range.png") as temporary:
+    write_netcdf(Labelled.of(result), output / "adhesion_range.nc")
+    with replace_atomically(output / "adhesion_range.png") as temporary:
         draw(result).savefig(temporary, dpi=160, format="png")
     rule = SHIFT / result.roughness / result.rough_tabor
     click.echo(

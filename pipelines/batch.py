@@ -21,7 +21,7 @@ from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import write
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 PARTS = ("loading", "reading", "planning", "keys", "tasks", "file")
 _WORKERS = (1, 2)
@@ -197,7 +197,7 @@ def main(output: Path, quick: bool, realizations: int) -> None:
     """Measure, print, write batch.nc and batch.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(quick, realizations)
-    write(Labelled.of(result), output / "batch.nc")
+    write_netcdf(Labelled.of(result), output / "batch.nc")
     draw(result, output / "batch.png")
     click.echo(said(result))
 

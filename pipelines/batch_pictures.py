@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from roughmdr.storage.store import replacing
+from roughmdr.storage.atomic import replace_atomically
 
 CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
 """[ms] a cell, [MB], times."""
@@ -21,7 +21,7 @@ def draw(result: xr.Dataset, path: Path) -> None:
     _memory(axes[1], result)
     _tasks(axes[2], result)
     _workers(axes[3], result)
-    with replacing(path) as temporary:
+    with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format="png")
 
 

@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 import roughmdr as rm
 from roughmdr.shapes import Shape
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 from roughmdr.variables import FIELDS
 
 if TYPE_CHECKING:
@@ -157,9 +159,9 @@ def main(output: Path) -> None:
     """Compute, print, write fields.nc and three pictures."""
     output.mkdir(parents=True, exist_ok=True)
     result = fields()
-    write(Labelled.of(result), output / "fields.nc")
+    write_netcdf(Labelled.of(result), output / "fields.nc")
     for name, draw in PICTURES.items():
-        with replacing(output / name) as temporary:
+        with replace_atomically(output / name) as temporary:
             draw(result).savefig(temporary, dpi=160, format="png")
     for shape in result["shape"].to_numpy():
         one = result.sel(shape=shape, adhesion="without adhesion")

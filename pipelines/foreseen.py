@@ -15,8 +15,9 @@ import click
 import numpy as np
 import xarray as xr
 
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 _FORESEE = """
 import sys
@@ -88,7 +89,7 @@ def draw(result: xr.Dataset, path: Path) -> None:
     ax.set(yscale="log", ylim=(0.3, 3.0), ylabel="foreseen over taken", title="roughmdr plan beside the run")
     ax.set_xticks(at, result["scene"].to_numpy())
     ax.legend(frameon=False)
-    with replacing(path) as temporary:
+    with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format="png")
 
 
@@ -99,7 +100,7 @@ def main(output: Path, quick: bool) -> None:
     """Measure, print, write foreseen.nc and foreseen.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = foreseen(list(FORESEEN)[: 1 if quick else None])
-    write(Labelled.of(result), output / "foreseen.nc")
+    write_netcdf(Labelled.of(result), output / "foreseen.nc")
     draw(result, output / "foreseen.png")
     for scene in result["scene"].to_numpy():
         (planned, took), (size, held) = (result[name].sel(scene=scene).to_numpy() for name in ("time", "memory"))

@@ -97,7 +97,7 @@ class Way(NamedTuple):
             "variables": self.variables,
         }
         for realization in range(self.scene.batch.realizations):
-            ensemble = self.scene.asperities.ensemble(self.scene.seed, realization, placed=self.placed)
+            ensemble = self.scene.asperities.ensemble(self.scene.seed, realization, with_positions=self.placed)
             yield self.compute(ensemble, self.path, **asked)
 
 

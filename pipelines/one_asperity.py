@@ -19,8 +19,10 @@ from one_asperity_pictures import PICTURES
 
 import roughmdr as rm
 from roughmdr.shapes import Shape
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 Floats = NDArray[np.float64]
 
@@ -219,9 +221,9 @@ def main(output: Path) -> None:
     """Compute, print, write one_asperity.nc and three pictures."""
     output.mkdir(parents=True, exist_ok=True)
     result = one_asperity()
-    write(Labelled.of(result), output / "one_asperity.nc")
+    write_netcdf(Labelled.of(result), output / "one_asperity.nc")
     for name, draw in PICTURES.items():
-        with replacing(output / name) as temporary:
+        with replace_atomically(output / name) as temporary:
             draw(result).savefig(temporary, dpi=160, format="png")
     for name in result["shape"].to_numpy():
         grips, dead = result.pull_off_force.sel(shape=name).to_numpy()

@@ -27,8 +27,9 @@ from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 MODULUS, WORK = 4e6, 0.05
 TABOR = (0.1, 1.0, 10.0, 100.0)
@@ -70,7 +71,7 @@ def by_the_sum(
     ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = ROWS
 ) -> Cost:
     """What the package's sum costs, all included."""
-    columns = ensemble.columns()
+    columns = ensemble.nondimensional()
     law = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 
@@ -119,7 +120,7 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
         section = {**kept, "count": count, "shape": shape, **parameters}
         ensemble = Ensemble.from_dataset(rm.generate(section, seed=1))
         started = time.perf_counter()
-        ensemble.columns()  # for a table: its pieces
+        ensemble.nondimensional()  # for a table: its pieces
         profile = time.perf_counter() - started
         each, before, short = told_apart(ensemble, Adhesion(WORK), repeats)
         rows.append((each * 1e9, before * 1e9, short.each, profile, by_brentq_on(ensemble, MODULUS, WORK).each))
@@ -260,7 +261,7 @@ def draw(result: xr.Dataset, path: Path) -> None:
     right.set_xticks(places + 0.28, [str(shape).replace("_", "\n") for shape in result["shape"].to_numpy()])
     right.set_ylim(top=50.0 * float(result["state_time_brentq"].max()))
     right.legend(frameon=False, ncols=3, loc="upper left")
-    with replacing(path) as temporary:
+    with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format="png")
 
 
@@ -271,7 +272,7 @@ def main(output: Path, quick: bool) -> None:
     """Measure, print, write scaling.nc and scaling.png."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(quick)
-    write(Labelled.of(result), output / "scaling.nc")
+    write_netcdf(Labelled.of(result), output / "scaling.nc")
     draw(result, output / "scaling.png")
     click.echo(result["cost"].to_pandas().round(2).to_string())
     names = ["state_time", "asperity_time", "path_time", "state_time_brentq", "profile_time"]

@@ -21,8 +21,10 @@ from springs_pictures import PICTURES
 import roughmdr as rm
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 Floats = NDArray[np.float64]
 
@@ -191,9 +193,9 @@ def main(output: Path, quick: bool) -> None:
     """Compute, print, write springs.nc and two pictures."""
     output.mkdir(parents=True, exist_ok=True)
     result = study(quick)
-    write(Labelled.of(result), output / "springs.nc")
+    write_netcdf(Labelled.of(result), output / "springs.nc")
     for name, draw in PICTURES.items():
-        with replacing(output / name) as temporary:
+        with replace_atomically(output / name) as temporary:
             draw(result).savefig(temporary, dpi=160, format="png")
     last = result.isel(springs=-1)
     for name in SHAPES:

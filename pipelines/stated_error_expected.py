@@ -18,8 +18,9 @@ from scipy.optimize import brentq
 from stated_error_contacts import profile, walk
 
 from roughmdr.asperity.contact import Contact
-from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
+from roughmdr.ensemble.nodes import Heights, Nodes, Rule
 from roughmdr.ensemble.random.population import Population, Populations
+from roughmdr.ensemble.random.population_nodes import nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.adhesion import release_stretch
@@ -68,10 +69,10 @@ class Expected:
         self.law: Populations | None = None
         if isinstance(scene.asperities, RandomAsperities):
             # Heights from where most of them are: far from there z - h would lose its digits.
-            law = scene.asperities.law
-            datum = law.populations[0].height.loc
+            law = scene.asperities.populations
+            datum = law.members[0].height.loc
             self.separation = separation - datum
-            self.law = replace(law, populations=tuple(_moved(each, datum) for each in law.populations))
+            self.law = replace(law, members=tuple(_moved(each, datum) for each in law.members))
 
     def nodes(self, scores: Rule) -> Nodes:
         """Asperities that stand for all."""
@@ -81,14 +82,14 @@ class Expected:
         """[N] at each step, with so many nodes on each panel."""
         nodes = self.nodes(self._scores(order))
         total = np.zeros_like(self.separation)
-        for number, share in enumerate(nodes.share.tolist()):
+        for number, share in enumerate(nodes.weights.tolist()):
             total += share * Tip(self, nodes, number).force(order)
         return self.scene.asperities.expected_count * total
 
     @cached_property
     def _tried(self) -> int:
         """How many nodes there are with three scores for each parameter."""
-        return self.nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).share.size
+        return self.nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).weights.size
 
     @property
     def several(self) -> bool:
@@ -126,7 +127,7 @@ class Expected:
     def _label(self, score: float) -> list[object]:
         """What the ends of all that is in contact are."""
         nodes = self.nodes(Rule(np.array([score]), np.ones(1)))
-        return [Tip(self, nodes, number).label for number in range(nodes.share.size)]
+        return [Tip(self, nodes, number).label for number in range(nodes.weights.size)]
 
 
 def _moved(population: Population, datum: float) -> Population:
@@ -142,7 +143,7 @@ class Tip:
     def __init__(self, of: Expected, nodes: Nodes, number: int) -> None:
         source, scene = of.scene.asperities, of.scene
         values = {name: float(column[number]) for name, column in nodes.parameters.items()}
-        self.shape = source.fixed or SHAPES[source.shape_name](**values)
+        self.shape = source.shared_profile or SHAPES[source.shape_name](**values)
         self.contact = Contact.of(self.shape, scene.effective_modulus, scene.adhesion_model)
         self.heights: Heights = nodes.heights[number]
         self.separation = of.separation

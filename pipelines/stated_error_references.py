@@ -34,7 +34,7 @@ def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[N
             values = {name: float(column[number]) for name, column in _columns(drawn).items()}
             key = tuple(values.values())
             if key not in found:
-                shape = source.fixed or SHAPES[source.shape_name](**values)
+                shape = source.shared_profile or SHAPES[source.shape_name](**values)
                 found[key] = follower(shape, scene, deepest)
             forces = found[key].forces([mp.mpf(z) - h for h in path])
             total = [one + other for one, other in zip(total, forces, strict=True)]
@@ -43,7 +43,7 @@ def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[N
 
 def _columns(drawn: Ensemble) -> dict[str, Floats]:
     """The parameters of each asperity, where they are not all the same profile."""
-    return {} if drawn.fixed is not None else drawn.parameters
+    return {} if drawn.shared_profile is not None else drawn.parameters
 
 
 def follower(shape: Shape, scene: Scene, deepest: float) -> Follower:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.storage.store import replacing
+from roughmdr.storage.atomic import replace_atomically
 
 NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes")
 
@@ -38,7 +38,7 @@ def main(output: Path, quick: bool) -> None:
             failed.append(name)
         parts.append(f"## {name}\n\nfailed\n" if part is None else part)
         output.mkdir(parents=True, exist_ok=True)
-        with replacing(output / "report.md") as temporary:
+        with replace_atomically(output / "report.md") as temporary:
             temporary.write_text("\n".join(parts))
     click.echo(output / "report.md")
     if failed:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 import xarray as xr
 
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,8 +32,8 @@ class Study(NamedTuple):
         """Measure, write both files to a folder, and say what came of it."""
         output.mkdir(parents=True, exist_ok=True)
         result = self.measure(quick).assign_attrs(provenance(self.title, f"{self.name}.py"))
-        write(Labelled.of(result), output / f"{self.name}.nc")
-        with replacing(output / f"{self.name}.png") as temporary:
+        write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
+        with replace_atomically(output / f"{self.name}.png") as temporary:
             self.draw(result).savefig(temporary, dpi=160, format="png")
         return f"## {self.title}\n\n{self.tell(result).strip()}\n"
 

@@ -22,11 +22,13 @@ from exact_summits import Series
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.ensemble.streams import independent
+from roughmdr.ensemble.streams import make_streams
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
 from surface import gaussian_map, wave_numbers, wave_variances
@@ -98,7 +100,7 @@ def summits(count: int = 20, grids: tuple[int, ...] = GRIDS, drawn: int = DRAWN)
     What is drawn has no area of its own: its density is the law's.
     """
     law, area = law_of_maps(), SIZE * SIZE
-    draws = independent(1, 0)
+    draws = make_streams(1, 0)
     sampled = statistics(sums(law.draw(*(draws(stream, drawn) for stream in range(3)))), drawn / law.density)
     found, by_fit = [], []
     for seed in range(count):
@@ -177,8 +179,8 @@ def main(output: Path, quick: bool) -> None:
     """Compute, print, write summits.nc and summits.png."""
     output.mkdir(parents=True, exist_ok=True)
     result, found = summits(3, GRIDS[:2], DRAWN // 10) if quick else summits()
-    write(Labelled.of(result), output / "summits.nc")
-    with replacing(output / "summits.png") as temporary:
+    write_netcdf(Labelled.of(result), output / "summits.nc")
+    with replace_atomically(output / "summits.png") as temporary:
         draw(result, found).savefig(temporary, dpi=160, format="png")
     for name, (unit, text) in STATISTICS.items():
         sampled, detected, error = (float(result[f"{name}_{part}"]) for part in ("sampled", "detected", "error"))

@@ -38,7 +38,7 @@ def compute(
     names, steps = list(variables), path.separation.size
     rows, dissipating = _rows(names), any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = _as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
-    validity = jkr_validity(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
+    validity = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
     problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows)
     split = KinkSplit.of(problem)
     rule, nodes, error, error_of_others = converge(problem, split, dissipating=dissipating)
@@ -65,7 +65,7 @@ def compute(
             f"the contact of an asperity is not representable: {problem.law.name} with effective modulus "
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
-    extremes = _as_ensemble(source, source.nodes(rule)).extremes(_largest_radii(nodes, closest, count))
+    extremes = _as_ensemble(source, source.nodes(rule)).validity_limits(_largest_radii(nodes, closest, count))
     model = problem.adhesion.model
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, validity.tabor, model)
     return law._replace(doubts=_warnings(law.numerical_error, error_of_others))
@@ -116,7 +116,8 @@ def _warnings(error: float, error_of_others: float) -> tuple[str, ...]:
 
 def _as_ensemble(source: Source, nodes: Nodes) -> Ensemble:
     """Return the nodes as if they were asperities."""
-    return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
+    heights = np.zeros(nodes.weights.size)
+    return Ensemble(source.shape_name, heights, nodes.parameters, shared_profile=source.shared_profile)
 
 
 def _largest_radii(nodes: list[QuadratureNode], closest: float, count: float) -> Floats:

@@ -97,7 +97,7 @@ def _converge_order(problem: Problem, curves: Curves) -> Converged:
     last = changes = np.full(len(found), math.inf)
     for order in _ORDERS:
         finer_rule = Rule.smooth(order)
-        count = problem.source.nodes(finer_rule).share.size
+        count = problem.source.nodes(finer_rule).weights.size
         if count == len(nodes):  # no parameter is drawn
             return Converged(rule, nodes, 0.0, 0.0)
         if count > _MAX_NODES:

@@ -79,7 +79,7 @@ class HeightTable(NamedTuple):
             error = np.where(vague, 0.0, error)
             missing = abs(1.0 - float(fraction.sum())) - float(unknown.sum())
             unknown[-1] += missing if missing > _MISSING else 0.0
-        unknown[-1] += heights.tail.share
+        unknown[-1] += heights.tail.fraction
         doubt = np.column_stack([error, anywhere, unknown])
         if not (np.isfinite(coefficients).all() and np.isfinite(doubt).all()):
             raise OutOfRange(
@@ -91,8 +91,7 @@ class HeightTable(NamedTuple):
     def between(self, begin: Floats, end: Floats) -> Floats:
         """Return the fraction of all heights from ``begin`` to ``end``, as differences to the origin [m]."""
         ends = np.array([begin, end])
-        parts = np.array([_fraction_below(self, y) for y in ends.ravel()])
-        low, high = parts.reshape(ends.shape)
+        low, high = _fractions_below(self, ends.ravel()).reshape(ends.shape)
         return np.asarray(high - low)
 
     def undecided(self, y: Floats) -> Floats:
@@ -121,19 +120,24 @@ def _counted(below: Floats, above: Floats) -> Floats:
 
 
 @njit
-def _fraction_below(heights: HeightTable, y: float) -> float:
-    """Return the fraction of all heights below y [m]."""
-    if y <= heights.low[0]:
-        return 0.0
-    if y >= heights.high[-1]:
-        return float(heights.below[-1])
-    piece = np.searchsorted(heights.high, y, side="right")
-    low, high = heights.low[piece], heights.high[piece]
-    half, middle = 0.5 * (y - low), 0.5 * (y + low)
-    u = (2.0 * (middle + half * _NODES) - low - high) / (high - low)
-    density, before, earlier = np.empty_like(u), np.empty_like(u), np.empty_like(u)
-    evaluate_series(heights.coefficients[piece, 0], u, density, before, earlier)
-    integral = 0.0
-    for m in range(u.size):
-        integral += _WEIGHTS[m] * density[m]
-    return float(heights.below[piece] + half * integral)
+def _fractions_below(heights: HeightTable, y: Floats) -> Floats:
+    """Return the fraction of all heights below each y [m]."""
+    fractions = np.empty(y.size)
+    u, density, before, earlier = np.empty((4, _NODES.size))
+    for i in range(y.size):
+        if y[i] <= heights.low[0]:
+            fractions[i] = 0.0
+        elif y[i] >= heights.high[-1]:
+            fractions[i] = heights.below[-1]
+        else:
+            piece = np.searchsorted(heights.high, y[i], side="right")
+            low, high = heights.low[piece], heights.high[piece]
+            half, middle = 0.5 * (y[i] - low), 0.5 * (y[i] + low)
+            for m in range(u.size):
+                u[m] = (2.0 * (middle + half * _NODES[m]) - low - high) / (high - low)
+            evaluate_series(heights.coefficients[piece, 0], u, density, before, earlier)
+            integral = 0.0
+            for m in range(u.size):
+                integral += _WEIGHTS[m] * density[m]
+            fractions[i] = heights.below[piece] + half * integral
+    return fractions

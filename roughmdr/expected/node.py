@@ -58,8 +58,8 @@ def contacts_of(problem: Problem, nodes: Nodes) -> list[Contact]:
     shape = SHAPES[problem.source.shape_name]
     columns = {name: column.tolist() for name, column in nodes.parameters.items()}
     shapes = [
-        problem.source.fixed or shape(**{name: column[number] for name, column in columns.items()})
-        for number in range(nodes.share.size)
+        problem.source.shared_profile or shape(**{name: column[number] for name, column in columns.items()})
+        for number in range(nodes.weights.size)
     ]
     return [Contact.of(one, problem.effective_modulus, problem.adhesion) for one in shapes]
 
@@ -70,7 +70,7 @@ def set_up(problem: Problem, rule: Rule) -> list[QuadratureNode]:
     contacts = contacts_of(problem, nodes)
     tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
     curves = curves_of(contacts, nodes.heights, float(problem.path.separation.min()), problem.rows)
-    each = zip(nodes.share.tolist(), contacts, curves, (tables[heights] for heights in nodes.heights), strict=True)
+    each = zip(nodes.weights.tolist(), contacts, curves, (tables[heights] for heights in nodes.heights), strict=True)
     return [
         QuadratureNode(
             fraction, contact, curve, heights, *contact_intervals(contact, problem.path.relative_to(heights.origin))

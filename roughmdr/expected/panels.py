@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.nodes import Rule, mean_over_edge, share_above
+from roughmdr.ensemble.nodes import Rule, fraction_above, mean_over_edge
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import QuadratureNode
 from roughmdr.numerics.arguments import Floats
@@ -80,7 +80,7 @@ def _find_end(side: float, set_up: SetUp, curves: Curves) -> tuple[float, Floats
     def at(score: float) -> Floats:
         return curves(set_up(Rule(np.array([score]), np.ones(1))))
 
-    fraction, values = share_above(0.0), at(0.0)
+    fraction, values = fraction_above(0.0), at(0.0)
     bulk = np.abs(values).max(axis=1, keepdims=True)
     score, left_out = 0.0, np.full_like(values, math.inf)
     for end in _ENDS:
@@ -88,7 +88,7 @@ def _find_end(side: float, set_up: SetUp, curves: Curves) -> tuple[float, Floats
             values_before, values = values, at(side * end)
         except (RoughmdrError, ArithmeticError):
             break
-        score, fraction_before, fraction = end, fraction, share_above(end)
+        score, fraction_before, fraction = end, fraction, fraction_above(end)
         index = _tail_index(np.abs(values), np.abs(values_before), fraction_before / fraction)
         left_out = fraction * np.abs(values) * mean_over_edge(index)
         bulk = np.maximum(bulk, fraction * np.abs(values).max(axis=1, keepdims=True))

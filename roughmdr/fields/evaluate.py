@@ -15,7 +15,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values
 from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.shapes import Shape
-from roughmdr.shapes.base import radii
+from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def pressure(
     ['3.183e+07', '2.917e+07', '0']
     """
     state = HalfSpace.of(shape, effective_modulus_of(pressure, material), work, contact_radius, indentation)
-    values = radii("r", check_values("r", r, "m"))
+    values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
     p = np.zeros_like(at)
@@ -131,7 +131,7 @@ def surface_displacement(
     """
     modulus = effective_modulus_of(surface_displacement, material)
     state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
-    values = radii("r", check_values("r", r, "m"))
+    values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     u = np.zeros_like(at)
     if state.radius > 0.0:
@@ -197,7 +197,7 @@ def axis_stress(
         del given["poisson"]
     modulus = effective_modulus_of(axis_stress, cast(Material, given))
     state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
-    values = radii("z", check_values("z", z, "m"))
+    values = check_radii("z", check_values("z", z, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)
     stress = state.effective_modulus / math.pi

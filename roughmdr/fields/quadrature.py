@@ -11,9 +11,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import NamedTuple
 
-import numpy as np
-
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import gauss, last_coefficients
 
 SINH, COSH, EXP, SIN = range(4)
 """Substitutions for v: scale sinh u, scale cosh u, e^u, scale sin u."""
@@ -59,8 +58,8 @@ class FieldKernels(ModuleType):
 law = FieldKernels("law")
 """Stands for the kernels of a shape in those that ``specialise`` is given."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_TAIL = np.array([(k + 0.5) * _WEIGHTS * np.polynomial.legendre.Legendre.basis(k)(_NODES) for k in (18, 19)])
+_NODES, _WEIGHTS = gauss(20)
+_TAIL = last_coefficients(20)
 _LONGEST_PANEL = 2.0
 _ROUGH = 1e-10  # of the integral: last coefficients of this size change it by their square
 _NEGLIGIBLE = 1e-18  # of the integral

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import quantity
-from roughmdr.schema.wording import shown
+from roughmdr.schema.wording import short_repr
 
 
 def check_number(name: str, value: float | str, dimension: str, *, zero: bool = False) -> float:
@@ -80,4 +80,4 @@ def _from_text(name: str, text: str, dimension: str) -> float:
     try:
         return quantity(text, dimension)
     except RoughmdrError as error:
-        raise OutOfRange(f"{name} is {shown(text)}: {error}") from None
+        raise OutOfRange(f"{name} is {short_repr(text)}: {error}") from None

@@ -7,7 +7,7 @@ from typing import Any, TypedDict
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.schema.arguments import check_number, check_poisson
-from roughmdr.schema.wording import near
+from roughmdr.schema.wording import close_matches
 
 
 class Material(TypedDict, total=False):
@@ -88,7 +88,7 @@ def effective_modulus_of(function: Callable[..., Any], material: Material) -> fl
     given: dict[str, Any] = {name: value for name, value in material.items() if value is not None}
     if unknown := set(given) - set(Material.__annotations__):
         name = min(unknown)
-        meant = near(name, {*inspect.signature(function).parameters, *Material.__annotations__})
+        meant = close_matches(name, {*inspect.signature(function).parameters, *Material.__annotations__})
         hint = f"; did you mean {meant[0]!r}?" if meant else ""
         raise TypeError(f"{function.__name__}() got an unexpected keyword argument {name!r}{hint}")
     try:

@@ -197,7 +197,7 @@ def test_the_same_physics_in_other_units(adhesion: dict[str, object] | None) -> 
 
 
 def test_energy_is_conserved_on_average() -> None:
-    """Over a closed cycle the work of the expected force is the energy lost in jumps; the error falls with the steps."""
+    """Over a closed cycle the work of the expected force is the energy lost in jumps; to the order of its steps."""
     asked = scene({"shape": "paraboloid", "radius": "50 um"}, {"model": "jkr", "work": 0.05})
     off = []
     for steps in (200, 400):

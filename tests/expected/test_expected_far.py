@@ -16,8 +16,8 @@ from mpmath import mp, mpf
 from plain_probability import mean_of_correlated, mean_of_heights, mean_of_radii
 
 import roughmdr as rm
-from roughmdr.ensemble.nodes import Heights
-from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.population_nodes import heights_of
 from roughmdr.expected.heights import HeightTable
 
 UM = 1e-6
@@ -217,7 +217,7 @@ def test_the_table_of_heights_counts_all_of_them(a: float, b: float, loc: float,
     """The fraction below any height is that of the distribution, within the doubt of the table."""
     distribution = Distribution("beta", (a, b), loc, 2 * UM)
     with np.errstate(all="ignore"):
-        table = HeightTable.of(Heights.of(distribution))
+        table = HeightTable.of(heights_of(distribution))
     y = np.array([2 * UM * at])
     below = table.between(np.array([-UM]), y)[0]
     anywhere = table.doubt[(table.low < y[0]) & (y[0] < table.high), 1].sum()
@@ -259,7 +259,7 @@ def test_many_random_distributions_of_scipy(seed: int) -> None:
     "radius", [{"distribution": "pareto", "b": 0.8}, {"distribution": "beta", "a": 0.05, "b": 0.05}]
 )
 def test_the_steps_of_the_path_do_not_change_the_force(radius: dict[str, object]) -> None:
-    """Without adhesion contacts have no memory; a large force at one step among many is as accurate as at most of them."""
+    """Contacts have no memory; a large force at one step among many is as accurate as at most of them."""
     height = {"distribution": "uniform", "loc": 0.0, "scale": UM}
     paths = [[2 * UM, 0.0], [2 * UM, 0.0] * 4 + [2 * UM], [2 * UM, 1.9 * UM, 1.8 * UM, 1.7 * UM, 0.0, 2 * UM]]
     laws = [expected(height, path, asperities={"radius": {**radius, "loc": 0.0, "scale": "50 um"}}) for path in paths]

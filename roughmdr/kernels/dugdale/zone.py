@@ -14,14 +14,12 @@ dx/sqrt(c^2 - x^2) is q/x dpsi. Where the zone is thin g(x) - g(a) has few digit
 
 import math
 
-import numpy as np
-
 from roughmdr.kernels.profile.interface import law
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
 
 # Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
-_Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
-_Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
+_Z, _WEIGHT = unit_gauss(40)
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
 _PANEL_RATIO = 8.0  # of the ends of a panel, at most
 _THIN = 0.01  # m/a: in a thinner zone g(x) - g(a) has too few digits

@@ -5,15 +5,13 @@ Notation of ``layout``. All in units of the shape's width and rise.
 
 import math
 
-import numpy as np
-
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, DEPTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
+from roughmdr.numerics.gauss import unit_gauss
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+_NODES, _WEIGHTS = unit_gauss(20)
 
 
 def indentation_at(t: float, params: Floats) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import binade_cell
 
-_binade_cell = compiled(binade_cell, small=True)
+_octave = compiled(binade_cell, small=True)
 
 _LOWEST = 2.0 ** (OCTAVES // 2)  # without adhesion the octaves begin at 1/_LOWEST of the depth
 _LARGEST = 2.0**OCTAVES
@@ -31,7 +31,7 @@ def y_of_x(x: float, params: Floats) -> float:
 
 def initial_guess(x: float, params: Floats) -> float:
     """t within the octaves; outside any number."""
-    node, u = _binade_cell(law.y_of_x(x, params), law.split)
+    node, u = _octave(law.y_of_x(x, params), law.split)
     node = min(max(node, 0), (OCTAVES << law.split) - 1)
     at, parts = (
         law.first_node + 2 * node,
