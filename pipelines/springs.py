@@ -72,7 +72,7 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
     }
     at = list(stages.values())
     side = row.spacing * (np.arange(DRAWN + 1) + 0.5)
-    position, depth = np.append(-side[::-1], side), np.append(row.depth[::-1], row.depth)
+    position, depth = np.append(-side[::-1], side), np.append(row.g[::-1], row.g)
     inside = np.abs(position) < state["contact_radius"][at][:, None]
     ends = np.where(inside, depth - path[at][:, None], 0.0)
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
-    from roughmdr.schema.units import effective_modulus
+    from roughmdr.schema.material import effective_modulus
     from roughmdr.shapes import (
         CappedParaboloid,
         Cone,
@@ -53,7 +53,7 @@ _HOME = {
     "TruncatedCone": "shapes",
     "TruncatedParaboloid": "shapes",
     "axis_stress": "fields.evaluate",
-    "effective_modulus": "schema.units",
+    "effective_modulus": "schema.material",
     "equilibria": "asperity.equilibria",
     "generate": "ensemble",
     "indent": "asperity.indent",

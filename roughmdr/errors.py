@@ -1,6 +1,7 @@
 """Errors and warnings that roughmdr raises on purpose. Messages name the argument, its value and what is allowed."""
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 
@@ -49,6 +50,14 @@ class ShapeError(RoughmdrError):
 
 class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contract
     """A number lies outside the range in which there is a right answer, or the answer is not representable."""
+
+
+def warn_limits(texts: Iterable[str], stacklevel: int = 3) -> dict[str, str]:
+    """Issue each text as a LimitWarning to the caller of the caller; return them as an attribute of a result."""
+    texts = list(texts)
+    for text in texts:
+        warnings.warn(text, LimitWarning, stacklevel=stacklevel)
+    return {"warnings": "\n".join(texts)} if texts else {}
 
 
 class StoreError(RoughmdrError):

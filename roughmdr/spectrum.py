@@ -3,6 +3,8 @@
 The spectrum C(q) [m4] over the wave vector is such that <h^2> = ∫ C d^2q = 2 pi ∫ q C dq.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple, Protocol
 
@@ -10,7 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_number, exactly_one
+
+__all__ = ["Moments", "SelfAffine", "Spectrum"]
 
 MIN_ALPHA = 1.5
 """Nayak's parameter alpha of waves of one length in all directions; every other isotropic surface has a larger one."""
@@ -27,9 +32,9 @@ class Moments(NamedTuple):
     """<(d2h/dx2)^2> [1/m2]."""
 
     @classmethod
-    def checked(cls, m0: float, m2: float, m4: float) -> "Moments":
+    def checked(cls, m0: float | str, m2: float, m4: float | str) -> Moments:
         """Return the moments; OutOfRange unless all are above 0 and m0 m4/m2^2 above 3/2."""
-        moments = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "1/m2"))
+        moments = cls(check_number("m0", m0, "m2"), check_number("m2", m2, "1"), check_number("m4", m4, "m-2"))
         if not MIN_ALPHA < moments.alpha < math.inf:
             raise OutOfRange(
                 f"alpha = m0 m4/m2^2 is {moments.alpha:g}; it must be above 3/2, as it is for every isotropic surface"
@@ -38,7 +43,7 @@ class Moments(NamedTuple):
 
     @property
     def alpha(self) -> float:
-        """Breadth of the spectrum, m0 m4/m2^2 (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
+        """Breadth of the spectrum, m0 m4/m2^2 [1] (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398)."""
         return (self.m0 / self.m2) * (self.m4 / self.m2)
 
     @property
@@ -83,7 +88,7 @@ def spectral_density(spectrum: Spectrum, q: Floats) -> Floats:
     return density
 
 
-def check_wavelengths(long_wave: float, short_wave: float) -> tuple[float, float]:
+def check_wavelengths(long_wave: float | str, short_wave: float | str) -> tuple[float, float]:
     """Return both wavelengths [m]; OutOfRange unless they are above 0 and in order."""
     long_wave, short_wave = check_number("long_wave", long_wave, "m"), check_number("short_wave", short_wave, "m")
     if not short_wave < long_wave:
@@ -92,11 +97,14 @@ def check_wavelengths(long_wave: float, short_wave: float) -> tuple[float, float
 
 
 class SelfAffine(NamedTuple):
-    """C(q) = level (q/q0)^(-2 - 2 hurst) from q0 = 2 pi/long_wave to q1 = 2 pi/short_wave, 0 elsewhere."""
+    """A self-affine spectrum: C(q) = level (q/q0)^(-2 - 2 hurst) between the wave numbers q0 and q1, 0 elsewhere."""
 
     hurst: float
+    """Hurst exponent [1]."""
     long_wave: float
+    """2 pi/q0 [m]."""
     short_wave: float
+    """2 pi/q1 [m]."""
     level: float
     """C(q0) [m4]."""
 
@@ -105,26 +113,55 @@ class SelfAffine(NamedTuple):
         cls,
         *,
         hurst: float,
-        long_wave: float,
-        short_wave: float,
-        rms_height: float | None = None,
+        long_wave: float | str,
+        short_wave: float | str,
+        rms_height: float | str | None = None,
         rms_slope: float | None = None,
-    ) -> "SelfAffine":
-        """Return the spectrum with this r.m.s. height [m] or this r.m.s. slope sqrt(<|grad h|^2>) [1].
+    ) -> SelfAffine:
+        """Make the spectrum with a given r.m.s. height or r.m.s. slope.
 
-        hurst is from 0 to 1, the wavelengths are [m]. OutOfRange where a number is not allowed, RoughmdrError unless
-        exactly one of r.m.s. height and slope is given.
+        Parameters
+        ----------
+        hurst : float
+            Hurst exponent [1], from 0 to 1.
+        long_wave, short_wave : float or str
+            Longest and shortest wavelength [m].
+        rms_height : float or str, optional
+            sqrt(<h^2>) [m]. Exactly one of rms_height and rms_slope is given.
+        rms_slope : float, optional
+            sqrt(<|grad h|^2>) [1].
+
+        Returns
+        -------
+        SelfAffine
+            The spectrum: a function C(q) [m4] with ``moments``, ``rms_height`` [m] and ``rms_slope`` [1].
+
+        Raises
+        ------
+        OutOfRange
+            Where a number is out of its range.
+        RoughmdrError
+            Unless exactly one of rms_height and rms_slope is given.
+
+        References
+        ----------
+        .. [1] B. N. J. Persson and others, J. Phys. Condens. Matter 17 (2005) R1.
+
+        Examples
+        --------
+        >>> import roughmdr as rm
+        >>> surface = rm.spectrum.SelfAffine.of(hurst=0.8, long_wave="100 um", short_wave="5 um", rms_slope=0.1)
+        >>> f"{surface.rms_height:.3g} m, alpha {surface.moments.alpha:.3g}"
+        '5.21e-07 m, alpha 15.3'
         """
         hurst = check_number("hurst", hurst, "1", zero=True)
         if hurst > 1.0:
             raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
         long_wave, short_wave = check_wavelengths(long_wave, short_wave)
-        unit = cls(hurst, long_wave, short_wave, 1.0)
-        if rms_height is not None and rms_slope is None:
-            return unit._replace(level=(check_number("rms_height", rms_height, "m") / unit.rms_height) ** 2)
-        if rms_slope is not None and rms_height is None:
-            return unit._replace(level=(check_number("rms_slope", rms_slope, "1") / unit.rms_slope) ** 2)
-        raise RoughmdrError("a self-affine spectrum takes either rms_height or rms_slope")
+        one = cls(hurst, long_wave, short_wave, 1.0)
+        name, value = exactly_one("a self-affine spectrum", rms_height=rms_height, rms_slope=rms_slope)
+        unit = {"rms_height": "m", "rms_slope": "1"}[name]
+        return one._replace(level=(check_number(name, value, unit) / getattr(one, name)) ** 2)
 
     def __call__(self, q: ArrayLike) -> Floats:
         """Return C(q) [m4] at wave numbers q [1/m] of at least 0."""

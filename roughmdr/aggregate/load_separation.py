@@ -1,9 +1,10 @@
 """The load-separation law of an ensemble: which totals the asked variables need, and the face in xarray."""
 
+from __future__ import annotations
+
 import math
-import warnings
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,13 +13,15 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
+from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, Model
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
-from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_values
+from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
@@ -57,7 +60,7 @@ class LoadSeparation(NamedTuple):
         visits: int,
         tabor: float,
         model: str,
-    ) -> "LoadSeparation":
+    ) -> LoadSeparation:
         """The law that ``total`` [row, step] comes to; OutOfRange where a variable is not representable."""
         results = {name: total[totals.TOTAL_INDEX[name]] for name in names}
         for name in _PER_AREA.intersection(names):
@@ -118,36 +121,76 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
 
 
 def load_separation(
-    ensemble: "xr.Dataset",
+    ensemble: xr.Dataset,
     *,
     separation: ArrayLike,
-    effective_modulus: float,
-    work: float = 0.0,
+    work: float | str = 0.0,
     adhesion: Model = "jkr",
-    strength: float | None = None,
+    strength: float | str | None = None,
     unload: bool = False,
     variables: Iterable[str] = DEFAULT_VARIABLES,
-) -> "xr.Dataset":
-    """The load-separation law of an ensemble pressed by a rigid flat, in this process.
+    **material: Unpack[Material],
+) -> xr.Dataset:
+    """Compute the load-separation curve of an ensemble pressed by a rigid flat, in this process.
 
-    ensemble is a Dataset over ``asperity`` as ``generate`` returns it; separation [m] the path of the flat, coming from
-    infinity; with ``unload`` the same separations follow reversed, the turning point repeated. effective_modulus is E*
-    [Pa], work the work of adhesion [J/m^2], 0 for none. Adhesion "dugdale" has a range and needs the stress
-    ``strength`` [Pa] of the attraction; "jkr" with a strength warns where it is not right. The result lies over
-    ``step`` with the coordinates separation [m] and branch; every variable in SI, ``numerical_error`` beside them.
+    Parameters
+    ----------
+    ensemble : xarray.Dataset
+        Over ``asperity``, as ``generate`` returns it.
+    separation : array_like, shape () or (n,)
+        Path of the flat [m], which comes from infinity.
+    work : float or str, optional
+        Work of adhesion [J/m^2]; 0 for none.
+    adhesion : {"jkr", "dugdale"}, optional
+        "dugdale" has a range and needs strength; "jkr" with strength warns where the Tabor number is small.
+    strength : float or str, optional
+        Stress of the attraction [Pa].
+    unload : bool, optional
+        Whether the same separations follow in reversed order, the turning point repeated.
+    variables : str or iterable of str, optional
+        Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum, energy,
+        dissipated_energy.
+    **material
+        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
 
-    SceneError where the ensemble or a name is wrong, OutOfRange where a number is.
+    Returns
+    -------
+    xarray.Dataset
+        The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1].
+
+    Raises
+    ------
+    SceneError
+        Where the ensemble or a name is wrong.
+    OutOfRange
+        Where a number is out of its range.
+    RoughmdrError
+        Unless E* is given in exactly one way.
+
+    References
+    ----------
+    .. [1] J. A. Greenwood, J. B. P. Williamson, Proc. R. Soc. A 295 (1966) 300, for any shape and heights.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> section = {"source": "random", "shape": "paraboloid", "count": 500, "patch": "1 mm", "radius": "50 um",
+    ...            "height": {"distribution": "normal", "std": "1 um"}}
+    >>> asperities = rm.generate(section, seed=1)
+    >>> curve = rm.load_separation(asperities, separation=["2 um", "1 um"], modulus="3 MPa", poisson=0.49)
+    >>> curve.contact_count.values.tolist()
+    [11.0, 82.0]
     """
     import xarray as xr
 
     if not isinstance(ensemble, xr.Dataset):
         raise SceneError(f"ensemble is a {type(ensemble).__name__}; it must be a Dataset as generate returns it")
-    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
+    effective_modulus = effective_modulus_of(load_separation, material)
     try:
         asked = Adhesion.checked(adhesion, work, strength)
     except RoughmdrError as error:
         raise error if isinstance(error, OutOfRange) else SceneError(str(error)) from None
-    path = np.atleast_1d(check_values("separation", separation))
+    path = np.atleast_1d(check_values("separation", separation, "m"))
     if path.size == 0:
         raise OutOfRange("separation is empty; it must hold at least one number")
     names = [variables] if isinstance(variables, str) else list(variables)
@@ -162,7 +205,4 @@ def load_separation(
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
     way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
     doubts = [*result.warnings, *result.extremes.warnings]
-    attrs = {"warnings": "\n".join(doubts)} if doubts else {}
-    for text in doubts:
-        warnings.warn(text, LimitWarning, stacklevel=2)
-    return Labelled(data, {"separation": way, "branch": route.branch()}, attrs).to_xarray()
+    return Labelled(data, {"separation": way, "branch": route.branch()}, warn_limits(doubts)).to_xarray()

@@ -1,4 +1,4 @@
-"""One asperity in contact: a law with the natural scales of the asperity, and its state from each of the controls."""
+"""One asperity in contact: its kernels, its natural scales, and its state under each control."""
 
 import math
 from typing import Any, NamedTuple, cast
@@ -12,7 +12,7 @@ from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import ProfileShape, Shape
 
 Results = dict[str, Floats]
@@ -21,7 +21,7 @@ _FIXED_GRIPS, _DEAD_LOAD = 0.0, 1.0
 
 
 class Contact(NamedTuple):
-    """A law with the natural scales of one asperity."""
+    """The kernels of one asperity, with its parameters and natural scales."""
 
     law: Kernels
     shape: Shape
@@ -29,30 +29,28 @@ class Contact(NamedTuple):
     adhesion: Adhesion
     params: Any
     depth: tuple[float, float]
+    """Natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it."""
     radius: float
     force: float
     stiffness: float
 
     @classmethod
     def of(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
-        """The contact of ``shape``; OutOfRange where an argument is, or where a float cannot hold its scales."""
+        """Return the contact of a shape; ShapeError unless it is one, OutOfRange if a float cannot hold its scales."""
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
-        effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
         width, rise, params = shape.nondimensional()
         law = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
             params = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
-            if not shape.pinned and shape.limit < adhesion.range and params[COUNT] == 0.0:
-                raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, reaches beyond the end of "
-                    f"{shape}; it must be larger"
+            if (shape.pinned or shape.limit < adhesion.range) and adhesion.cohesive and params[COUNT] == 0.0:
+                reason = (
+                    f"is so long that a contact of {shape} is lost in its roundings"
+                    if shape.pinned
+                    else f"reaches beyond the end of {shape}"
                 )
-            if shape.pinned and adhesion.cohesive and params[COUNT] == 0.0:
-                raise OutOfRange(
-                    f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
-                    f"of {shape} is lost in its roundings; it must be larger"
-                )
+                strength = f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m"
+                raise OutOfRange(f"{strength}, {reason}; it must be larger")
             scales = law.scales(effective_modulus, adhesion.work, width, rise, params)
             contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
         contact._check(
@@ -64,7 +62,7 @@ class Contact(NamedTuple):
         return contact._replace(depth=contact._exact(contact.depth, params))
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
-        """The force [N] that force control is reduced by, its radius [m], and the form that goes with it."""
+        """Return the force [N] that force control is reduced by, its radius [m], and params under dead load."""
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
             params = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
@@ -73,7 +71,7 @@ class Contact(NamedTuple):
         return self._exact(force, params), radius, params
 
     def _exact(self, depth: tuple[float, float], params: Any) -> tuple[float, float]:
-        """A natural depth with the digits that the fold needs."""
+        """Return a natural depth or force with the digits that the fold needs."""
         if not (self.law.adhesive and self.law.iterative) or self.adhesion.cohesive:
             return depth
         return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, params)
@@ -87,7 +85,7 @@ class Contact(NamedTuple):
                 )
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
-        """Distance >= 0 of ``value`` to the onset of contact over ``scale``: to the fold at -scale, or to 0.
+        """Return the distance >= 0 of ``value`` to the onset of contact, the fold at -scale or 0, over ``scale``.
 
         The float that is nearest to the fold stands for the fold itself.
         """
@@ -97,58 +95,59 @@ class Contact(NamedTuple):
         return np.where(value == -scale[0], 0.0, distance).clip(min=0.0)
 
     def pull_off(self, control: str) -> Results:
-        """Where a slow retraction ends under "displacement" or "force"; one number each."""
+        """Return the state in which a slow retraction ends under "displacement" or "force"; arrays of one number."""
         if control == "displacement":
             fold = np.array([-self.depth[0]])
             return {**self.at_indentation(fold), "indentation": fold}
         return self.at_force(np.array([-self._under_load()[0][0]]))
 
     def at_indentation(self, delta: Floats) -> Results:
-        """The contact as on retraction; zeros where there is none."""
+        """Return the contact as on retraction; zeros where there is none."""
         law = self.law
         onset = -self.depth[0] if law.adhesive else 0.0
-        touching = (delta >= onset) if law.adhesive else (delta > 0.0)
-        state = apply(law.state, np.where(touching, self.reduced(delta, self.depth), 1.0), self.params)
+        in_contact = (delta >= onset) if law.adhesive else (delta > 0.0)
+        state = apply(law.state, np.where(in_contact, self.reduced(delta, self.depth), 1.0), self.params)
         one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
-        off_the_fold = np.where(delta == onset, apply(law.state, one_step_above, self.params), state)
-        radius, force, _ = self._answers(state)
+        beside_fold = np.where(delta == onset, apply(law.state, one_step_above, self.params), state)
+        radius, force, _ = self._radius_force_stiffness(state)
         results = {
             "force": force,
             "contact_radius": radius,
-            "stiffness": self._answers(off_the_fold)[2],
-            **self._cohesive(state),
+            "stiffness": self._radius_force_stiffness(beside_fold)[2],
+            **self._cohesive_radius(state),
         }
-        return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+        return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
 
     def at_force(self, force: Floats) -> Results:
-        """The contact on the branch that is stable under dead load; OutOfRange where there is none."""
+        """Return the contact on the branch that is stable under dead load; OutOfRange where there is none."""
         law = self.law
-        scale, radius_there, params = self._under_load()
+        scale, scale_radius, params = self._under_load()
         lowest = -scale[0] if law.adhesive else 0.0
         if (force < lowest).any():
-            worst = float(force.min())
-            raise OutOfRange(f"force is {worst!r} N; the contact holds no more than the pull-off force, {lowest!r} N")
-        touching = (force >= lowest) if law.adhesive else (force > 0.0)
-        distance = np.where(touching, self.reduced(force, scale), 1.0)
+            raise OutOfRange(f"force is {float(force.min())!r} N; it must be at least the pull-off force, {lowest!r} N")
+        in_contact = (force >= lowest) if law.adhesive else (force > 0.0)
+        distance = np.where(in_contact, self.reduced(force, scale), 1.0)
         state = apply(law.state_of_force, distance, params)
-        radius, _, stiffness = self._answers(state)
+        radius, _, stiffness = self._radius_force_stiffness(state)
         if law.radius_of_force is not None:
-            radius = radius_there * apply(law.radius_of_force, distance, params)
+            radius = scale_radius * apply(law.radius_of_force, distance, params)
         results = {
             "indentation": self._indentation(state),
             "contact_radius": radius,
             "stiffness": stiffness,
-            **self._cohesive(state),
+            **self._cohesive_radius(state),
         }
-        return {**{name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}, "force": force}
+        return {**{name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}, "force": force}
 
     def at_radius(self, radius: Floats) -> Results:
-        """The equilibrium with each radius, stable or not; zeros where it is 0."""
+        """Return the equilibrium with each radius, stable or not; zeros where it is 0."""
         law, shape = self.law, self.shape
         if (radius < 0.0).any():
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
         if shape.pinned:
-            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {self.radius:g} m")
+            raise ShapeError(
+                f"contact_radius does not determine the state of a flat punch: it is always {shape.limit:g} m"
+            )
         if shape.flat:
             on_the_flat = (radius > 0.0) & (radius < self.radius)
             if on_the_flat.any():
@@ -158,38 +157,38 @@ class Contact(NamedTuple):
                 )
         if self.adhesion.cohesive and (radius == 0.0).any():
             raise ShapeError(
-                "contact_radius is 0 m, which does not tell the state: the surfaces can attract each other"
+                "contact_radius is 0 m, which does not determine the state: the surfaces can attract each other"
             )
-        touching = radius > 0.0
-        a = np.where(touching, radius, self.radius)
+        in_contact = radius > 0.0
+        a = np.where(in_contact, radius, self.radius)
         state = apply(law.state_of_radius, a, self.radius, self.params)
-        off_the_fold = state
+        beside_fold = state
         if law.adhesive and not law.iterative:  # the folds of rows lie between the floats
             above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
-            off_the_fold = np.where(state == 0.0, above, state)
+            beside_fold = np.where(state == 0.0, above, state)
         results = {
             "indentation": self._indentation(state),
-            "force": self._answers(state)[1],
-            "stiffness": self._answers(off_the_fold)[2],
-            **self._cohesive(state),
+            "force": self._radius_force_stiffness(state)[1],
+            "stiffness": self._radius_force_stiffness(beside_fold)[2],
+            **self._cohesive_radius(state),
         }
-        return {name: np.where(touching, numbers, 0.0) for name, numbers in results.items()}
+        return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
 
-    def _answers(self, state: Floats) -> tuple[Floats, Floats, Floats]:
-        """Contact radius [m], force [N] and stiffness [N/m] of each state."""
+    def _radius_force_stiffness(self, state: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return contact radius [m], force [N] and stiffness [N/m] of each state."""
         law, params = self.law, self.params
         with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
             parts = apply_all(law.radius_force_stiffness, state, params)
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
-    def _cohesive(self, state: Floats) -> Results:
-        """The cohesive radius [m] of each state, where adhesion has a range."""
+    def _cohesive_radius(self, state: Floats) -> Results:
+        """Return the cohesive radius [m] of each state, where adhesion has a range."""
         if not self.law.cohesive:
             return {}
         return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.params)}
 
     def _indentation(self, state: Floats) -> Floats:
-        """Indentation [m] of each state."""
+        """Return the indentation [m] of each state."""
         distance = apply(self.law.reduced_control, state, self.params)
         if not self.law.adhesive:
             return self.depth[0] * distance

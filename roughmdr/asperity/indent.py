@@ -1,18 +1,21 @@
-"""One asperity's face: indentation, force or contact radius in, the whole state of the contact out, as xarray."""
+"""Public functions of one asperity: its contact under a control, its pull-off and its Tabor number."""
+
+from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.asperity import validity
-from roughmdr.asperity.contact import Contact
-from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, ShapeError
+from roughmdr.asperity.contact import Contact, Results
+from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, Model, tabor_number
-from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_number, check_values, exactly_one
+from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 
@@ -22,54 +25,87 @@ if TYPE_CHECKING:
     from roughmdr.springs import Springs
 
 
+class AdhesiveMaterial(Material, total=False):
+    """The elastic constants and how the surfaces attract each other, as keyword arguments."""
+
+    adhesion: Model
+    strength: float | str | None
+
+
 def indent(
     shape: Shape | Callable[[Floats], Floats],
     *,
-    effective_modulus: float,
-    work: float = 0.0,
     indentation: ArrayLike | None = None,
     force: ArrayLike | None = None,
     contact_radius: ArrayLike | None = None,
-    adhesion: Model = "jkr",
-    strength: float | None = None,
+    work: float | str = 0.0,
     method: Literal["exact", "springs"] = "exact",
     springs: int | None = None,
-) -> "xr.Dataset":
-    """The contact of one asperity with an elastic half-space, exact (H 16, 25 without adhesion; H 40-41, 44 with JKR).
+    **material: Unpack[AdhesiveMaterial],
+) -> xr.Dataset:
+    """Compute the contact of one asperity with an elastic half-space under one control.
 
-    adhesion "dugdale" has a range: the surfaces attract each other with the stress ``strength`` [Pa] up to a gap of
-    work/strength (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, here for any shape).
+    Exactly one of indentation, force and contact_radius is given: a number, a string with a unit such as "2 nm", or a
+    one-dimensional array.
 
-    Exactly one control is given, as a number or a one-dimensional array:
+    Parameters
+    ----------
+    shape : Shape or callable
+        The profile; with method="springs" also a function f(r) [m] of an array of radii [m].
+    indentation : array_like, shape () or (n,), optional
+        [m]. The contact as on retraction; beyond pull-off force and contact radius are 0.
+    force : array_like, shape () or (n,), optional
+        [N]. The branch that is stable under dead load.
+    contact_radius : array_like, shape () or (n,), optional
+        [m]. The equilibrium with that radius, stable or not.
+    work : float or str, optional
+        Work of adhesion [J/m^2]; 0 for none.
+    method : {"exact", "springs"}, optional
+        "springs" solves a row of springs (``roughmdr.springs``) in place of the closed forms.
+    springs : int, optional
+        The number of springs, with method="springs".
+    **material
+        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+        adhesion="dugdale" needs strength [Pa]: the surfaces attract each other with that stress up to a gap of
+        work/strength. With adhesion="jkr", the default, strength leads to a warning where the Tabor number is small.
 
-    indentation : [m]
-        The contact as on retraction; beyond pull-off force and contact radius are 0.
-    force : [N]
-        The branch that is stable under dead load. OutOfRange below the pull-off force (without adhesion: below 0).
-    contact_radius : [m]
-        The equilibrium with that radius, stable or not. OutOfRange below 0; with "dugdale" ShapeError for 0.
+    Returns
+    -------
+    xarray.Dataset
+        Over the control, in the order given, without dimension for a number: force [N], indentation [m],
+        contact_radius [m], contact_area [m2], stiffness [N/m] and, with "dugdale", cohesive_radius [m], up to which
+        the surfaces attract each other. At the fold the stiffness is its finite value one rounding step above.
 
-    effective_modulus is E* [Pa], work the work of adhesion [J/m^2]; 0 means none. The result is a Dataset over the
-    control (same order; a number gives a 0-d Dataset): force [N], indentation [m], contact_radius [m], contact_area
-    [m2], stiffness [N/m], and with "dugdale" cohesive_radius [m], up to which the surfaces attract each other. At the
-    fold the stiffness is its finite value one rounding step above. With "jkr" a ``strength`` makes for a warning where
-    the Tabor number is small.
+    Raises
+    ------
+    OutOfRange
+        Where an argument is out of its range (a force below the pull-off force, or below 0 without adhesion; a contact
+        radius below 0), or a float cannot hold the answer.
+    ShapeError
+        Where the shape is none, or contact_radius does not determine the state.
+    RoughmdrError
+        Unless exactly one control is given, and E* in exactly one way.
 
-    With method="springs" a row of ``springs`` springs takes the place of the closed forms (``roughmdr.springs``); the
-    shape may then be a function f(r) [m] of an array of radii [m] too.
+    References
+    ----------
+    .. [1] V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015).
+    .. [2] D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, here for any shape.
 
-    Raises OutOfRange where an argument is out of its range or a float cannot hold the answer.
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> tip = rm.Paraboloid(radius="1 um")
+    >>> contact = rm.indent(tip, modulus="70 GPa", poisson=0.3, indentation=["1 nm", "2 nm"])
+    >>> [f"{force:.4g}" for force in contact.force.values]
+    ['3.243e-06', '9.174e-06']
     """
+    adhesion, strength = material.pop("adhesion", "jkr"), material.pop("strength", None)
     if method == "springs" and adhesion != "jkr":
         raise RoughmdrError(f"adhesion is {adhesion!r}; with method='springs' it must be 'jkr'")
-    controls = {"indentation": indentation, "force": force, "contact_radius": contact_radius}
-    given = {name: value for name, value in controls.items() if value is not None}
-    if len(given) != 1:
-        names = " and ".join(given) or "none"
-        raise RoughmdrError(f"got {names}; indent takes exactly one of indentation, force, contact_radius")
-    ((control, raw),) = given.items()
-    values = check_values(control, raw)
-    contact = _contact(shape, effective_modulus, Adhesion.checked(adhesion, work, strength), method, springs)
+    control, raw = exactly_one("indent", indentation=indentation, force=force, contact_radius=contact_radius)
+    values = check_values(control, raw, ASPERITY[control].units)
+    asked = Adhesion.checked(adhesion, work, strength)
+    contact = _contact(shape, effective_modulus_of(indent, material), asked, method, springs)
     solve = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
     with np.errstate(all="ignore"):  # what overflows is refused below
         results = {**solve[control](np.atleast_1d(values)), control: np.atleast_1d(values)}
@@ -79,12 +115,112 @@ def indent(
         if lost.any():
             worst = np.atleast_1d(values)[lost][0]
             raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
-    extremes = validity.ValidityLimits()
-    if isinstance(shape, Shape):
-        radius = results["contact_radius"]
-        extremes = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
-    doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
-    return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, doubts)
+    attrs = warn_limits(_warnings(shape, results["contact_radius"], contact.effective_modulus, asked))
+    return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, attrs)
+
+
+def pull_off(
+    shape: Shape,
+    *,
+    work: float | str,
+    control: Literal["displacement", "force"] = "displacement",
+    **material: Unpack[AdhesiveMaterial],
+) -> xr.Dataset:
+    """Find where a slow retraction ends: the least indentation, or the least force, at which there is a contact.
+
+    Parameters
+    ----------
+    shape : Shape
+        The profile.
+    work : float or str
+        Work of adhesion [J/m^2].
+    control : {"displacement", "force"}, optional
+        Retraction under fixed grips, or under dead load.
+    **material
+        E*, adhesion and strength as in ``indent``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars: force [N], indentation [m], contact_radius [m] and, with "dugdale", cohesive_radius [m]; all 0 without
+        adhesion.
+
+    Raises
+    ------
+    OutOfRange, ShapeError, RoughmdrError
+        As ``indent``.
+
+    References
+    ----------
+    .. [1] K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301.
+    .. [2] D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> off = rm.pull_off(rm.Paraboloid(radius=1e-6), effective_modulus="1 GPa", work="50 mJ/m^2", control="force")
+    >>> f"{float(off.force):.4g}"  # -3/2 pi w R
+    '-2.356e-07'
+    """
+    if control not in ("displacement", "force"):
+        raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
+    asked = Adhesion.checked(material.pop("adhesion", "jkr"), work, material.pop("strength", None))
+    contact = Contact.of(shape, effective_modulus_of(pull_off, material), asked)
+    names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if asked.model == "dugdale" else [])]
+    if not contact.law.adhesive:
+        return _dataset({name: np.zeros(()) for name in names}, None, {})
+    with np.errstate(all="ignore"):
+        results = contact.pull_off(control)
+    radius = results["contact_radius"]
+    for name in names:
+        if not np.isfinite(results[name]).all() or (asked.model == "jkr" and (radius == 0.0).any()):
+            raise OutOfRange(
+                f"{name} at pull-off is not representable: "
+                f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
+            )
+    attrs = warn_limits(_warnings(shape, radius, contact.effective_modulus, asked))
+    return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
+
+
+def tabor(shape: Shape, *, work: float | str, strength: float | str, **material: Unpack[Material]) -> float:
+    """Compute the Tabor number dl(a) strength/(pi^(2/3) work), with a where JKR detaches under fixed grips.
+
+    Where it is large JKR holds; where it is small the attraction reaches far beyond the contact (DMT). For the
+    paraboloid it is (R work^2/E*^2)^(1/3) strength/work.
+
+    Parameters
+    ----------
+    shape : Shape
+        The profile.
+    work : float or str
+        Work of adhesion [J/m^2], above 0.
+    strength : float or str
+        Stress of the attraction [Pa], above 0.
+    **material
+        E* as in ``indent``.
+
+    Returns
+    -------
+    float
+        The Tabor number [1].
+
+    Raises
+    ------
+    OutOfRange, ShapeError, RoughmdrError
+        As ``indent``.
+
+    References
+    ----------
+    .. [1] D. Tabor, J. Colloid Interface Sci. 58 (1977) 2.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> round(rm.tabor(rm.Paraboloid(radius=1e-6), effective_modulus=1e9, work=0.05, strength="5 MPa"), 3)
+    0.136
+    """
+    asked = Adhesion(check_number("work", work, "J/m^2"), "jkr", check_number("strength", strength, "Pa"))
+    return _tabor(shape, effective_modulus_of(tabor, material), asked)
 
 
 def _contact(
@@ -93,7 +229,7 @@ def _contact(
     adhesion: Adhesion,
     method: str,
     springs: int | None,
-) -> "Contact | Springs":
+) -> Contact | Springs:
     """The contact by its closed forms, or as a row of springs."""
     if method not in ("exact", "springs"):
         raise RoughmdrError(f"method is {method!r}; it must be 'exact' or 'springs'")
@@ -108,56 +244,24 @@ def _contact(
     return Contact.of(shape, effective_modulus, adhesion)
 
 
-def pull_off(
-    shape: Shape,
-    *,
-    effective_modulus: float,
-    work: float,
-    control: Literal["displacement", "force"] = "displacement",
-    adhesion: Model = "jkr",
-    strength: float | None = None,
-) -> "xr.Dataset":
-    """Where a slow retraction lets go: under fixed grips ("displacement") or dead load ("force").
-
-    The global minimum of delta(a), or of P(a). effective_modulus is E* [Pa], work [J/m^2]. Returns a Dataset of
-    scalars: force [N], indentation [m], contact_radius [m], with "dugdale" cohesive_radius [m]; all 0 without adhesion.
-    Raises OutOfRange as ``indent``.
-    """
-    if control not in ("displacement", "force"):
-        raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
-    contact = Contact.of(shape, effective_modulus, Adhesion.checked(adhesion, work, strength))
-    names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if adhesion == "dugdale" else [])]
-    if not contact.law.adhesive:
-        return _dataset({name: np.zeros(()) for name in names}, None, [])
-    with np.errstate(all="ignore"):
-        results = contact.pull_off(control)
-    radius = results["contact_radius"]
-    for name in names:
-        if not np.isfinite(results[name]).all() or (adhesion == "jkr" and (radius == 0.0).any()):
-            raise OutOfRange(
-                f"{name} at pull-off is not representable: "
-                f"effective modulus {effective_modulus:g} Pa, work {work:g} J/m^2, {shape}"
-            )
-    extremes = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
-    doubts = [*extremes.warnings, *_short_range(shape, effective_modulus, work, adhesion, strength)]
-    return _dataset({name: results[name].reshape(()) for name in names}, None, doubts)
+def _tabor(shape: Shape, effective_modulus: float, adhesion: Adhesion) -> float:
+    contact = Contact.of(shape, effective_modulus, Adhesion(adhesion.work))
+    radius = float(contact.pull_off("displacement")["contact_radius"][0])
+    return tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
 
 
-def _short_range(
-    shape: object, effective_modulus: float, work: float, adhesion: str, strength: float | None
-) -> list[str]:
-    """What to say of JKR where a strength is given with it."""
-    if adhesion != "jkr" or strength is None or work == 0.0 or not isinstance(shape, Shape):
+def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion: Adhesion) -> list[str]:
+    """Where the contact radii [m] of a shape, or the range of its adhesion, leave what the theory supposes."""
+    if not isinstance(shape, Shape):
         return []
-    return validity.short_range(tabor(shape, effective_modulus=effective_modulus, work=work, strength=strength))
+    limits = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
+    if adhesion.model == "jkr" and adhesion.tabor_known:
+        limits = limits._replace(tabor=_tabor(shape, effective_modulus, adhesion))
+    return limits.warnings
 
 
-def _dataset(results: dict[str, Floats], control: str | None, doubts: list[str]) -> "xr.Dataset":
-    """The results over the control, with what is doubtful about them; each doubt is a LimitWarning too."""
+def _dataset(results: Results, control: str | None, attrs: dict[str, str]) -> xr.Dataset:
     import xarray as xr
-
-    for text in doubts:
-        warnings.warn(text, LimitWarning, stacklevel=3)
 
     def dims(numbers: Floats) -> tuple[str, ...]:
         return (control,) if control is not None and numbers.ndim else ()
@@ -165,18 +269,5 @@ def _dataset(results: dict[str, Floats], control: str | None, doubts: list[str])
     return xr.Dataset(
         {name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name != control},
         coords={name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name == control},
-        attrs={"warnings": "\n".join(doubts)} if doubts else {},
+        attrs=attrs,
     )
-
-
-def tabor(shape: Shape, *, effective_modulus: float, work: float, strength: float) -> float:
-    """The Tabor number [1] of an asperity: dl(a) strength/(pi^(2/3) work) with a where JKR lets go under fixed grips.
-
-    Large: JKR; small: the attraction reaches far beyond the contact (DMT). For the paraboloid it is
-    (R work^2/E*^2)^(1/3) strength/work (D. Tabor, J. Colloid Interface Sci. 58 (1977) 2). effective_modulus is E* [Pa],
-    work [J/m^2], strength [Pa], all > 0. Raises OutOfRange as ``indent``.
-    """
-    strength, work = check_number("strength", strength, "Pa"), check_number("work", work, "J/m^2")
-    contact = Contact.of(shape, effective_modulus, Adhesion(work))
-    radius = float(contact.pull_off("displacement")["contact_radius"][0])
-    return tabor_number(radius, contact.effective_modulus, work, strength)

@@ -5,7 +5,6 @@ and ``from_file`` (a saved ensemble). ``source`` declares what each of them answ
 """
 
 import operator
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
@@ -18,7 +17,7 @@ from roughmdr.ensemble.maps.section import SurfaceAsperities
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.ensemble.random.sections_by_shape import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
-from roughmdr.errors import LimitWarning, SceneError
+from roughmdr.errors import SceneError, warn_limits
 from roughmdr.schema.faults import find_faults
 
 if TYPE_CHECKING:
@@ -104,8 +103,7 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
     """
     section = asperities if isinstance(asperities, Source) else _validated(asperities)
     ensemble = make(section, _whole_number("seed", seed), _whole_number("realization", realization))
-    for text in ensemble.warnings:
-        warnings.warn(text, LimitWarning, stacklevel=2)
+    warn_limits(ensemble.warnings)
     return ensemble.labelled().to_xarray()
 
 

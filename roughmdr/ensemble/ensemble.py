@@ -8,7 +8,8 @@ import numpy as np
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.kernels.interface import Columns
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import short_repr
 from roughmdr.shapes import SHAPES, Shape, SharedProfile

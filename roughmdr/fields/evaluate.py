@@ -1,16 +1,19 @@
-"""The fields of one contact: pressure and displacement on the surface of the half-space, stress on the axis below."""
+"""Public functions of the fields of one contact: pressure and displacement on the surface, stress on the axis below."""
+
+from __future__ import annotations
 
 import math
-import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import LimitWarning, OutOfRange
-from roughmdr.fields.half_space import HalfSpace, one_number
+from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
+from roughmdr.fields.half_space import HalfSpace
 from roughmdr.fields.quadrature import DEEP, DISPLACEMENT, PRESSURE, STEEP
-from roughmdr.numerics.arguments import Floats, check_values
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_poisson, check_values
+from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
@@ -23,108 +26,197 @@ def pressure(
     shape: Shape,
     *,
     r: ArrayLike,
-    contact_radius: float | None = None,
-    indentation: float | None = None,
-    effective_modulus: float,
-    work: float = 0.0,
-) -> "xr.DataArray":
-    """The normal pressure p(r) [Pa] on the surface, compression > 0 (H 42); 0 outside the contact.
-
-    r [m] is a number or a one-dimensional array, from 0 on. The state is told by one number: ``contact_radius`` [m],
-    the equilibrium with that radius (ShapeError for a flat punch), or ``indentation`` [m], the contact as on
-    retraction, where out of contact p is 0. effective_modulus is E* [Pa], work the work of adhesion [J/m^2].
+    contact_radius: float | str | None = None,
+    indentation: float | str | None = None,
+    work: float | str = 0.0,
+    **material: Unpack[Material],
+) -> xr.DataArray:
+    """Compute the normal pressure on the surface, compression positive; 0 outside the contact.
 
     p = (E*/pi) ∫_r^a g'(x)/sqrt(x^2 - r^2) dx - E* dl(a)/(pi sqrt(a^2 - r^2)), for a flat punch
-    (E*/pi) delta/sqrt(b^2 - r^2). OutOfRange where p is infinite: at the edge of the contact with adhesion and of a
-    flat punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
+    (E*/pi) delta/sqrt(b^2 - r^2).
+
+    Parameters
+    ----------
+    shape : Shape
+        The profile.
+    r : array_like, shape () or (n,)
+        Distances from the axis [m], at least 0.
+    contact_radius : float or str, optional
+        [m]. The equilibrium with that radius. Exactly one of contact_radius and indentation is given.
+    indentation : float or str, optional
+        [m]. The contact as on retraction; p is 0 out of contact.
+    work : float or str, optional
+        Work of adhesion [J/m^2], with JKR; 0 for none.
+    **material
+        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+
+    Returns
+    -------
+    xarray.DataArray
+        p [Pa] over r.
+
+    Raises
+    ------
+    OutOfRange
+        Where an argument is out of its range, or p is infinite: at the edge of the contact with adhesion and of a flat
+        punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
+    ShapeError
+        Where the shape is none, or contact_radius does not determine the state (a flat punch).
+    RoughmdrError
+        Unless exactly one control is given, and E* in exactly one way.
+
+    References
+    ----------
+    .. [1] V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015).
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> tip = rm.Paraboloid(radius="1 um")
+    >>> p = rm.pressure(tip, r=["0 nm", "20 nm", "60 nm"], contact_radius="50 nm", effective_modulus="1 GPa")
+    >>> [f"{value:.4g}" for value in p.values]
+    ['3.183e+07', '2.917e+07', '0']
     """
-    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
-    values = check_radii("r", check_values("r", r))
+    state = HalfSpace.of(shape, effective_modulus_of(pressure, material), work, contact_radius, indentation)
+    values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
-    found = np.zeros_like(at)
+    p = np.zeros_like(at)
     inside = at < state.radius
     with np.errstate(all="ignore"):
-        found[inside] = state.effective_modulus / math.pi * state.total(PRESSURE, at[inside])
-    return _array("pressure", found, values, _attributed(state))
+        p[inside] = state.effective_modulus / math.pi * state.total(PRESSURE, at[inside])
+    return _array("pressure", p, values, warn_limits(state.warnings))
 
 
 def surface_displacement(
     shape: Shape,
     *,
     r: ArrayLike,
-    contact_radius: float | None = None,
-    indentation: float | None = None,
-    effective_modulus: float,
-    work: float = 0.0,
-) -> "xr.DataArray":
-    """The normal displacement u(r) [m] of the surface, positive into the half-space.
+    contact_radius: float | str | None = None,
+    indentation: float | str | None = None,
+    work: float | str = 0.0,
+    **material: Unpack[Material],
+) -> xr.DataArray:
+    """Compute the normal displacement of the surface, positive into the half-space.
 
-    Arguments and errors as ``pressure``, but for its infinities: u is finite everywhere. Inside the contact
-    u = delta - f(r), outside (2/pi) ∫_0^a (delta - g(x))/sqrt(r^2 - x^2) dx, far away P/(pi E* r).
+    Inside the contact u = delta - f(r), outside (2/pi) ∫_0^a (delta - g(x))/sqrt(r^2 - x^2) dx, far away P/(pi E* r).
+
+    Parameters
+    ----------
+    shape, r, contact_radius, indentation, work, **material
+        As ``pressure``.
+
+    Returns
+    -------
+    xarray.DataArray
+        u [m] over r; finite everywhere.
+
+    Raises
+    ------
+    OutOfRange, ShapeError, RoughmdrError
+        As ``pressure``, but for its infinities.
+
+    References
+    ----------
+    .. [1] V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015).
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> tip = rm.Paraboloid(radius="1 um")
+    >>> u = rm.surface_displacement(tip, r=["0 nm", "1 um"], indentation="2 nm", effective_modulus="1 GPa")
+    >>> [f"{value:.4g}" for value in u.values]
+    ['2e-09', '3.797e-11']
     """
-    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
-    values = check_radii("r", check_values("r", r))
+    modulus = effective_modulus_of(surface_displacement, material)
+    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
-    found = np.zeros_like(at)
+    u = np.zeros_like(at)
     if state.radius > 0.0:
         inside = at <= state.radius
         with np.errstate(all="ignore"):
-            found[inside] = state.indentation - shape.f(at[inside])
-            found[~inside] = 2.0 / math.pi * state.total(DISPLACEMENT, at[~inside])
-    return _array("surface_displacement", found, values, _attributed(state))
+            u[inside] = state.indentation - shape.f(at[inside])
+            u[~inside] = 2.0 / math.pi * state.total(DISPLACEMENT, at[~inside])
+    return _array("surface_displacement", u, values, warn_limits(state.warnings))
 
 
 def axis_stress(
     shape: Shape,
     *,
     z: ArrayLike,
-    contact_radius: float | None = None,
-    indentation: float | None = None,
-    effective_modulus: float,
-    work: float = 0.0,
-    poisson: float,
-) -> "xr.Dataset":
-    """The stress on the axis at depths z [m], from 0 on, tension > 0: sigma_zz, sigma_rr and the shear [Pa].
+    contact_radius: float | str | None = None,
+    indentation: float | str | None = None,
+    work: float | str = 0.0,
+    **material: Unpack[Material],
+) -> xr.Dataset:
+    """Compute the stress on the axis below the contact, tension positive.
 
-    The shear is |sigma_zz - sigma_rr|/2. ``largest_shear`` [Pa] is the largest of all depths, and
-    ``largest_shear_depth`` [m] its place (0 on the surface); both are left out where the profile is sharp, f'(0+) > 0,
-    since there the shear grows without bound towards the tip (as (1/2 - poisson) ln(1/z) for a cone).
+    The contact is a superposition of flat punches of radius x under dg.
 
-    poisson, above -1 and at most 1/2, is that of the half-space. Other arguments and errors as ``pressure``; z = 0 is
-    refused where the pressure is infinite at r = 0. From flat punches of radius x under dg (K. L. Johnson, Contact
-    Mechanics, 1985, section 3.4).
+    Parameters
+    ----------
+    shape, contact_radius, indentation, work
+        As ``pressure``.
+    z : array_like, shape () or (n,)
+        Depths [m], at least 0; 0 is refused where the pressure is infinite at r = 0.
+    **material
+        poisson [1] of the half-space, above -1 and at most 1/2, in any case; with it effective_modulus [Pa], or modulus
+        [Pa] (and counter_modulus with counter_poisson).
+
+    Returns
+    -------
+    xarray.Dataset
+        Over z: sigma_zz [Pa], sigma_rr [Pa] and shear = |sigma_zz - sigma_rr|/2 [Pa]. Without dimension: largest_shear
+        [Pa] of all depths, and largest_shear_depth [m] (0 on the surface), left out where the profile is sharp,
+        f'(0+) > 0: there the shear grows without bound towards the tip, as (1/2 - poisson) ln(1/z) for a cone.
+
+    Raises
+    ------
+    OutOfRange, ShapeError, RoughmdrError
+        As ``pressure``; RoughmdrError also without poisson.
+
+    References
+    ----------
+    .. [1] K. L. Johnson, Contact Mechanics (1985), section 3.4.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> tip = rm.Paraboloid(radius="1 um")
+    >>> stress = rm.axis_stress(tip, z="24 nm", contact_radius="50 nm", modulus="1 GPa", poisson=0.3)
+    >>> f"{float(stress.largest_shear_depth):.3g}"  # 0.48 of the contact radius
+    '2.4e-08'
     """
-    state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
-    if not -1.0 < one_number("poisson", poisson) <= 0.5:
-        raise OutOfRange(f"poisson is {poisson:g}; it must be above -1 and at most 0.5")
-    values = check_radii("z", check_values("z", z))
+    given = dict(material)
+    if given.get("poisson") is None:
+        raise RoughmdrError("axis_stress needs the poisson of the half-space, with effective_modulus as with modulus")
+    poisson = check_poisson("poisson", material["poisson"])
+    if given.get("effective_modulus") is not None and given.get("modulus") is None:
+        del given["poisson"]
+    modulus = effective_modulus_of(axis_stress, cast(Material, given))
+    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    values = check_radii("z", check_values("z", z, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)
     stress = state.effective_modulus / math.pi
-    mixed = 0.5 - poisson, 3.5 - poisson
+    weights = 0.5 - poisson, 3.5 - poisson
     with np.errstate(all="ignore"):
         steep, deep = state.below(STEEP, at), state.below(DEEP, at)
         results = {
             "sigma_zz": -stress * (steep + 3.0 * deep),
             "sigma_rr": -stress * ((0.5 + poisson) * steep + (poisson - 0.5) * deep),
-            "shear": 0.5 * stress * np.abs(mixed[0] * steep + mixed[1] * deep),
+            "shear": 0.5 * stress * np.abs(weights[0] * steep + weights[1] * deep),
         }
         results = {name: numbers.reshape(values.shape) for name, numbers in results.items()}
         if not state.sharp:
-            depth, shear = state.largest_shear(*mixed)
+            depth, shear = state.largest_shear(*weights)
             results |= {"largest_shear": np.array(0.5 * stress * shear), "largest_shear_depth": np.array(depth)}
-    return _dataset(results, "z", values, _attributed(state))
+    return _dataset(results, "z", values, warn_limits(state.warnings))
 
 
-def _attributed(state: HalfSpace) -> dict[str, str]:
-    """The attributes that say what is doubtful; each doubt is a LimitWarning too."""
-    for text in state.warnings:
-        warnings.warn(text, LimitWarning, stacklevel=3)
-    return {"warnings": "\n".join(state.warnings)} if state.warnings else {}
-
-
-def _dataset(results: dict[str, Floats], name: str, at: Floats, attrs: dict[str, str]) -> "xr.Dataset":
+def _dataset(results: dict[str, Floats], name: str, at: Floats, attrs: dict[str, str]) -> xr.Dataset:
     """``results`` over the coordinate ``name``, numbers without dimension; OutOfRange where they are not finite."""
     import xarray as xr
 
@@ -141,5 +233,5 @@ def _dataset(results: dict[str, Floats], name: str, at: Floats, attrs: dict[str,
     )
 
 
-def _array(variable: str, found: Floats, at: Floats, attrs: dict[str, str]) -> "xr.DataArray":
-    return _dataset({variable: found.reshape(at.shape)}, "r", at, {})[variable].assign_attrs(attrs)
+def _array(variable: str, values: Floats, at: Floats, attrs: dict[str, str]) -> xr.DataArray:
+    return _dataset({variable: values.reshape(at.shape)}, "r", at, {})[variable].assign_attrs(attrs)

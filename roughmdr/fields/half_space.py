@@ -1,36 +1,26 @@
-"""The half-space under one contact: the state, where its pressure is infinite, and the sums that its fields are of."""
+"""The half-space under one contact: its state, where its pressure is infinite, and the integrals of its fields."""
 
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.errors import OutOfRange
 from roughmdr.fields import integrals
 from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
-from roughmdr.numerics.arguments import Floats, check_values
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_scalar, exactly_one
 from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
 
-_ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding
-_SHALLOW, _DEEP, _STEPS_A_DECADE = 1e-6, 10.0, 8  # where the largest shear is looked for, over a radius
+_ROUNDING = 1e-12  # of the slope at the edge: a smaller slope of the tip, or jump, is rounding
+_DEPTH_MIN, _DEPTH_MAX, _STEPS_PER_DECADE = 1e-6, 10.0, 8  # of the search for the largest shear, over a radius
 _POWER = {PRESSURE: 1, DISPLACEMENT: 0, STEEP: 1, DEEP: 1, STEEP_TURN: 2, DEEP_TURN: 2}
-"""How often a weight is divided by a length."""
-
-
-def one_number(name: str, raw: ArrayLike) -> float:
-    """``raw`` as a float; OutOfRange unless it is one finite number."""
-    value = check_values(name, raw)
-    if value.ndim:
-        raise OutOfRange(
-            f"{name} has {value.ndim} dimensions; it must be one number, since a field is that of one contact"
-        )
-    return float(value)
+"""The power of a length that a weight is divided by."""
 
 
 class HalfSpace(NamedTuple):
@@ -41,40 +31,35 @@ class HalfSpace(NamedTuple):
     indentation: float
     radius: float
     stretch: float
-    """delta - g(a) [m]: what the flat punch of the size of the contact adds."""
+    """delta - g(a) [m]: the indentation of the flat punch of the size of the contact, which is superposed."""
     t: float
     width: float
     rise: float
     params: Any
-    """The numbers of the shape."""
+    """Those of the shape, with room for what its profile precomputes."""
 
     @classmethod
     def of(
         cls,
         shape: Shape,
         effective_modulus: float,
-        work: float,
-        contact_radius: float | None,
-        indentation: float | None,
+        work: float | str,
+        contact_radius: float | str | None,
+        indentation: float | str | None,
     ) -> "HalfSpace":
-        """The state under the one control that is given; RoughmdrError, OutOfRange and ShapeError as in ``indent``."""
-        controls = {"contact_radius": contact_radius, "indentation": indentation}
-        given = {name: value for name, value in controls.items() if value is not None}
-        if len(given) != 1:
-            names = " and ".join(given) or "none"
-            raise RoughmdrError(f"got {names}; a field takes exactly one of contact_radius, indentation")
-        ((control, raw),) = given.items()
-        value = one_number(control, raw)
-        adhesion, wanted = Adhesion.checked("jkr", work, None), np.array([value])
+        """Return the state under the one control that is given; errors as ``indent``."""
+        control, raw = exactly_one("a field", contact_radius=contact_radius, indentation=indentation)
+        value = check_scalar(control, raw, "m")
+        adhesion, values = Adhesion.checked("jkr", work, None), np.array([value])
         contact = Contact.of(shape, effective_modulus, adhesion)
         law = contact.law
         with np.errstate(all="ignore"):
             if control == "contact_radius":
-                radius, depth = wanted, contact.at_radius(wanted)["indentation"]
+                radius, depth = values, contact.at_radius(values)["indentation"]
                 t = apply(law.state_of_radius, radius, contact.radius, contact.params)
             else:
-                radius, depth = contact.at_indentation(wanted)["contact_radius"], wanted
-                distance = np.where(radius > 0.0, contact.reduced(wanted, contact.depth), 1.0)
+                radius, depth = contact.at_indentation(values)["contact_radius"], values
+                distance = np.where(radius > 0.0, contact.reduced(values, contact.depth), 1.0)
                 t = apply(law.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
         if not (math.isfinite(a) and math.isfinite(delta)):
@@ -98,12 +83,12 @@ class HalfSpace(NamedTuple):
         return bool(height(0.0, self.params)[1] > _ROUNDING * height(self.radius / self.width, self.params)[1])
 
     def singular(self) -> dict[float, str]:
-        """The radii [m] where the pressure is infinite, and what lies there."""
-        found: dict[float, str] = {}
+        """Return the radii [m] where the pressure is infinite, and what lies there."""
+        infinite: dict[float, str] = {}
         if self.radius == 0.0:
-            return found
+            return infinite
         if self.sharp:
-            found[0.0] = "the sharp tip of the profile"
+            infinite[0.0] = "the sharp tip of the profile"
         if not self.shape.pinned and (profile := profile_of(type(self.shape))).corner:
             for index in range(profile.breakpoint_count(self.params)):
                 edge = profile.breakpoint(index, self.params)[0]
@@ -111,34 +96,34 @@ class HalfSpace(NamedTuple):
                     profile.f_and_slope(math.nextafter(edge, to), self.params)[1] for to in (0.0, math.inf)
                 )
                 if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.params):
-                    found[edge * self.width] = "a corner of the profile"
+                    infinite[edge * self.width] = "a corner of the profile"
         if self.stretch != 0.0:
-            found[self.radius] = "the edge of the contact"
-        return found
+            infinite[self.radius] = "the edge of the contact"
+        return infinite
 
     def refuse_singular(self, name: str, at: Floats, only: float | None = None) -> None:
-        """OutOfRange where one of ``at`` is a radius at which the pressure is infinite."""
-        for radius, place in self.singular().items():
+        """Raise OutOfRange where one of ``at`` is a radius at which the pressure is infinite."""
+        for radius, location in self.singular().items():
             if (at == radius).any() and only in (None, radius):
                 raise OutOfRange(
-                    f"{name} is {radius:g} m, {place}, where the pressure is infinite; it must lie beside it"
+                    f"{name} is {radius:g} m, {location}, where the pressure is infinite; it must differ from that"
                 )
 
     def total(self, kind: int, at: Floats) -> Floats:
-        """The integral of a weight with d(g - delta) to the edge of the contact, its own stretch included."""
+        """Return the integral of a weight with d(g - delta) to the edge of the contact, the jump there included."""
         body = np.zeros_like(at)
         if not self.shape.pinned:
             kernel = integrals.build(type(self.shape))
             body = apply(kernel, at, kind, self.radius, self.t, self.width, self.params)
             if np.isnan(body).any():
                 raise OutOfRange(
-                    f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m asks for "
+                    f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m needs "
                     f"more digits than a float has: {self.shape}"
                 )
         return np.asarray(self.rise * body / self.width ** _POWER[kind] + self.stretch * self._edge(kind, at))
 
     def _edge(self, kind: int, at: Floats) -> Floats:
-        """The weight at the edge of the contact."""
+        """Return the weight at the edge of the contact."""
         a = self.radius
         if kind == PRESSURE:
             return np.asarray(1.0 / (np.sqrt(a - at) * np.sqrt(a + at)))
@@ -146,28 +131,28 @@ class HalfSpace(NamedTuple):
             return np.asarray(np.arctan2(a, np.sqrt(at - a) * np.sqrt(at + a)))
         d = np.hypot(a, at)
         cosine, sine = a / d, at / d
-        along = {STEEP: cosine**3, DEEP: cosine * sine**2, STEEP_TURN: cosine**3 * sine, DEEP_TURN: cosine * sine**3}
-        return np.asarray(along[kind] / d ** _POWER[kind])
+        weights = {STEEP: cosine**3, DEEP: cosine * sine**2, STEEP_TURN: cosine**3 * sine, DEEP_TURN: cosine * sine**3}
+        return np.asarray(weights[kind] / d ** _POWER[kind])
 
     def below(self, kind: int, depth: Floats) -> Floats:
-        """``total`` of the weights on the axis, 0 without contact, and on the surface as p(0) has it."""
-        found = np.zeros_like(depth)
+        """Return ``total`` of the weights on the axis; 0 without contact, that of p(0) on the surface."""
+        totals = np.zeros_like(depth)
         if self.radius > 0.0:
             deep = depth > 0.0
-            found[deep] = self.total(kind, depth[deep])
+            totals[deep] = self.total(kind, depth[deep])
             if kind == STEEP:
-                found[~deep] = self.total(PRESSURE, depth[~deep])
-        return found
+                totals[~deep] = self.total(PRESSURE, depth[~deep])
+        return totals
 
     def largest_shear(self, steep: float, deep: float) -> tuple[float, float]:
-        """The depth [m] where |steep A + deep B| is largest, A and B the sums of STEEP and DEEP; and that."""
+        """Return the depth [m] where |steep A + deep B| is largest, A and B the totals of STEEP and DEEP; and that."""
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
         if not self.shape.pinned and (profile := profile_of(type(self.shape))).breakpoint_count(self.params):
             smallest = min(smallest, profile.breakpoint(0, self.params)[0] * self.width)
-        decades = math.log10(_DEEP / _SHALLOW) + math.log10(self.radius / smallest)
-        depths = np.geomspace(_SHALLOW * smallest, _DEEP * self.radius, int(_STEPS_A_DECADE * decades))
+        decades = math.log10(_DEPTH_MAX / _DEPTH_MIN) + math.log10(self.radius / smallest)
+        depths = np.geomspace(_DEPTH_MIN * smallest, _DEPTH_MAX * self.radius, int(_STEPS_PER_DECADE * decades))
         depths = np.concatenate([[0.0], depths])
 
         def shear(depth: Floats) -> Floats:
@@ -175,19 +160,19 @@ class HalfSpace(NamedTuple):
 
         def slope(depth: float) -> float:
             at = np.array([depth])
-            turn = (deep - 2.0 * steep) * self.total(STEEP_TURN, at) - deep * self.total(DEEP_TURN, at)
-            return float(turn[0])
+            gradient = (deep - 2.0 * steep) * self.total(STEEP_TURN, at) - deep * self.total(DEEP_TURN, at)
+            return float(gradient[0])
 
-        top = int(np.argmax(shear(depths)))
-        depth = float(depths[top])
-        if 1 < top < depths.size - 1 and slope(depths[top - 1]) * slope(depths[top + 1]) < 0.0:
+        largest = int(np.argmax(shear(depths)))
+        depth = float(depths[largest])
+        if 1 < largest < depths.size - 1 and slope(depths[largest - 1]) * slope(depths[largest + 1]) < 0.0:
             from scipy.optimize import brentq
 
-            depth = float(brentq(slope, depths[top - 1], depths[top + 1], xtol=1e-15 * depth, rtol=1e-14))
+            depth = float(brentq(slope, depths[largest - 1], depths[largest + 1], xtol=1e-15 * depth, rtol=1e-14))
         return depth, float(shear(np.array([depth]))[0])
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the contact."""
+        """Where the contact leaves what the theory supposes."""
         radius = np.array([self.radius])
         return validity.ValidityLimits.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings

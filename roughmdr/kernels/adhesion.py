@@ -4,7 +4,7 @@ import math
 from typing import Literal, NamedTuple, get_args
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.numerics.arguments import check_number
+from roughmdr.schema.arguments import check_number
 
 Model = Literal["jkr", "dugdale"]
 
@@ -51,7 +51,7 @@ class Adhesion(NamedTuple):
         return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")
 
     @classmethod
-    def checked(cls, model: Model, work: float, strength: float | None) -> "Adhesion":
+    def checked(cls, model: Model, work: float | str, strength: float | str | None) -> "Adhesion":
         """Return the model asked for; w [J/m2], sigma0 [Pa] or None where it is not given.
 
         RoughmdrError for an unknown model or a missing strength, OutOfRange for a number.

@@ -17,7 +17,7 @@ from roughmdr.batch.resume.writer import CheckpointWriter, checkpointing
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, split_into_tasks
-from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, StoreError, Unfinished
+from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
@@ -95,8 +95,7 @@ def run(
     target = None if out is None else Path(out)
     plan = make_plan(read(scene))
     result = execute(plan, target, Backend(scheduler, workers), resume=resume, quiet=quiet)
-    for text in result.attrs.get("warnings", "").splitlines():
-        warnings.warn(text, LimitWarning, stacklevel=2)
+    warn_limits(result.attrs.get("warnings", "").splitlines())
     status = result.variables["status"].values
     if (status == FAILED).any():
         warnings.warn(f"{int((status == FAILED).sum())} of {status.size} failed, see remark", FailedRuns, stacklevel=2)

@@ -13,8 +13,8 @@ from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, Material, Output
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.faults import mismatch
+from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import Section, WholeNumber
-from roughmdr.schema.units import effective_modulus
 
 _NEGLIGIBLE = 0.01  # of the required error
 

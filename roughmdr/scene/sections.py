@@ -7,7 +7,8 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.numerics.arguments import check_number
+from roughmdr.schema.arguments import check_number
+from roughmdr.schema.material import check_one_body
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
@@ -33,11 +34,7 @@ class Material(Section):
 
     @model_validator(mode="after")
     def _effective_or_youngs(self) -> "Material":
-        if self.effective_modulus is not None:
-            if self.modulus is not None or self.poisson is not None:
-                raise RoughmdrError("takes effective_modulus alone, or modulus and poisson")
-        elif self.modulus is None or self.poisson is None:
-            raise RoughmdrError("needs effective_modulus, or modulus and poisson")
+        check_one_body(self.effective_modulus, self.modulus, self.poisson)
         return self
 
 

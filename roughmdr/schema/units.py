@@ -1,12 +1,11 @@
-"""SI units: reading "50 mJ/m^2" as 0.05 J/m^2, and the effective modulus."""
+"""SI units: "50 mJ/m^2" is 0.05 J/m^2."""
 
 import math
 import re
 from decimal import Decimal
 from functools import cache
 
-from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.numerics.arguments import check_number
+from roughmdr.errors import RoughmdrError
 from roughmdr.schema.wording import short_repr
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
@@ -112,24 +111,3 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
 def udunits(dimension: str) -> str:
     """A dimension in the spelling that CF asks for."""
     return dimension.replace("/m^2", " m-2")
-
-
-def effective_modulus(E1: float, nu1: float, E2: float = math.inf, nu2: float = 0.0) -> float:
-    """E* [Pa] of two elastic bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (H 43).
-
-    E1, E2 are Young's moduli [Pa], E2 = inf is rigid; nu1, nu2 Poisson's ratios. OutOfRange unless E > 0,
-    -1 < nu <= 1/2 and E* is representable.
-    """
-    compliance = 0.0
-    for body, modulus, poisson in (("1", E1, nu1), ("2", E2, nu2)):
-        try:
-            ratio = float(poisson)
-        except (TypeError, ValueError):
-            raise OutOfRange(f"nu{body} is {poisson!r}; it must be a number above -1 and at most 0.5") from None
-        if not -1.0 < ratio <= 0.5:
-            raise OutOfRange(f"nu{body} is {ratio:g}; it must be above -1 and at most 0.5")
-        if body == "1" or modulus != math.inf:
-            compliance += (1.0 - ratio * ratio) / check_number(f"E{body}", modulus, "Pa")
-    if not 1e-300 < compliance < 1e300:
-        raise OutOfRange(f"E* of E1 = {E1:g} Pa and E2 = {E2:g} Pa is not representable")
-    return 1.0 / compliance

@@ -9,15 +9,19 @@ from typing import Any, ClassVar, Self, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
+from roughmdr.schema.units import quantity
+from roughmdr.schema.wording import short_repr
 from roughmdr.shapes.profile import Profile, zero
 
 
 class Shape(ABC):
     """An axisymmetric profile with its tip at f(0) = 0, pointing at the flat. Its parameters are floats in SI.
+
+    A parameter may be given as a string with a unit, such as "10 um".
 
     The kernels see a shape as a dimensionless profile, scaled sideways by a width and upwards by a rise.
     """
@@ -133,7 +137,9 @@ class Shape(ABC):
         parameters = self.parameters
         self.parameter_set(set(parameters))
         for name, value in parameters.items():
-            check_one(self.name, name, value)
+            if isinstance(value, str):
+                parameters[name] = _in_si(self.name, name, value, self.units[name])
+            check_one(self.name, name, parameters[name])
         self.check(parameters)
         for name, value in parameters.items():
             object.__setattr__(self, name, float(value))
@@ -248,6 +254,13 @@ def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats
         above = "" if math.isinf(limit) else f" and at most {limit:g} m"
         raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0{above}")
     return numbers
+
+
+def _in_si(owner: str, name: str, text: str, dimension: str) -> float:
+    try:
+        return quantity(text, dimension)
+    except RoughmdrError as error:
+        raise ShapeError(f"{owner}: {name} is {short_repr(text)}: {error}") from None
 
 
 def check_one(owner: str, name: str, value: object) -> None:

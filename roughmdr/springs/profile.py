@@ -1,95 +1,69 @@
-"""The MDR profile g(x) that a row of springs is pressed by: of a shape, or of any profile f(r) given as a function."""
+"""The MDR profile g(x) that is pressed into a row of springs: of a shape, or of any function f(r)."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
-from roughmdr.springs.reduced import reduced
+from roughmdr.springs.transform import mdr_transform
 
-_FALL = 1e-12  # of the highest f, by which a function may fall: rounding
-_DIP = 1e-9  # of the largest g, likewise
-
-
-class MdrProfile(Protocol):
-    """What a row of springs needs to know."""
-
-    @property
-    def limit(self) -> float:
-        """The radius [m] where the body ends; inf where it never does."""
-
-    @property
-    def flat(self) -> float:
-        """The radius [m] to which it is known to be flat."""
-
-    @property
-    def start(self) -> float:
-        """A radius [m], any, within the profile."""
-
-    @property
-    def least_exponent(self) -> float:
-        """The least n of a tip that is known to be r^n."""
-
-    def row(self, spacing: float, count: int) -> Floats:
-        """g [m] of ``count`` springs at (i + 1/2) spacing [m]; inf beyond the limit."""
-
-    def at(self, x: Floats, springs: int) -> tuple[Floats, Floats]:
-        """g [m] and G = ∫_0^x g dx [m2] at radii [m], as right as so many springs are; beyond the limit inf and 0."""
+_FALL_ROUNDING = 1e-12  # of the highest f, by which a function may fall
+_DIP_ROUNDING = 1e-9  # of the largest g, likewise
 
 
 @dataclass(frozen=True)
-class OfShape:
-    """That of a shape, by its g and G."""
+class ShapeProfile:
+    """The profile of a shape, by its g and G."""
 
     shape: Shape
 
     @property
     def limit(self) -> float:
-        """The radius of a punch or a sphere."""
+        """The radius [m] where the body ends; inf where it never does."""
         return self.shape.limit
 
     @property
-    def flat(self) -> float:
-        """The radius of the flat at the tip."""
+    def plateau(self) -> float:
+        """The radius [m] to which it is known to be flat."""
         return self.shape.nondimensional()[0] if self.shape.flat else 0.0
 
     @property
     def start(self) -> float:
-        """Where the profile ends or, where it never does, its width."""
+        """A radius [m], any, within the profile: where it ends or, where it never does, its width."""
         return self.shape.end if math.isfinite(self.shape.end) else self.shape.nondimensional()[0]
 
     @property
     def least_exponent(self) -> float:
-        """That of power laws and their series."""
+        """The least n of a tip that is known to be r^n."""
         return self.shape.least_exponent(np.array([self.shape.nondimensional()[2]]))
 
     def row(self, spacing: float, count: int) -> Floats:
-        """g of the shape."""
+        """Return g [m] of ``count`` springs at (i + 1/2) spacing [m]; inf beyond the limit."""
         x = spacing * (np.arange(count) + 0.5)
         g, inside = np.full_like(x, np.inf), x < self.limit
         g[inside] = self.shape.g(x[inside])
         return g
 
     def at(self, x: Floats, springs: int) -> tuple[Floats, Floats]:
-        """g and G of the shape."""
+        """Return g [m] and G = ∫_0^x g dx [m2] at radii [m], as right as so many springs are; inf and 0 beyond."""
         g, G, inside = np.full_like(x, np.inf), np.zeros_like(x), x < self.limit
         g[inside], G[inside] = self.shape.g(x[inside]), self.shape.G(x[inside])
         return g, G
 
 
 @dataclass(frozen=True)
-class OfFunction:
-    """That of f(r), which is looked at on the edges between springs alone: a parabola from each to the next."""
+class FunctionProfile:
+    """The profile of f(r), which is evaluated on the edges between springs alone: a parabola from each to the next."""
 
     f: Callable[[Floats], Floats]
 
     limit: ClassVar[float] = math.inf
-    flat: ClassVar[float] = 0.0
+    plateau: ClassVar[float] = 0.0
     start: ClassVar[float] = 1e-12
     least_exponent: ClassVar[float] = math.inf
 
@@ -97,21 +71,21 @@ class OfFunction:
         self.heights(np.zeros(1))
 
     def row(self, spacing: float, count: int) -> Floats:
-        """g from f at the edges between the springs; OutOfRange where it falls."""
-        g = reduced(self.heights(spacing * np.arange(count + 1.0)))
-        if (np.diff(g) < -_DIP * g.max()).any():
+        """Return g of the springs from f at the edges between them; OutOfRange where it falls."""
+        g = mdr_transform(self.heights(spacing * np.arange(count + 1.0)))
+        if (np.diff(g) < -_DIP_ROUNDING * g.max()).any():
             x = spacing * (np.argmin(np.diff(g)) + 1.5)
             raise OutOfRange(f"the profile is so concave near r = {x:.3g} m that the contact would not be a disc there")
         return g
 
     def at(self, x: Floats, springs: int) -> tuple[Floats, Floats]:
-        """The same from a row for each radius, whose last spring stands there."""
+        """Return g and G at radii x, each from a row whose last spring stands there."""
         spacings = x / (springs - 0.5)
-        g = np.array([reduced(self.heights(spacing * np.arange(springs + 1.0))) for spacing in spacings])
+        g = np.array([mdr_transform(self.heights(spacing * np.arange(springs + 1.0))) for spacing in spacings])
         return g[:, -1], spacings * (g.sum(axis=1) - 0.5 * g[:, -1])
 
     def heights(self, r: Floats) -> Floats:
-        """f at rising radii from 0 on; ShapeError where it is no profile."""
+        """Return f at rising radii from 0 on; ShapeError where it is no profile."""
         try:
             f = np.asarray(self.f(r), dtype=np.float64)
         except (TypeError, ValueError):
@@ -124,7 +98,7 @@ class OfFunction:
             raise ShapeError(f"the profile is {f[k]} at r = {r[k]:g} m; it must be finite as far as contact may reach")
         if f[0] != 0.0:
             raise ShapeError(f"the profile is {f[0]:g} m at r = 0; it must be 0 there")
-        falls = np.diff(f) < -_FALL * f.max(initial=0.0)
+        falls = np.diff(f) < -_FALL_ROUNDING * f.max(initial=0.0)
         if falls.any():
             k = int(np.argmax(falls))
             step = f"{f[k + 1]:g} m at r = {r[k + 1]:g} m after {f[k]:g} m at {r[k]:g} m"

@@ -1,14 +1,11 @@
-"""Named laws from the literature, to stand beside computed ones. Arrays in and out, SI."""
+"""Named theories of rough contact from the literature, to stand beside computed curves. Arrays in and out, SI."""
 
-from roughmdr.theory.bush import bush_gibson_thomas, bush_gibson_thomas_asymptote
+from roughmdr.theory.bush import bush_gibson_thomas, bush_gibson_thomas_asymptote, greenwood_elliptic
 from roughmdr.theory.fuller import fuller_tabor
 from roughmdr.theory.geike import RoughLine, line_heights, rough_line
 from roughmdr.theory.greenwood import greenwood_williamson
 from roughmdr.theory.maugis import dmt_maugis
-from roughmdr.theory.mildly_elliptic import greenwood_elliptic
-from roughmdr.theory.persson import persson_contact_fraction
-from roughmdr.theory.persson_gap import persson_separation
-from roughmdr.theory.persson_load import persson_pressure
+from roughmdr.theory.persson import persson_contact_fraction, persson_pressure, persson_separation
 
 __all__ = [
     "RoughLine",

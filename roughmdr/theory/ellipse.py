@@ -1,4 +1,4 @@
-"""Hertz's elliptic contact, beside the circular one of the same geometric mean curvature."""
+"""Hertz's elliptic contact, relative to the circular one of the same geometric mean curvature."""
 
 from typing import NamedTuple
 
@@ -21,26 +21,26 @@ class Ellipses(NamedTuple):
 
     @classmethod
     def of(cls, ratio: Floats) -> "Ellipses":
-        """K. L. Johnson, Contact Mechanics (1985), eq. (4.26) to (4.32), solved for delta given.
+        """Return them from K. L. Johnson, Contact Mechanics (1985), eq. (4.26) to (4.32), at a given delta.
 
         With e^2 = 1 - (b/a)^2, D = (K - E)/e^2 and B = K - D, which do not cancel for nearly circular contacts:
         k2/k1 = (b/a)^2 D/B, k2 a^2 = 2 delta D/K and P = 2 pi/3 E* delta a/K.
         """
         from scipy.special import ellipkm1, elliprd
 
-        narrow = ratio * ratio
-        K = ellipkm1(narrow)
-        D = elliprd(0.0, narrow, 1.0) / 3.0
+        ratio2 = ratio * ratio
+        K = ellipkm1(ratio2)
+        D = elliprd(0.0, ratio2, 1.0) / 3.0
         B = K - D
-        quotient = narrow * D / B
+        quotient = ratio2 * D / B
         # d log(D/B)/d log(b/a), from the derivatives of K and E.
-        with_squares = 1.0 - narrow
-        dD = (D * narrow - B) / with_squares
+        eccentricity2 = 1.0 - ratio2
+        dD = (D * ratio2 - B) / eccentricity2
         dK = -B
         quotient_slope = (2.0 + dD / D - (dK - dD) / B) * quotient / ratio
         return cls(
             (1.0 - quotient) / (1.0 + quotient),
             -2.0 * quotient_slope / (1.0 + quotient) ** 2,
-            np.pi / 2.0 * np.sqrt(2.0) * (D * B / narrow) ** 0.25 / K**1.5,
+            np.pi / 2.0 * np.sqrt(2.0) * (D * B / ratio2) ** 0.25 / K**1.5,
             2.0 * np.sqrt(D * B) / K,
         )

@@ -1,4 +1,4 @@
-"""The summits of an isotropic Gaussian surface: how high they are and how curved, and what they carry.
+"""The summits of an isotropic Gaussian surface: the joint density of heights and curvatures, and means over it.
 
 P. R. Nayak, J. Lubr. Technol. 93 (1971) 398. With a = m4/3, mean curvature (k1 + k2)/2 = sqrt(2 a) S and half the
 difference of the curvatures sqrt(2 a q), the density of (S, q) over all summits is
@@ -13,9 +13,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.chebyshev import PiecewiseChebyshev
 from roughmdr.numerics.quadrature import Rows, panel_rule
+from roughmdr.schema.arguments import check_values
 from roughmdr.spectrum import MIN_ALPHA, Moments
 from roughmdr.theory.ellipse import Ellipses
 from roughmdr.theory.equal_summits import Variable, check_variable, representable
@@ -23,23 +24,22 @@ from roughmdr.theory.heights import NORMAL_EDGES, Heights
 
 Contacts = Literal["elliptic", "circular"]
 
-# n and p of delta^n (k1 k2)^(-p/2), as which the force, the area and the count of a contact go.
+# n and p of delta^n (k1 k2)^(-p/2), to which force, area and number of a contact are proportional.
 _POWERS: dict[Variable, tuple[float, float]] = {
     "pressure": (1.5, 0.5),
     "contact_fraction": (1.0, 1.0),
     "contact_density": (0.0, 0.0),
 }
-# Down to contacts so narrow that none is left: their share goes as (b/a)^3. Up to round ones: those of high summits.
+# b/a from contacts so narrow that they are negligible, since their fraction goes as (b/a)^3, to circular ones.
 _RATIOS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -1), 1.0 - 2.0 ** np.arange(-1, -7, -1), [1.0]])
-_LARGEST = 64.0  # S; heights up to 39 and 9 deviations beyond
+_S_MAX = 64.0  # heights up to 39, and 9 deviations beyond
 
 
 def mean_over_summits(
     contacts: Contacts, separation: ArrayLike, effective_modulus: float, moments: Moments, variable: Variable
 ) -> Floats:
-    """``variable`` at separations [m] from the mean plane of the surface."""
-    effective_modulus = check_number("effective_modulus", effective_modulus, "Pa")
-    given = check_values("separation", separation)
+    """Return ``variable`` at separations [m] from the mean plane of the surface."""
+    given = check_values("separation", separation, "m")
     power, _ = _POWERS[check_variable(variable)]
     deviation, curvature = math.sqrt(moments.m0), math.sqrt(2.0 / 3.0) * math.sqrt(moments.m4)
     unit = {
@@ -50,32 +50,32 @@ def mean_over_summits(
     heights = _weighted(contacts, variable, moments.alpha)
     with np.errstate(over="ignore", invalid="ignore"):  # refused below
         h = given.ravel() / deviation
-        ahead = np.maximum(heights.edges[0] - h, 0.0)
+        above = np.maximum(heights.edges[0] - h, 0.0)
 
-        def carried(rows: Rows, beyond: Floats) -> Floats:
-            return np.asarray((ahead[rows, None] + beyond) ** power)
+        def value(rows: Rows, beyond: Floats) -> Floats:
+            return np.asarray((above[rows, None] + beyond) ** power)
 
-        return representable(variable, moments.summit_density * unit * heights.mean(h, carried), given)
+        return representable(variable, moments.summit_density * unit * heights.mean(h, value), given)
 
 
 def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
-    """The density of heights zeta over the summits, each weighted with what its curvatures make of ``variable``.
+    """Return the density of heights zeta of the summits, weighted with the factor of their curvatures in ``variable``.
 
     It is phi(zeta) Q(zeta) with Q = ∫ phi(x) G(rho zeta + c x) dx over S = rho zeta + c x > 0, c^2 = 1 - rho^2.
     """
     rho, c = math.sqrt(MIN_ALPHA / alpha), math.sqrt((alpha - MIN_ALPHA) / alpha)
     weight = _weight_of_curvature(contacts, variable)
-    steps, share = (part.ravel() for part in panel_rule(np.linspace(0.0, 1.0, 7)))
+    nodes, panel_weights = (part.ravel() for part in panel_rule(np.linspace(0.0, 1.0, 7)))
 
     def smoothed(zeta: Floats) -> Floats:
         """Q, over the root of the distance to S = 0, where G goes as a half-integer power."""
         zeta = zeta[:, None]
         first = np.maximum(-rho * zeta / c, -9.0)
-        reach = np.sqrt(np.maximum(first, 0.0) + 10.0 - first)
-        y = reach * steps
+        root_length = np.sqrt(np.maximum(first, 0.0) + 10.0 - first)
+        y = root_length * nodes
         x = first + y * y
         S = np.maximum(rho * zeta + c * x, 0.0)
-        return np.asarray(np.sum(2.0 * reach * share * y * np.exp(-0.5 * x * x) * weight(S), axis=1))
+        return np.asarray(np.sum(2.0 * root_length * panel_weights * y * np.exp(-0.5 * x * x) * weight(S), axis=1))
 
     # Q bends at heights of about c/rho, where S = 0 comes within its deviation.
     bends = c * 2.0 ** np.arange(-1, math.ceil(math.log2(NORMAL_EDGES[-1] / c)))
@@ -85,14 +85,14 @@ def _weighted(contacts: Contacts, variable: Variable, alpha: float) -> Heights:
 
 
 def _weight_of_curvature(contacts: Contacts, variable: Variable) -> Callable[[Floats], Floats]:
-    """G(S) = sqrt(12) ∫ (S^2 - q) exp(-q) (S^2 - q)^(-p/2) f dq over 0 < q < S^2, p and f those of ``variable``.
+    """Return G(S) = sqrt(12) ∫ (S^2 - q) exp(-q) (S^2 - q)^(-p/2) f dq over 0 < q < S^2, p and f those of ``variable``.
 
-    sqrt(12) = sqrt(6/pi) sqrt(2 pi). With q = (r S)^2 the integral is over the spread r of the curvatures, and r is
-    known from the axes of the contact.
+    sqrt(12) = sqrt(6/pi) sqrt(2 pi). With q = (r S)^2 the integral is over the spread r of the curvatures, which is a
+    function of the ratio of the axes of the contact.
     """
-    ratio, share = (part.ravel() for part in panel_rule(_RATIOS))
+    ratio, panel_weights = (part.ravel() for part in panel_rule(_RATIOS))
     ellipses = Ellipses.of(ratio)
-    r, dr = ellipses.spread, -share * ellipses.spread_slope
+    r, dr = ellipses.spread, -panel_weights * ellipses.spread_slope
     _, p = _POWERS[variable]
     shape = {"pressure": ellipses.force, "contact_fraction": ellipses.area, "contact_density": np.ones_like(r)}
     factor = shape[variable] if contacts == "elliptic" else np.ones_like(r)
@@ -101,5 +101,5 @@ def _weight_of_curvature(contacts: Contacts, variable: Variable) -> Callable[[Fl
     def over_power(S: Floats) -> Floats:
         return np.asarray(np.exp(-((S[:, None] * r) ** 2)) @ weights)
 
-    table = PiecewiseChebyshev.of(over_power, np.append(0.0, 2.0 ** np.arange(0, math.log2(_LARGEST) + 0.5, 0.5)), 20)
+    table = PiecewiseChebyshev.of(over_power, np.append(0.0, 2.0 ** np.arange(0, math.log2(_S_MAX) + 0.5, 0.5)), 20)
     return lambda S: np.asarray(S ** (4.0 - p) * table(S))

@@ -1,52 +1,92 @@
 """Geike and Popov: a rough surface as one rough line on springs."""
 
+from __future__ import annotations
+
 import math
 from operator import index
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange
-from roughmdr.numerics.arguments import Floats, check_number, check_values
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import gauss
+from roughmdr.schema.arguments import check_number, check_values
+from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
 
 
 class RoughLine(NamedTuple):
-    """What the line answers at each separation."""
+    """The result of ``rough_line``, in the shape of its separation."""
 
     force: Floats
-    """[N]."""
+    """Normal force [N]."""
     stiffness: Floats
-    """How fast the force grows on approach [N/m]."""
+    """Growth of the force on approach [N/m]."""
 
 
 def rough_line(
-    *, separation: ArrayLike, effective_modulus: float, spectrum: Spectrum, length: float, points: int, seed: int
+    *,
+    separation: ArrayLike,
+    spectrum: Spectrum,
+    length: float | str,
+    points: int,
+    seed: int,
+    **material: Unpack[Material],
 ) -> RoughLine:
-    """Force [N] and stiffness [N/m] of a rough line on springs, under a rigid flat at separations [m] from its mean.
+    """Compute force and stiffness of a rough line on springs under a rigid flat.
 
-    T. Geike, V. L. Popov, Phys. Rev. E 76 (2007) 036710: the surface with the spectrum C(q) becomes a line of
-    ``line_heights``, each of its points on a spring of stiffness E* dx. F = E* dx sum of (z - h) over all z > h, and
-    k = E* dx times their number. No spring knows of its neighbours.
+    The surface with the spectrum C(q) becomes a line of ``line_heights``, each of its points on a spring of stiffness
+    E* dx that does not feel its neighbours: F = E* dx sum of (z - h) over all z > h, and k = E* dx times their number.
 
     What it gives is how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long
-    as the line, the power law that boundary elements find (exponents 0.51 to 0.77: R. Pohrt, V. L. Popov, Phys. Rev.
-    Lett. 108 (2012) 104301) in surfaces of that size, and only there (L. Pastewka and others, Phys. Rev. E 87 (2013)
-    062809).
-    Its separation and its area of contact are NOT those of the surface: at a given gap it carries about a fifth of the
-    force that boundary elements find, and the length that touches is no area (I. A. Lyashenko, L. Pastewka, B. N. J.
-    Persson, Tribol. Lett. 52 (2013) 223).
+    as the line, the power law that boundary elements find in surfaces of that size [2]_, and only there [3]_. Its
+    separation and its contact area are NOT those of the surface: at a given gap it carries about a fifth of the force
+    that boundary elements find, and the length in contact is no area [4]_.
 
-    effective_modulus E* [Pa]; the others and the errors as for ``line_heights``. The shapes are that of separation, a
-    number or one-dimensional. OutOfRange where an argument is.
+    Parameters
+    ----------
+    separation : array_like, shape () or (n,)
+        Separations h [m] of the flat from the mean of the line.
+    spectrum, length, points, seed
+        As in ``line_heights``.
+    **material
+        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+
+    Returns
+    -------
+    RoughLine
+        force [N] and stiffness [N/m], in the shape of separation.
+
+    Raises
+    ------
+    OutOfRange
+        Where an argument is out of its range.
+    RoughmdrError
+        Where spectrum is none, or E* is not given in exactly one way.
+
+    References
+    ----------
+    .. [1] T. Geike, V. L. Popov, Phys. Rev. E 76 (2007) 036710.
+    .. [2] R. Pohrt, V. L. Popov, Phys. Rev. Lett. 108 (2012) 104301, exponents 0.51 to 0.77.
+    .. [3] L. Pastewka and others, Phys. Rev. E 87 (2013) 062809.
+    .. [4] I. A. Lyashenko, L. Pastewka, B. N. J. Persson, Tribol. Lett. 52 (2013) 223.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> surface = rm.spectrum.SelfAffine.of(hurst=0.8, long_wave="1 mm", short_wave="10 um", rms_slope=0.1)
+    >>> grid = {"spectrum": surface, "length": "1 mm", "points": 4096, "seed": 1}
+    >>> line = rm.theory.rough_line(separation="2 um", effective_modulus="1 GPa", **grid)
+    >>> f"{float(line.force):.4g} N, {float(line.stiffness):.4g} N/m"
+    '0.7842 N, 2.524e+05 N/m'
     """
     z = line_heights(spectrum=spectrum, length=length, points=points, seed=seed)
-    spring = check_number("effective_modulus", effective_modulus, "Pa") * (length / len(z))
-    given = check_values("separation", separation)
-    # Depths below the highest point: their sums do not cancel at the first touches.
+    spring = effective_modulus_of(rough_line, material) * (check_number("length", length, "m") / len(z))
+    given = check_values("separation", separation, "m")
+    # Depths below the highest point, whose sums do not cancel near first touch.
     top = float(z.max())
     depth = np.sort(top - z)
     below = np.append(0.0, np.cumsum(depth))
@@ -58,18 +98,51 @@ def rough_line(
         return RoughLine(representable("force", force, given), representable("stiffness", stiffness, given))
 
 
-def line_heights(*, spectrum: Spectrum, length: float, points: int, seed: int) -> Floats:
-    """Heights [m] of a periodic line of ``length`` [m] with random phases, at evenly spaced points.
+def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: int) -> Floats:
+    """Generate a periodic line of heights with random phases, at evenly spaced points.
 
-    Its spectrum is C1(q) = pi q C(q), with <h^2> = 2 ∫ C1 dq the same as that of the surface (Geike and Popov, as
-    above): every line has it, whatever its phases. Its <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave
-    of the line stands for the waves nearest to it.
-    spectrum C(q) [m4] between ``long_wave`` and ``short_wave``. OutOfRange where the length is below the longest wave,
-    or the points are not more than two in the shortest; where seed is not a whole number of at least 0.
+    Its spectrum is C1(q) = pi q C(q), so that <h^2> = 2 ∫ C1 dq is that of the surface, for every line whatever its
+    phases. Its <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave of the line represents the waves nearest
+    to it.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        C(q) [m4] between ``long_wave`` and ``short_wave``, such as ``SelfAffine``.
+    length : float or str
+        Period of the line [m], at least the longest wave.
+    points : int
+        Number of points, more than two in the shortest wave.
+    seed : int
+        Seed of the phases, at least 0.
+
+    Returns
+    -------
+    numpy.ndarray, shape (points,)
+        Heights [m].
+
+    Raises
+    ------
+    OutOfRange
+        Where an argument is out of its range.
+    RoughmdrError
+        Where spectrum is none.
+
+    References
+    ----------
+    .. [1] T. Geike, V. L. Popov, Phys. Rev. E 76 (2007) 036710.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> surface = rm.spectrum.SelfAffine.of(hurst=0.8, long_wave="1 mm", short_wave="10 um", rms_height="2 um")
+    >>> z = rm.theory.line_heights(spectrum=surface, length="1 mm", points=4096, seed=1)
+    >>> f"{z.std():.3g} m"
+    '2e-06 m'
     """
     q0, q1 = wave_number_range(spectrum)
     length = check_number("length", length, "m")
-    points, seed = _whole("points", points), _whole("seed", seed)
+    points, seed = _check_whole("points", points), _check_whole("seed", seed)
     step = 2.0 * math.pi / length
     if length < spectrum.long_wave:
         raise OutOfRange(f"length is {length:g} m; it must be at least the longest wave, {spectrum.long_wave:g} m")
@@ -80,14 +153,14 @@ def line_heights(*, spectrum: Spectrum, length: float, points: int, seed: int) -
     low, high = np.maximum(q0, (waves - 0.5) * step), np.minimum(q1, (waves + 0.5) * step)
     half = 0.5 * np.maximum(high - low, 0.0)[:, None]
     q = np.clip(low[:, None] + half * (1.0 + nodes), q0, q1)
-    share = half[:, 0] * ((math.pi * q * spectral_density(spectrum, q)) @ weights)
+    weight = half[:, 0] * ((math.pi * q * spectral_density(spectrum, q)) @ weights)
     phase = 2.0 * math.pi * 2.0**-64 * np.random.Philox(np.random.SeedSequence(seed)).random_raw(len(waves))
     coefficients = np.zeros(points // 2 + 1, dtype=np.complex128)
-    coefficients[1 : len(waves) + 1] = np.sqrt(share) * points * np.exp(1j * phase)
+    coefficients[1 : len(waves) + 1] = np.sqrt(weight) * points * np.exp(1j * phase)
     return np.asarray(np.fft.irfft(coefficients, points))
 
 
-def _whole(name: str, value: int) -> int:
+def _check_whole(name: str, value: int) -> int:
     try:
         number = index(value)
     except TypeError:

@@ -1,4 +1,4 @@
-"""How high summits are: densities of their heights, and the mean of what each of them carries."""
+"""Densities of summit heights, and means over the summits above a height."""
 
 import math
 from collections.abc import Callable
@@ -8,75 +8,75 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.numerics.arguments import Floats, check_number
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows, integrate
+from roughmdr.schema.arguments import check_number, exactly_one
 
-# Where a normal density is cut: below, by what is nothing beside the rest; above, where it is no longer a float.
+# A normal density is cut where it is negligible below, and where it underflows above.
 NORMAL_EDGES = np.array([-9.0, -5.0, -2.0, 0.0, 2.0, 5.0, 9.0, 16.0, 39.0])
-_SHARES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
+_QUANTILES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 _DOUBLINGS = 128
-_LIGHT = 40  # doublings after which only heavy tails are followed further
-_NOTHING = 1e-20
+_LIGHT_TAIL_DOUBLINGS = 40  # after which only heavy tails are followed further
+_NEGLIGIBLE = 1e-20
 _BLOCK = 512  # separations at a time
 
 
 class Distribution(Protocol):
-    """What is asked of heights: a frozen continuous distribution of scipy.stats has it."""
+    """The interface of heights: that of a frozen continuous distribution of scipy.stats."""
 
     def pdf(self, x: Any) -> Any:
-        """The density at heights x."""
+        """Return the density at heights x."""
 
     def ppf(self, q: Any) -> Any:
-        """The heights below which shares q lie."""
+        """Return the heights below which fractions q lie."""
 
     def support(self) -> Any:
-        """The lowest and the highest height; infinite where there is none."""
+        """Return the lowest and the highest height; infinite where there is none."""
 
 
 class Heights(NamedTuple):
-    """A density of heights between the first and the last of ``edges``, its natural panels."""
+    """A density of heights between the first and the last of ``edges``, between which it is smooth."""
 
     density: Callable[[Floats], Floats]
     edges: Floats
     endless: bool = False
-    """Whether it goes on beyond the last edge."""
+    """Whether the support goes on beyond the last edge."""
 
     @classmethod
-    def of(cls, std: float | None, heights: Distribution | None) -> "Heights":
-        """Normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
-        if (std is None) == (heights is None):
-            raise RoughmdrError("heights takes either std [m], for normal heights, or a distribution; exactly one")
+    def of(cls, owner: str, std: float | str | None, heights: Distribution | None) -> "Heights":
+        """Return normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
+        exactly_one(owner, std=std, heights=heights)
         return _of_distribution(heights) if std is None else _normal(check_number("std", std, "m"))
 
-    def mean(self, start: Floats, carried: Callable[[Rows, Floats], Floats]) -> Floats:
-        """∫ carried(row, z - start) density(z) dz over z >= start, for each start.
+    def mean(self, start: Floats, value: Callable[[Rows, Floats], Floats]) -> Floats:
+        """Return ∫ value(row, z - start) density(z) dz over z >= start, for each start.
 
-        ``carried`` may begin like a power of sqrt(z - start), in which is integrated.
+        ``value`` may begin like a power of sqrt(z - start), which is the variable of integration.
         """
         start = np.maximum(start, self.edges[0])
         blocks = range(0, len(start), _BLOCK)
-        return np.concatenate([self._block(start, i, carried) for i in blocks]) if len(start) else start
+        return np.concatenate([self._block(start, i, value) for i in blocks]) if len(start) else start
 
-    def _block(self, start: Floats, first: int, carried: Callable[[Rows, Floats], Floats]) -> Floats:
-        from_here = start[first : first + _BLOCK, None]
+    def _block(self, start: Floats, first: int, value: Callable[[Rows, Floats], Floats]) -> Floats:
+        block_start = start[first : first + _BLOCK, None]
 
         def integrand(rows: Rows, s: Floats) -> Floats:
             beyond = s * s
-            return 2.0 * s * carried(rows + first, beyond) * self.density(from_here[rows] + beyond)
+            return 2.0 * s * value(rows + first, beyond) * self.density(block_start[rows] + beyond)
 
-        edges = np.sqrt(np.maximum(self.edges - from_here, 0.0))
+        edges = np.sqrt(np.maximum(self.edges - block_start, 0.0))
         values = integrate(integrand, edges)
         if self.endless:
             self._check_tail(integrand, edges, values)
         return values
 
     def _check_tail(self, integrand: Callable[[Rows, Floats], Floats], edges: Floats, values: Floats) -> None:
-        """OutOfRange where the last panel still counts."""
+        """Raise OutOfRange where the last panel is not negligible."""
         last = integrate(integrand, edges[:, -2:])
         inside = edges[:, -2] > 0.0
         if (np.abs(last)[inside] > 1e-12 * np.abs(values)[inside]).any():
             raise OutOfRange(
-                "heights have too heavy a tail: what the summits carry has no finite mean, or none that converges"
+                "heights have too heavy a tail: the mean over the summits is not finite, or does not converge"
             )
 
 
@@ -86,7 +86,7 @@ def _normal(std: float) -> Heights:
 
 
 def _of_distribution(given: Distribution | None) -> Heights:
-    """The panels follow the shares of the heights, and then double their width."""
+    """Return the heights of a distribution; panels follow its quantiles, and then double their width."""
     if given is None or not all(callable(getattr(given, name, None)) for name in ("pdf", "ppf", "support")):
         raise RoughmdrError(f"heights is {given!r}; it must be a frozen continuous distribution of scipy.stats")
     lowest, highest = (float(end) for end in given.support())
@@ -97,21 +97,21 @@ def _of_distribution(given: Distribution | None) -> Heights:
         with np.errstate(all="ignore"):  # far out some overflow on their way to 0
             return np.asarray(given.pdf(np.clip(z, first, last)), dtype=np.float64)
 
-    shares = np.asarray(given.ppf(_SHARES), dtype=np.float64)
-    steps = (shares[-1] - shares[0]) * 2.0 ** np.arange(_DOUBLINGS)
-    if not (np.isfinite(shares).all() and steps[0] > 0.0):
-        raise OutOfRange(f"heights have the percentiles {shares}; they must be finite and differ")
-    above, below = shares[-1] + steps, shares[0] - steps
+    quantiles = np.asarray(given.ppf(_QUANTILES), dtype=np.float64)
+    steps = (quantiles[-1] - quantiles[0]) * 2.0 ** np.arange(_DOUBLINGS)
+    if not (np.isfinite(quantiles).all() and steps[0] > 0.0):
+        raise OutOfRange(f"heights have the percentiles {quantiles}; they must be finite and differ")
+    above, below = quantiles[-1] + steps, quantiles[0] - steps
     above, below = above[above < highest], below[below > lowest]
     mass, force = density(below) * steps[: len(below)], density(above) * steps[: len(above)] ** 2.5
-    far = (np.arange(len(above)) < _LIGHT) | (force > _NOTHING**2 * force[:1])
+    far = (np.arange(len(above)) < _LIGHT_TAIL_DOUBLINGS) | (force > _NEGLIGIBLE**2 * force[:1])
     # A thin tail lies all within one panel; above, one more shows that nothing is left.
-    above = above[_further(_further((force > 0.0) & far))]
-    inner = [below[_further(mass > _NOTHING)], shares, above]
+    above = above[_extended(_extended((force > 0.0) & far))]
+    inner = [below[_extended(mass > _NEGLIGIBLE)], quantiles, above]
     ends = [end for end in (lowest, highest) if math.isfinite(end)]
     return Heights(density, np.unique(np.concatenate([*inner, ends])), highest == math.inf)
 
 
-def _further(counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The edges that count, the first among them, and the next one out."""
-    return np.append(True, counts)[:-1] | counts
+def _extended(selected: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Extend a selection of edges by the first and by the next one out."""
+    return np.append(True, selected)[:-1] | selected

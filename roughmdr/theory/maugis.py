@@ -1,40 +1,62 @@
 """Maugis: equal summits with adhesion of DMT."""
 
+from __future__ import annotations
+
 import math
+from typing import Unpack
 
 from numpy.typing import ArrayLike
 
-from roughmdr.asperity.contact import Contact
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.numerics.arguments import Floats, check_number
-from roughmdr.shapes import Paraboloid
-from roughmdr.theory.equal_summits import Summits, Variable
-from roughmdr.theory.heights import Distribution, Heights
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import check_number
+from roughmdr.theory.equal_summits import SummitMaterial, Summits, Variable
 
 
 def dmt_maugis(
     *,
     separation: ArrayLike,
-    effective_modulus: float,
-    radius: float,
-    density: float,
-    work: float,
-    std: float | None = None,
-    heights: Distribution | None = None,
+    radius: float | str,
+    density: float | str,
+    work: float | str,
     variable: Variable = "pressure",
+    **material: Unpack[SummitMaterial],
 ) -> Floats:
-    """Pressure [Pa] of equal DMT paraboloids at separations [m] from the mean summit plane, or area or number.
+    """Compute pressure, area or number of contacts of equal paraboloids with adhesion of DMT.
 
-    D. Maugis, J. Adhesion Sci. Technol. 10 (1996) 161: every summit with z >= h is in contact, on the area of Hertz,
-    and carries Hertz's force less 2 pi w R: p = 4/3 E* R^(1/2) eta F_3/2 - 2 pi w R eta F_0, with the integrals F_n of
-    Greenwood and Williamson. It holds for small, hard summits (Tabor number well below 1).
+    Every summit with z >= h is in contact, on the area of Hertz, and carries the force of Hertz less 2 pi w R. It holds
+    for small, hard summits (Tabor number well below 1). Included is the attraction around each contact. Not included
+    are the attraction of summits that do not touch, the area that adhesion adds to a contact, and hysteresis: loading
+    and unloading follow one curve, and a contact goes from -2 pi w R to 0 at h = z.
 
-    In it: the pull of the surfaces around each contact. Not in it: the pull of summits that are near but do not touch,
-    the area and the stretch that adhesion adds to a contact, and hysteresis: in and out are one curve, and a contact
-    goes from -2 pi w R to 0 at h = z. Area ("contact_fraction") and number ("contact_density") at a given separation
-    are those of Greenwood and Williamson.
-    work [J/m^2]; the others, the variables and the errors as for ``greenwood_williamson``.
+    Parameters
+    ----------
+    separation, radius, density, variable, **material
+        As ``greenwood_williamson``.
+    work : float or str
+        Work of adhesion w [J/m^2], above 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        The variable, in the shape of separation; area and number are those of ``greenwood_williamson``.
+
+    Raises
+    ------
+    OutOfRange, RoughmdrError
+        As ``greenwood_williamson``.
+
+    References
+    ----------
+    .. [1] D. Maugis, J. Adhesion Sci. Technol. 10 (1996) 161.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> summits = {"radius": "1 um", "density": 2e12, "std": "10 nm", "work": "50 mJ/m^2"}
+    >>> p = rm.theory.dmt_maugis(separation="10 nm", modulus="70 GPa", poisson=0.2, **summits)
+    >>> f"{float(p):.4g}"
+    '1.461e+07'
     """
-    contact = Contact.of(Paraboloid(radius), effective_modulus, Adhesion())
-    pull = 2.0 * math.pi * check_number("work", work, "J/m^2") * radius
-    return Summits(contact, Heights.of(std, heights), density, pull).over(variable, separation, lambda h: h)
+    summits = Summits.of(dmt_maugis, radius, density, material)
+    attraction = 2.0 * math.pi * check_number("work", work, "J/m^2") * check_number("radius", radius, "m")
+    return summits._replace(attraction=attraction).over(variable, separation)

@@ -452,12 +452,12 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"contact_radius": math.nan}, rm.OutOfRange, "contact_radius is nan; it must be finite"),
     ({"contact_radius": A, "r": -1.0}, rm.OutOfRange, "r is -1 m; it must be finite and at least 0"),
     ({"contact_radius": A, "r": [[0.0]]}, rm.OutOfRange, "r has 2 dimensions"),
-    ({"contact_radius": A, "r": "far"}, rm.OutOfRange, "r is 'far'; it must be a number"),
+    ({"contact_radius": A, "r": "far"}, rm.OutOfRange, "r is 'far': expected a number in m"),
     ({"contact_radius": A, "effective_modulus": 0.0}, rm.OutOfRange, "modulus is 0 Pa"),
     ({"contact_radius": A, "work": -1.0}, rm.OutOfRange, "work is -1 J/m"),
-    ({"contact_radius": A, "shape": rm.FlatPunch(radius=A)}, rm.ShapeError, "does not tell the state of a flat punch"),
+    ({"contact_radius": A, "shape": rm.FlatPunch(radius=A)}, rm.ShapeError, "does not determine the state"),
     ({"contact_radius": A, "shape": "cone"}, rm.ShapeError, "shape is 'cone'"),
-    ({"indentation": 1e-4, "shape": rm.Sphere(radius=R)}, rm.OutOfRange, "asks for more digits than a float has"),
+    ({"indentation": 1e-4, "shape": rm.Sphere(radius=R)}, rm.OutOfRange, "needs more digits than a float has"),
 ]
 
 

@@ -2,7 +2,6 @@ import math
 
 import pytest
 
-import roughmdr as rm
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import quantity
 
@@ -59,28 +58,3 @@ def test_a_long_unit_is_shown_cut() -> None:
         with pytest.raises(RoughmdrError) as refused:
             quantity("1 " + "m" * 100_000, dimension)
         assert len(str(refused.value)) < 200
-
-
-def test_effective_modulus() -> None:
-    assert rm.effective_modulus(3e6, 0.49) == pytest.approx(3e6 / (1 - 0.49**2), rel=1e-15)
-    both = 1 / ((1 - 0.09) / 70e9 + (1 - 0.0625) / 210e9)
-    assert rm.effective_modulus(70e9, 0.3, 210e9, 0.25) == pytest.approx(both, rel=1e-15)
-    assert rm.effective_modulus(70e9, 0.3, 210e9, 0.25) == rm.effective_modulus(210e9, 0.25, 70e9, 0.3)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        ((-1.0, 0.3), "E1 is -1"),
-        ((math.nan, 0.3), "E1 is nan"),
-        ((1.0, 0.6), "nu1 is 0.6"),
-        ((1.0, 0.3, 0.0), "E2 is 0"),
-        ((1.0, 0.3, 1.0, -1.0), "nu2 is -1"),
-        ((math.inf, 0.3), "E1 is inf"),
-        (("3", None), "nu1 is None"),
-        ((1e-320, 0.3), "not representable"),
-    ],
-)
-def test_effective_modulus_refuses(arguments: tuple[float, ...], says: str) -> None:
-    with pytest.raises(rm.OutOfRange, match=says):
-        rm.effective_modulus(*arguments)

@@ -12,7 +12,7 @@ from scipy.special import gamma
 
 import roughmdr as rm
 from roughmdr.springs import Springs, row
-from roughmdr.springs.reduced import reduced
+from roughmdr.springs.transform import mdr_transform
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 
@@ -128,7 +128,7 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
         errors = []
         for count in counts:
             coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).rows.row(length * float(off.contact_radius))
-            errors.append(abs(float(coarse.grips[:-1].min() / off.indentation) - 1.0))
+            errors.append(abs(float(coarse.release_indentation[:-1].min() / off.indentation) - 1.0))
         assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(expected, abs=0.5)
 
 
@@ -181,7 +181,7 @@ def test_the_order_of_the_profile_that_is_made_of_a_function(n: float, expected:
     counts = np.array([100, 400, 1600, 6400])
     errors = []
     for count in counts:
-        g = reduced((np.arange(count + 1) / count) ** n)
+        g = mdr_transform((np.arange(count + 1) / count) ** n)
         errors.append(abs(g.mean() - np.mean(kappa * ((np.arange(count) + 0.5) / count) ** n)))
         assert (np.diff(g) > 0.0).all()
     assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(expected, abs=0.25)
@@ -192,7 +192,7 @@ def test_the_order_of_the_profile_that_is_made_of_a_function(n: float, expected:
 def test_cones_and_paraboloids_are_exact_for_any_number_of_springs(n: float, count: int) -> None:
     x = np.arange(count) + 0.5
     factor = {1.0: math.pi / 2, 2.0: 2.0}[n]
-    np.testing.assert_allclose(reduced(np.arange(count + 1.0) ** n), factor * x**n, rtol=1e-11)
+    np.testing.assert_allclose(mdr_transform(np.arange(count + 1.0) ** n), factor * x**n, rtol=1e-11)
 
 
 TIP = rm.Paraboloid(radius=1e-6)
@@ -244,7 +244,7 @@ def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, o
 
 
 def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(row, "_EXTREME", 480)  # 2^60 m are enough
+    monkeypatch.setattr(row, "_LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
     with pytest.raises(rm.OutOfRange, match="grows without end"):
         rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 

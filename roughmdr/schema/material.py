@@ -1,0 +1,105 @@
+"""The elastic constants of the two bodies in contact, and their effective modulus E*."""
+
+import inspect
+import math
+from collections.abc import Callable
+from typing import Any, TypedDict
+
+from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.schema.arguments import check_number, check_poisson
+from roughmdr.schema.wording import close_matches
+
+
+class Material(TypedDict, total=False):
+    """Keyword arguments that tell E*: effective_modulus alone, or modulus with poisson.
+
+    The latter may be joined by counter_modulus with counter_poisson; without them the counter body is rigid.
+    """
+
+    effective_modulus: float | str
+    modulus: float | str
+    poisson: float
+    counter_modulus: float | str
+    counter_poisson: float
+
+
+def effective_modulus(
+    modulus: float | str, poisson: float, counter_modulus: float | str = math.inf, counter_poisson: float = 0.0
+) -> float:
+    """Return the effective modulus E* of two elastic bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+
+    Parameters
+    ----------
+    modulus : float or str
+        Young's modulus E1 of one body [Pa], above 0, or a string with a unit such as "3 MPa".
+    poisson : float
+        Its Poisson's ratio nu1 [1], above -1 and at most 1/2.
+    counter_modulus : float or str, optional
+        Young's modulus E2 of the other body [Pa]; infinite, for a rigid body, unless given.
+    counter_poisson : float, optional
+        Its Poisson's ratio nu2 [1].
+
+    Returns
+    -------
+    float
+        E* [Pa].
+
+    Raises
+    ------
+    OutOfRange
+        Where a modulus or a ratio is out of its range, or E* is not representable.
+
+    References
+    ----------
+    .. [1] K. L. Johnson, Contact Mechanics (1985), eq. (4.22).
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> round(rm.effective_modulus("70 GPa", 0.33, counter_modulus="210 GPa", counter_poisson=0.3) / 1e9, 2)
+    58.61
+    """
+    compliance = 0.0
+    bodies = (("", modulus, poisson), ("counter_", counter_modulus, counter_poisson))
+    for prefix, stiffness, ratio in bodies:
+        nu = check_poisson(f"{prefix}poisson", ratio)
+        if not prefix or stiffness != math.inf:
+            compliance += (1.0 - nu * nu) / check_number(f"{prefix}modulus", stiffness, "Pa")
+    if not 1e-300 < compliance < 1e300:
+        moduli = f"modulus = {modulus!r} and counter_modulus = {counter_modulus!r}"
+        raise OutOfRange(f"E* of {moduli} [Pa] is not representable")
+    return 1.0 / compliance
+
+
+def check_one_body(effective_modulus: object, modulus: object, poisson: object) -> None:
+    """Raise RoughmdrError unless either effective_modulus is given, or modulus and poisson are."""
+    if effective_modulus is not None:
+        if modulus is not None or poisson is not None:
+            raise RoughmdrError("takes effective_modulus alone, or modulus and poisson")
+    elif modulus is None or poisson is None:
+        raise RoughmdrError("needs effective_modulus, or modulus and poisson")
+
+
+def effective_modulus_of(function: Callable[..., Any], material: Material) -> float:
+    """Return E* [Pa] from the keyword arguments that a public ``function`` was given beside its own.
+
+    TypeError for an unknown keyword, RoughmdrError unless they tell E* in exactly one way, OutOfRange for a number.
+    """
+    given: dict[str, Any] = {name: value for name, value in material.items() if value is not None}
+    if unknown := set(given) - set(Material.__annotations__):
+        name = min(unknown)
+        meant = close_matches(name, {*inspect.signature(function).parameters, *Material.__annotations__})
+        hint = f"; did you mean {meant[0]!r}?" if meant else ""
+        raise TypeError(f"{function.__name__}() got an unexpected keyword argument {name!r}{hint}")
+    try:
+        check_one_body(*(given.get(name) for name in ("effective_modulus", "modulus", "poisson")))
+        if counter := sorted(name for name in given if name.startswith("counter_")):
+            if "effective_modulus" in given:
+                raise RoughmdrError("takes effective_modulus, which holds both bodies already, without a counter body")
+            if len(counter) == 1:
+                raise RoughmdrError("takes counter_modulus and counter_poisson together")
+    except RoughmdrError as error:
+        raise RoughmdrError(f"{function.__name__} {error}; got {' and '.join(given) or 'none of them'}") from None
+    if "effective_modulus" in given:
+        return check_number("effective_modulus", given["effective_modulus"], "Pa")
+    return effective_modulus(**given)
