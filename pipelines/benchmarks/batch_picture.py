@@ -1,18 +1,20 @@
 """The picture of ``batch.py``: overhead of cells, memory, overhead of tasks, and what a second worker brings."""
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
-from roughmdr.storage.store import replacing
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
 """[ms] a cell, [MB], times."""
 
 
-def draw(result: xr.Dataset, path: Path) -> None:
-    """Four panels."""
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw four panels."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13, 3.9), layout="constrained")
@@ -21,12 +23,11 @@ def draw(result: xr.Dataset, path: Path) -> None:
     _memory(axes[1], result)
     _tasks(axes[2], result)
     _workers(axes[3], result)
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=160, format="png")
+    return figure
 
 
-def _cells(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
-    """What a cell costs, by what it is spent on, and all of it."""
+def _cells(ax: "Axes", result: xr.Dataset) -> None:
+    """Draw the overhead of a cell, by what it is spent on and in all."""
     parts = result["cell_overhead"]
     values = 1e3 * parts.to_numpy()
     names = [*parts["part"].to_numpy().tolist(), "in all"]
@@ -40,8 +41,8 @@ def _cells(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
     ax.set(title=f"Overhead of one of {result.attrs['cells']:,} cells", xlabel="ms")
 
 
-def _memory(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
-    """At most, and before the first realisation."""
+def _memory(ax: "Axes", result: xr.Dataset) -> None:
+    """Draw the memory at most, and before the first realisation."""
     runs = result["realizations"].to_numpy()
     ax.plot(runs, result["peak_memory"].to_numpy() / 1e6, "o-", label="at most")
     ax.plot(runs, result["memory_before"].to_numpy() / 1e6, "o:", color="0.5", label="before the first")
@@ -53,13 +54,13 @@ def _memory(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
     ax.legend(frameon=False, loc="lower right")
 
 
-def _tasks(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
-    """Each scheduler, with one worker and with two."""
+def _tasks(ax: "Axes", result: xr.Dataset) -> None:
+    """Draw the overhead of each scheduler, with one worker and with two."""
     schedulers = result["scheduler"].to_numpy()
-    for place, workers in enumerate(result["workers"].to_numpy()):
+    for number, workers in enumerate(result["workers"].to_numpy()):
         values = 1e3 * result["task_overhead"].sel(workers=workers).to_numpy()
         label = f"{workers} worker{'s' if workers > 1 else ''}"
-        bars = ax.bar(np.arange(len(schedulers)) + 0.4 * place, values, 0.38, label=label)
+        bars = ax.bar(np.arange(len(schedulers)) + 0.4 * number, values, 0.38, label=label)
         ax.bar_label(bars, [f"{value:.2f}" for value in values], fontsize=8)
     ax.set_xticks(np.arange(len(schedulers)) + 0.2, schedulers)
     ax.set_ylim(bottom=0.0, top=1.3e3 * float(result["task_overhead"].max()))
@@ -67,14 +68,14 @@ def _tasks(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
     ax.legend(frameon=False, loc="upper left")
 
 
-def _workers(ax, result: xr.Dataset) -> None:  # type: ignore[no-untyped-def]
-    """Each repeat, and the median."""
+def _workers(ax: "Axes", result: xr.Dataset) -> None:
+    """Draw how much faster two workers are: each repeat, and the median."""
     ups = result["speed_up"]
-    for place, values in enumerate(ups.to_numpy()):
-        ax.plot(np.full(values.size, place), values, "o", color="C0", alpha=0.5)
+    for x, values in enumerate(ups.to_numpy()):
+        ax.plot(np.full(values.size, x), values, "o", color="C0", alpha=0.5)
         middle = float(np.median(values))
-        ax.plot([place - 0.25, place + 0.25], [middle, middle], color="C0", linewidth=2)
-        ax.annotate(f"{middle:.2f}", (place + 0.28, middle), va="center")
+        ax.plot([x - 0.25, x + 0.25], [middle, middle], color="C0", linewidth=2)
+        ax.annotate(f"{middle:.2f}", (x + 0.28, middle), va="center")
     ax.axhline(SPEED_GOAL, color="C3", linestyle="--", zorder=0)
     ax.annotate("goal", (-0.45, SPEED_GOAL), color="C3", va="bottom")
     ax.set_xticks(range(len(ups)), ups["pool"].to_numpy())
