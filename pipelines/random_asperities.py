@@ -12,7 +12,8 @@ from twins import Real, mp
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Kernels, choose
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
@@ -127,13 +128,13 @@ def _drawn(rng: np.random.Generator, kind: str, adhesive: bool) -> tuple[Asperit
     shape = DRAW[kind](rng)
     effective_modulus, work = _power(rng, 3.0, 13.0), _power(rng, -9.0, 1.0) if adhesive else 0.0
     width, rise, params = shape.nondimensional()
-    columns = (np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
+    columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
     adhesion = Adhesion(work)
     law = choose(kind, adhesion, columns[2])
-    row = law.own(law.prepare(effective_modulus, work, math.inf, *columns, 0, 1, 0.0), 0)
-    if law.curved and row[COUNT] == 0.0:
+    row = law.params_of(law.prepare(Material(effective_modulus, work, math.inf), columns, 0, 1, 0.0), 0)
+    if law.iterative and row[COUNT] == 0.0:
         return None
-    natural = law.natural(effective_modulus, work, width, rise, row)
+    natural = law.scales(effective_modulus, work, width, rise, row)
     exact = (
         Pinned(shape, effective_modulus, work)
         if isinstance(shape, rm.FlatPunch)
@@ -155,7 +156,7 @@ Ends = list[tuple[Real, Real, Real, Real]]
 
 
 def _ends(law: Kernels, row: Floats, exact: Exact, natural: tuple[tuple[float, float], float, float, float]) -> Ends:
-    if not law.curved:
+    if not law.iterative:
         foot = exact.fold()
         return [(foot, mp.inf, exact.indentation(foot), mp.inf)]
     found = []
@@ -175,7 +176,7 @@ def _indentation(
 ) -> float:
     """At 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
     if not ends:
-        return float(natural[0][0] * law.distance(_power(rng, -4.0, 2.0), row))
+        return float(natural[0][0] * law.reduced_control(_power(rng, -4.0, 2.0), row))
     depth = max(-foot_value for _, _, foot_value, _ in ends)
     _, _, foot_value, top_value = ends[int(rng.integers(len(ends)))]
     way = depth * _power(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
@@ -198,7 +199,7 @@ def _compared(
     total, _, _ = loop.add_asperities(
         law,
         np.array([z]),
-        columns,
+        Columns(*columns),
         asperity.effective_modulus,
         Adhesion(asperity.work),
         path,
@@ -208,10 +209,10 @@ def _compared(
     depth = natural[0][0]
     x = [((z - h) + depth) * (1.0 / depth) if ends else (z - h) / depth for h in path.tolist()]
     rung = 1.0
-    if law.rung is not None and law.branched:
+    if law.branch is not None and law.branched:
         rung = 0.0
         for each in x:
-            rung = law.rung(max(each, 0.0), rung, True, row)
+            rung = law.branch(max(each, 0.0), rung, True, row)
     value = mp.mpf(z) - mp.mpf(asperity.path[-1])
     distance = math.inf
     low, high = mp.mpf(0), mp.mpf(10) ** 400
@@ -224,8 +225,8 @@ def _compared(
         distance = float(min(value - foot_value, top_value - value) / deepest)
         if not distance >= NEAREST:
             return None
-    begin = law.state_on(x[-1], rung, row) if law.state_on is not None else law.state(x[-1], row)
-    if not law.curved:
+    begin = law.state_on_branch(x[-1], rung, row) if law.state_on_branch is not None else law.state(x[-1], row)
+    if not law.iterative:
         begin = natural[1] * law.radius(begin, row)
     if not 0.0 <= begin < math.inf:
         return None
