@@ -1,6 +1,6 @@
 """How often a run meets the error asked for by [accuracy], and how many realisations it takes.
 
-    python pipelines/accuracy.py -o results/studies
+python pipelines/accuracy.py -o results/studies
 """
 
 from studies.accuracy.measure import measure

@@ -1,6 +1,6 @@
 """What a cell, a task and a second worker cost, memory, and what a very large sweep would take.
 
-    python pipelines/batch.py -o results/studies
+python pipelines/batch.py -o results/studies
 """
 
 from benchmarks.batch import measure, report

@@ -1,6 +1,6 @@
 """Time and memory that roughmdr plan foresees, and that the runs then take.
 
-    python pipelines/foreseen.py -o results/studies
+python pipelines/foreseen.py -o results/studies
 """
 
 from benchmarks.foreseen import draw, measure, report

@@ -1,6 +1,6 @@
 """What a scene calls and keeps with each part that it does not need left out, and forced on.
 
-    python pipelines/left_out.py -o results/studies
+python pipelines/left_out.py -o results/studies
 """
 
 from studies.left_out.measure import measure

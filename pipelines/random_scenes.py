@@ -1,6 +1,6 @@
 """Scenes drawn at random over all that a scene may ask for: each is refused in words, or physically right.
 
-    python pipelines/random_scenes.py -o results/studies
+python pipelines/random_scenes.py -o results/studies
 """
 
 from studies.random_scenes.measure import measure

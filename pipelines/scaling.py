@@ -1,6 +1,6 @@
 """Time a visited asperity and step, against NumPy and SciPy; two workers; a million asperities; a cell.
 
-    python pipelines/scaling.py -o results/studies
+python pipelines/scaling.py -o results/studies
 """
 
 from benchmarks.scaling import draw, measure, report

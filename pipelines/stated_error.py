@@ -1,6 +1,6 @@
 """numerical_error against the true error of the force, in random scenes.
 
-    python pipelines/stated_error.py -o results/studies
+python pipelines/stated_error.py -o results/studies
 """
 
 from studies.stated_error.judge import measure

@@ -1,12 +1,12 @@
 """Error against run time, a curve for each method: of one asperity, and of the mean curve of a rough surface.
 
-    python pipelines/work_precision.py -o results/studies
+python pipelines/work_precision.py -o results/studies
 """
 
+from studies.study import Study
 from studies.work_precision.measure import measure
 from studies.work_precision.picture import draw
 from studies.work_precision.report import report
-from studies.study import Study
 
 STUDY = Study("work_precision", "Error against run time", measure, draw, report)
 

@@ -13,8 +13,8 @@ from benchmarks.process import in_new_process
 from studies.study import named
 
 from roughmdr.aggregate import LoadingPath, compute
-from roughmdr.aggregate.contacts import hold
-from roughmdr.aggregate.totals import jumps, jumps_branched
+from roughmdr.aggregate.contacts import update_contact
+from roughmdr.aggregate.totals import jumps, jumps_between_branches
 from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble.streams import uniforms
 from roughmdr.kernels.adhesion import Adhesion
@@ -30,7 +30,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "loading and unloading, JKR": {"unload": True, "adhesive": True},
 }
 _SLIGHT = 1e-26  # [J/m2], so little that JKR is Hertz to the digits that are stated
-_MEMORY = {getattr(each, "py_func", each).__code__ for each in (hold, jumps, jumps_branched, staircase)}
+_MEMORY = {
+    getattr(each, "py_func", each).__code__ for each in (update_contact, jumps, jumps_between_branches, staircase)
+}
 """What only adhesive contacts need: they depend on the path."""
 CALLS, ADHESIVE, RANDOM, VISITS, KEPT = (
     "kernel calls a visit",

@@ -1,4 +1,4 @@
-"""The files that drawn scenes read: an ensemble of each shape, and maps."""
+"""The files that random scenes read: an ensemble of each shape, and maps."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ FILE_SIZE = 1e-6  # of the heights [m]
 
 
 class Inputs(NamedTuple):
-    """Files that scenes read, and for which shapes adhesion of finite range is drawn."""
+    """Files that scenes read, and the shapes for which adhesion of finite range is drawn."""
 
     ensembles: dict[str, str]
     """The file of each shape."""
@@ -21,8 +21,8 @@ class Inputs(NamedTuple):
     cohesive: tuple[str, ...]
 
     @classmethod
-    def written(cls, folder: Path, cohesive: tuple[str, ...] = tuple(SHAPES)) -> "Inputs":
-        """Small ensembles of all shapes and two small maps."""
+    def written(cls, folder: Path, cohesive: tuple[str, ...]) -> "Inputs":
+        """Write small ensembles of all shapes and two small maps."""
         ensembles = {}
         for name, shape in SHAPES.items():
             given: dict[str, Any] = {

@@ -9,7 +9,7 @@ Draw = Callable[[st.SearchStrategy[Any]], Any]
 Table = dict[str, Any]
 
 EXTREME = (5e-324, 1e-310, 1e-200, 1e-60, 1e-20, 1e20, 1e60, 1e200, 1.7e308)
-SELDOM = 60  # one number in so many is extreme
+ONE_IN = 60  # one number in so many is extreme
 UNITS = {
     "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/m^2": 1.0},
@@ -37,32 +37,32 @@ FAMILIES: dict[str, dict[str, tuple[float, float]]] = {
     "halfnorm": {},
     "invgauss": {"mu": (-1, 0.5)},
 }
-"""Of scipy.stats, with the powers of ten that their own parameters lie between."""
+"""Families of scipy.stats, with the powers of ten between which their shape parameters lie."""
 HEAVY = ("cauchy", "genextreme", "levy", "pareto", "t")
-"""Those that need not have a variance."""
+"""Families that need not have a variance."""
 
 
 def seldom(draw: Draw, one_in: int) -> bool:
-    """True once in so many times."""
+    """Return True once in so many times."""
     return bool(draw(st.integers(0, one_in - 1)) == one_in - 1)
 
 
 def number(draw: Draw, low: float, high: float, unit: float = 1.0) -> float:
-    """A number between two powers of ten, times a unit; seldom an extreme one."""
-    if seldom(draw, SELDOM):
+    """Draw a number between two powers of ten, times a unit; seldom an extreme one."""
+    if seldom(draw, ONE_IN):
         return float(draw(st.sampled_from(EXTREME)))
     return float(f"{unit * 10.0 ** draw(st.floats(low, high)):.4g}")
 
 
 def quantity(draw: Draw, value: float, dimension: str) -> float | str:
-    """The value in SI, or as a string with a unit."""
+    """Draw how a value is written: in SI, or as a string with a unit."""
     units = UNITS.get(dimension, {})
     unit = draw(st.sampled_from(["", *units]))
     return f"{value / units[unit]:.6g} {unit}" if unit else value
 
 
 def distribution(draw: Draw, size: float, dimension: str, *, positive: bool, bounded: bool = False) -> Table:
-    """A distribution of about this size, around it where it is to be positive, else around 0."""
+    """Draw a distribution of about this size, around it where it is to be positive, else around 0."""
     family = draw(st.sampled_from(sorted(FAMILIES)))
     table: Table = {"distribution": family, **{key: number(draw, *ends) for key, ends in FAMILIES[family].items()}}
     spread = size if not positive else size * 10.0 ** draw(st.floats(-2.0, 0.5))
@@ -83,7 +83,7 @@ def distribution(draw: Draw, size: float, dimension: str, *, positive: bool, bou
 
 
 def entry(draw: Draw, size: float, dimension: str, *, bounded: bool = False) -> Any:
-    """What stands under a shape parameter: a number, a string with a unit, or a distribution."""
+    """Draw a shape parameter: a number, a string with a unit, or a distribution."""
     if size in EXTREME or draw(st.booleans()):
         return quantity(draw, size, dimension)
     return distribution(draw, size, dimension, positive=True, bounded=bounded)

@@ -1,7 +1,7 @@
-"""The scenes that ``random_scenes.py`` draws: all that a scene may ask for, each small enough to be one of thousands.
+"""Random scenes over all that a scene may ask for, each small enough to be one of thousands.
 
 Lengths lie around one size, stresses around one modulus, so that most scenes have contacts to compute; a few numbers
-are as extreme as floats can be, so that any of them is met by what must refuse it.
+are as extreme as floats can be, so that each of them meets the check that must refuse it.
 """
 
 import math
@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from hypothesis import strategies as st
-from random_scenes_inputs import FILE_SIZE, Inputs
-from random_scenes_numbers import Draw, Table, distribution, entry, number, quantity, seldom
+from studies.random_scenes.inputs import FILE_SIZE, Inputs
+from studies.random_scenes.numbers import Draw, Table, distribution, entry, number, quantity, seldom
 
 from roughmdr.shapes import SHAPES
 from roughmdr.variables import CURVE_VARIABLES
@@ -31,59 +31,59 @@ PARAMETERS: dict[str, dict[str, tuple[float, float]]] = {
 
 
 class Frame(NamedTuple):
-    """What the numbers of a scene lie around."""
+    """The scales that the numbers of a scene lie around, and what restricts them."""
 
     size: float
     """[m]"""
     effective_modulus: float
     """[Pa]"""
     datum: float
-    """Where the heights and the flat are [m]."""
+    """The mean of the heights [m]."""
     smooth: bool
-    """Whether the expected law is, or may be, taken."""
-    dear: bool
+    """Whether the expected curve is, or may be, computed."""
+    expensive: bool
     """Whether each asperity takes milliseconds to set up: adhesion of finite range on most shapes."""
 
     @property
-    def drawn_parameters(self) -> int:
-        """How many shape parameters may be drawn."""
-        return len(SHAPES) if not self.smooth else 0 if self.dear else 1
+    def max_distributed(self) -> int:
+        """How many shape parameters may be distributed."""
+        return len(SHAPES) if not self.smooth else 0 if self.expensive else 1
 
     @property
-    def most_asperities(self) -> int:
-        """In a realisation."""
-        return 3 if self.dear else 300
+    def max_asperities(self) -> int:
+        """How many asperities a realisation may have."""
+        return 3 if self.expensive else 300
 
 
 def shape_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
-    """The parameters of asperities."""
+    """Draw the parameters of asperities."""
     if shape in PARAMETERS:
         return _plain_parameters(draw, frame, shape)
     exponent, width, rise = number(draw, -0.28, 1.0), number(draw, 0, 3, frame.size), number(draw, -1, 2, frame.size)
     power = math.log10(rise) - exponent * math.log10(width)
-    coefficient = _of_power(power)
+    coefficient = _power_of_ten(power)
     if shape == "power_law":
-        if not frame.drawn_parameters:
+        if not frame.max_distributed:
             return {"exponent": exponent, "coefficient": coefficient}
         if draw(st.booleans()):
             return {"exponent": entry(draw, exponent, "1"), "width": width, "rise": rise}
         return {"exponent": exponent, "coefficient": entry(draw, coefficient, "1")}
     if shape == "power_series":
-        beside = math.log10(frame.size)
-        return {"terms": {str(exponent + k): _of_power(power - k * beside) for k in range(draw(st.integers(1, 3)))}}
-    places = np.linspace(0.0, 1.0, draw(st.integers(3, 9)))
-    tip = 0.2 * draw(st.booleans())
-    profile = np.maximum(places - tip, 0.0) ** 10.0 ** draw(st.floats(0.0, 0.7))
-    return {"r": (width * places).tolist(), "f": (rise * profile).tolist()}
+        decade = math.log10(frame.size)
+        return {"terms": {str(exponent + k): _power_of_ten(power - k * decade) for k in range(draw(st.integers(1, 3)))}}
+    r = np.linspace(0.0, 1.0, draw(st.integers(3, 9)))
+    flat = 0.2 * draw(st.booleans())
+    profile = np.maximum(r - flat, 0.0) ** 10.0 ** draw(st.floats(0.0, 0.7))
+    return {"r": (width * r).tolist(), "f": (rise * profile).tolist()}
 
 
-def _of_power(power: float) -> float:
-    """Ten to a power, as far as floats reach."""
+def _power_of_ten(power: float) -> float:
+    """Return ten to a power, limited to what floats hold."""
     return float(10.0 ** min(max(power, -300.0), 300.0))
 
 
 def _plain_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
-    """Those that may be drawn."""
+    """Draw those of a shape whose parameters may be distributed."""
     ordered = bool(SHAPES[shape].not_below)
     found: Table = {}
     sizes: dict[str, float] = {}
@@ -91,7 +91,7 @@ def _plain_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
         dimension = SHAPES[shape].units[name]
         unit = 1.0 if dimension != "m" else sizes["radius"] if name == "cap_radius" else frame.size
         sizes[name] = number(draw, *ends, unit)
-        if len(found) >= frame.drawn_parameters:
+        if len(found) >= frame.max_distributed:
             found[name] = quantity(draw, sizes[name], dimension)
         else:
             found[name] = entry(draw, sizes[name], dimension, bounded=ordered)
@@ -99,7 +99,7 @@ def _plain_parameters(draw: Draw, frame: Frame, shape: str) -> Table:
 
 
 def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
-    """source = "random"."""
+    """Draw a section with source = "random"."""
     height: Any = distribution(draw, frame.size, "m", positive=False)
     if frame.datum:
         middle = "mean" if "std" in height else "loc"
@@ -108,7 +108,7 @@ def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
         height = frame.datum
     parameters = shape_parameters(draw, frame, shape)
     section: Table = {"source": "random", "shape": shape, "patch": number(draw, 1, 4, frame.size), "height": height}
-    count = draw(st.integers(1, frame.most_asperities))
+    count = draw(st.integers(1, frame.max_asperities))
     if seldom(draw, 5):
         section["density"] = count / section["patch"] / section["patch"] if section["patch"] > 1e-150 else 1.0
     else:
@@ -129,7 +129,7 @@ def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
 
 
 def nayak_asperities(draw: Draw, frame: Frame) -> Table:
-    """source = "nayak", some tens of summits."""
+    """Draw a section with source = "nayak", some tens of summits."""
     across = 10.0 ** draw(st.floats(0.3, 1.0))
     if draw(st.booleans()):
         m0, m2 = number(draw, -1, 1, frame.size * frame.size), number(draw, -4, 0)
@@ -147,7 +147,7 @@ def nayak_asperities(draw: Draw, frame: Frame) -> Table:
 
 
 def asperities(draw: Draw, frame: Frame, shape: str, source: str, inputs: Inputs) -> Table:
-    """[asperities]."""
+    """Draw [asperities]."""
     if source == "random":
         return random_asperities(draw, frame, shape)
     if source == "nayak":
@@ -166,23 +166,23 @@ def asperities(draw: Draw, frame: Frame, shape: str, source: str, inputs: Inputs
 
 
 def adhesion(draw: Draw, frame: Frame, model: str) -> Table:
-    """[adhesion]."""
+    """Draw [adhesion]."""
     work = number(draw, -8.0, 0.0, frame.effective_modulus * frame.size)
     work = 0.0 if seldom(draw, 20) else work
     section: Table = {"model": model, "work": quantity(draw, work, "J/m^2")}
-    reach = number(draw, -4.0, 1.0, frame.size)
+    length = number(draw, -4.0, 1.0, frame.size)
     if model != "jkr" or seldom(draw, 6):
-        if draw(st.booleans()) and work > 0.0 and reach > 0.0 and 0.0 < work / reach < math.inf:
-            section["strength"] = quantity(draw, work / reach, "Pa")
+        if draw(st.booleans()) and work > 0.0 and length > 0.0 and 0.0 < work / length < math.inf:
+            section["strength"] = quantity(draw, work / length, "Pa")
         else:
-            section["range"] = quantity(draw, reach, "m")
+            section["range"] = quantity(draw, length, "m")
     if model == "auto" and draw(st.booleans()):
         section["error"] = 10.0 ** draw(st.floats(-4.0, 0.0))
     return section
 
 
 def material(draw: Draw, frame: Frame) -> Table:
-    """[material] and [counter]."""
+    """Draw [material] and [counter]."""
     if draw(st.booleans()):
         return {"material": {"effective_modulus": quantity(draw, frame.effective_modulus, "Pa")}}
     ratio = st.sampled_from((0.0, 0.3, 0.49, 0.5, -0.9))
@@ -196,11 +196,11 @@ def material(draw: Draw, frame: Frame) -> Table:
 
 
 def path(draw: Draw, frame: Frame) -> Table:
-    """[path]: a range in metres or sigma, or a list that goes up and down and comes back to where it was."""
+    """Draw [path]: a range in metres or sigma, or a list that goes up and down and returns to earlier heights."""
     unload = draw(st.booleans())
     if draw(st.booleans()):
-        places = draw(st.lists(st.integers(-6, 10), min_size=1, max_size=12))
-        return {"separation": [frame.datum + 0.5 * frame.size * place for place in places], "unload": unload}
+        heights = draw(st.lists(st.integers(-6, 10), min_size=1, max_size=12))
+        return {"separation": [frame.datum + 0.5 * frame.size * each for each in heights], "unload": unload}
     start, stop, steps = draw(st.floats(0.0, 5.0)), draw(st.floats(-3.0, 2.0)), draw(st.integers(2, 25))
     if frame.datum == 0.0 and draw(st.booleans()):
         return {
@@ -212,7 +212,7 @@ def path(draw: Draw, frame: Frame) -> Table:
 
 
 def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
-    """[output], [batch] and [accuracy]."""
+    """Draw [output], [batch] and [accuracy]."""
     names = draw(st.lists(st.sampled_from(sorted(CURVE_VARIABLES)), min_size=1, max_size=9, unique=True))
     keep = draw(st.sampled_from(("curves", "statistics")))
     parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(CURVE_VARIABLES), "keep": keep}}
@@ -224,15 +224,17 @@ def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
         method = "auto" if frame.smooth else draw(st.sampled_from(("sampled", "stratified")))
         asked = {
             "relative": 10.0 ** draw(st.floats(-3.0, 0.0)),
-            "max_realizations": draw(st.integers(2, 3 if frame.dear else 20)),
+            "max_realizations": draw(st.integers(2, 3 if frame.expensive else 20)),
         }
         return parts | {"accuracy": {**asked, "method": method}}
     estimator = draw(st.sampled_from(("sampled", "sampled", "stratified")))
-    return parts | {"batch": {"estimator": estimator, "realizations": draw(st.integers(1, 2 if frame.dear else 4))}}
+    return parts | {
+        "batch": {"estimator": estimator, "realizations": draw(st.integers(1, 2 if frame.expensive else 4))}
+    }
 
 
 def sweep(draw: Draw, table: Table) -> Table:
-    """[sweep] over one or two keys of the scene."""
+    """Draw [sweep] over one or two keys of the scene."""
     section, height = table["asperities"], table["asperities"].get("height")
     keys: dict[str, list[Any]] = {"material.poisson": [0.2, 0.5]} if "poisson" in table["material"] else {}
     if "adhesion" in table:
@@ -259,7 +261,7 @@ def sweep(draw: Draw, table: Table) -> Table:
 
 @st.composite
 def scenes(draw: Draw, inputs: Inputs) -> Table:
-    """A whole scene, as a table."""
+    """Draw a whole scene, as a table."""
     source = draw(st.sampled_from(("random",) * 8 + ("nayak", "file", "surface")))
     shapes = [shape for shape in SHAPES if shape != "tabulated"] * 3 + ["tabulated"]
     shape = draw(st.sampled_from(shapes)) if source in ("random", "file") else "paraboloid"
@@ -269,8 +271,8 @@ def scenes(draw: Draw, inputs: Inputs) -> Table:
     smooth = drawn and seldom(draw, 60)
     size = number(draw, -9.5, 0.0) if drawn else FILE_SIZE
     datum = size * 10.0 ** draw(st.floats(0.0, 9.0)) if source == "random" and not smooth and seldom(draw, 12) else 0.0
-    dear = model in ("dugdale", "auto") and shape not in ("paraboloid", "flat_punch")
-    frame = Frame(size, number(draw, 3.0, 12.0), datum, smooth, dear)
+    expensive = model in ("dugdale", "auto") and shape not in ("paraboloid", "flat_punch")
+    frame = Frame(size, number(draw, 3.0, 12.0), datum, smooth, expensive)
     table: Table = {"title": "Drawn", "seed": draw(st.integers(0, 2**63 - 1)), **material(draw, frame)}
     if model != "none":
         table["adhesion"] = adhesion(draw, frame, model)

@@ -1,4 +1,4 @@
-"""Random scenes over the whole of what may be asked for: shapes, laws of adhesion, distributions, paths, estimators."""
+"""Random scenes over all shapes, adhesion models, distributions, paths and estimators."""
 
 import math
 from typing import Any, NamedTuple
@@ -13,15 +13,15 @@ SEED = 2026
 ESTIMATORS = ("sampled", "stratified", "expected")
 ADHESIONS = ("none", "jkr", "dugdale")
 COHESIVE = ("paraboloid", "flat_punch", "truncated_cone")
-"""Shapes that are taken with adhesion of finite range, the last not for the expected law: each of the others takes half
-a minute to compile, and seconds for its reference."""
-_COMMON = ("power_series", "tabulated")
+"""Shapes drawn with adhesion of finite range, the last not for the expected curve: each of the others takes half a
+minute to compile, and seconds for its reference."""
+_FIXED_PROFILES = ("power_series", "tabulated")
 _EXPONENTS = (1, 1.5, 2, 2.5, 3, 4, 6)  # of power series
 _LARGEST_WORK = 10.0  # [J/m2]
 
 
-class Drawn(NamedTuple):
-    """A scene, with what it was made of."""
+class RandomScene(NamedTuple):
+    """A scene and its choices."""
 
     number: int
     shape: str
@@ -31,7 +31,7 @@ class Drawn(NamedTuple):
 
 
 class Size(NamedTuple):
-    """A tip is about ``rise`` high at the radius ``width``, and adhesion holds it about as deep as ``depth``; [m]."""
+    """A tip is about ``rise`` high at the radius ``width``, and its natural depth under adhesion is about ``depth`` [m]."""
 
     width: float
     rise: float
@@ -39,12 +39,12 @@ class Size(NamedTuple):
 
 
 def decades(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number between powers of ten, evenly in its logarithm."""
+    """Draw a number between powers of ten, uniform in its logarithm."""
     return float(10.0 ** rng.uniform(low, high))
 
 
-def scene(number: int) -> Drawn:
-    """The scene of that number; every fourth is of the expected law."""
+def scene(number: int) -> RandomScene:
+    """Return the scene of a number; every fourth is for the expected curve."""
     rng = np.random.default_rng([SEED, number])
     estimator = "expected" if number % 4 == 0 else str(rng.choice(["sampled", "sampled", "stratified"]))
     adhesion = str(rng.choice(ADHESIONS, p=[0.25, 0.6, 0.15]))
@@ -54,12 +54,11 @@ def scene(number: int) -> Drawn:
         shape = str(rng.choice(list(SHAPES)))
     source = "nayak" if shape == "paraboloid" and rng.uniform() < 0.2 else "random"
     effective_modulus, width, slope = decades(rng, 3, 13), decades(rng, -9, 0), decades(rng, -4, 0)
-    # How far the edge of a contact of this width is stretched, over the rise of the tip there.
-    reach = decades(rng, -2, 1.5)
-    work = min(reach**2 * (slope * width) ** 2 * effective_modulus / (2.0 * math.pi * width), _LARGEST_WORK)
-    reach = math.sqrt(2.0 * math.pi * width * work / effective_modulus) / (slope * width)
+    stretch = decades(rng, -2, 1.5)  # dl at the edge of a contact of this width, over the rise of the tip there
+    work = min(stretch**2 * (slope * width) ** 2 * effective_modulus / (2.0 * math.pi * width), _LARGEST_WORK)
+    stretch = math.sqrt(2.0 * math.pi * width * work / effective_modulus) / (slope * width)
     rise = slope * width
-    size = Size(width, rise, rise * reach ** (4.0 / 3.0) if adhesion != "none" else 0.0)
+    size = Size(width, rise, rise * stretch ** (4.0 / 3.0) if adhesion != "none" else 0.0)
     std = max(size.depth * decades(rng, -1.5, 2), rise * 1e-6) if adhesion != "none" else rise * decades(rng, -3, 0.5)
     datum = 0.0 if rng.uniform() < 0.8 else float(rng.choice([-1.0, 1.0])) * std * decades(rng, 1, 7)
     if source == "nayak":
@@ -79,12 +78,12 @@ def scene(number: int) -> Drawn:
         table["adhesion"] = {"model": adhesion, "work": work}
     if adhesion == "dugdale":
         tabor = decades(rng, -2, 2)
-        stretch = math.sqrt(2.0 * math.pi * width * work / effective_modulus)
-        table["adhesion"]["strength"] = tabor * math.pi ** (2.0 / 3.0) * work / stretch
+        dl = math.sqrt(2.0 * math.pi * width * work / effective_modulus)
+        table["adhesion"]["strength"] = tabor * math.pi ** (2.0 / 3.0) * work / dl
     if estimator != "expected" and rng.uniform() < 0.2:
         table["batch"]["realizations"] = 3
         table["output"]["keep"] = "statistics"
-    return Drawn(number, shape, adhesion, estimator, table)
+    return RandomScene(number, shape, adhesion, estimator, table)
 
 
 def _asperities(
@@ -98,13 +97,13 @@ def _asperities(
         "patch": 100.0 * size.width,
         "height": _heights(rng, std, datum),
     }
-    if shape in _COMMON:
-        return {**section, **_common(rng, shape, size)}
+    if shape in _FIXED_PROFILES:
+        return {**section, **_fixed_profile(rng, shape, size)}
     values = _tip(rng, shape, size)
-    most = 0 if slow else len(values)
+    max_varied = 0 if slow else len(values)
     if estimator == "expected":  # two at once take seconds, in the run and for its reference
-        most = min(most, 2 if shape == "power_law" and rng.uniform() < 0.3 else 1)
-    varied = list(rng.permutation(list(values)))[: int(rng.integers(0, most + 1))]
+        max_varied = min(max_varied, 2 if shape == "power_law" and rng.uniform() < 0.3 else 1)
+    varied = list(rng.permutation(list(values)))[: int(rng.integers(0, max_varied + 1))]
     ordered = shape == "capped_paraboloid"
     section |= {
         name: _spread(rng, value, ordered or name == "exponent") if name in varied else value
@@ -125,7 +124,7 @@ def _asperities(
 
 
 def _tip(rng: np.random.Generator, shape: str, size: Size) -> dict[str, float]:
-    """Parameters of a tip of this size."""
+    """Return parameters of a tip of this size."""
     slope, radius = size.rise / size.width, size.width**2 / (2.0 * size.rise)
     blend = size.width * decades(rng, -1.5, 0.5)
     match shape:
@@ -150,8 +149,8 @@ def _tip(rng: np.random.Generator, shape: str, size: Size) -> dict[str, float]:
     raise ValueError(f"no shape {shape}")
 
 
-def _common(rng: np.random.Generator, shape: str, size: Size) -> Table:
-    """The one profile of all asperities."""
+def _fixed_profile(rng: np.random.Generator, shape: str, size: Size) -> Table:
+    """Return the one profile of all asperities."""
     if shape == "power_series":
         exponents = sorted(rng.choice(_EXPONENTS, int(rng.integers(1, 4)), replace=False).tolist())
         shares = rng.uniform(0.1, 1.0, len(exponents))
@@ -165,7 +164,7 @@ def _common(rng: np.random.Generator, shape: str, size: Size) -> Table:
 
 
 def _spread(rng: np.random.Generator, value: float, ordered: bool) -> Table:
-    """A distribution about a value; ``ordered`` ones do not reach far."""
+    """Return a distribution about a value; a narrow one where parameters must stay ``ordered``."""
     if ordered or rng.uniform() < 0.4:
         width = float(rng.uniform(0.02, 0.36 if ordered else 1.0))
         return {"distribution": "uniform", "loc": value * (1.0 - 0.5 * width), "scale": value * width}
@@ -187,7 +186,7 @@ def _heights(rng: np.random.Generator, std: float, datum: float) -> Table:
 
 
 def _summits(rng: np.random.Generator, std: float, size: Size) -> Table:
-    """Of a Gaussian surface with about as rough summits."""
+    """Return the summits of a Gaussian surface of about this roughness and size."""
     alpha, count = 1.5 + decades(rng, -1, 2), int(rng.integers(3, 10))
     m0 = std * std
     curvature = 2.0 * size.rise / size.width**2
@@ -198,14 +197,14 @@ def _summits(rng: np.random.Generator, std: float, size: Size) -> Table:
 
 
 def _path(rng: np.random.Generator, std: float, datum: float, size: Size) -> Table:
-    """The way in, in and out, or to and fro."""
+    """Return a path of loading, of loading and unloading, or back and forth."""
     low = datum + std * float(rng.uniform(-1.0, 0.5))
     high = datum + std * float(rng.uniform(1.0, 3.0))
     far = high + size.depth * float(rng.uniform(0.0, 2.0))
-    way = rng.integers(4)
-    if way == 0:
+    kind = rng.integers(4)
+    if kind == 0:
         return {"separation": {"start": high, "stop": low, "steps": int(rng.integers(3, 9))}}
-    if way == 1:
+    if kind == 1:
         return {"separation": {"start": far, "stop": low, "steps": int(rng.integers(3, 7))}, "unload": True}
     inner = rng.uniform(low, far, int(rng.integers(1, 6))).tolist()
-    return {"separation": [high, low, *inner] if way == 2 else [high, *inner, low, *sorted(inner)]}
+    return {"separation": [high, low, *inner] if kind == 2 else [high, *inner, low, *sorted(inner)]}

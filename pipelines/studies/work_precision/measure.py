@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-
-import roughmdr as rm
 from studies.study import named
 from studies.work_precision import surface, tip
 from studies.work_precision.points import QUANTITIES, Method, Point, Reference
+
+import roughmdr as rm
 
 
 class Part(NamedTuple):

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-
 from studies.work_precision.measure import points_of
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import xarray as xr
-
 from studies.study import table
 from studies.work_precision.measure import cheapest, points_of
 from studies.work_precision.points import QUANTITIES
