@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from peak import peak
+from studies.peak import peak
 
 from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import Plan, make_plan, simulate_realization

@@ -8,7 +8,7 @@ Each part is forced on alone, and the forces are compared. Writes left_out.nc an
 import xarray as xr
 from left_out_measured import IMPORTS, REDUCED, all_rows
 from left_out_picture import draw, figures
-from study import Study, named, table
+from studies.study import Study, named, table
 
 OF = ("left out", "forced on")
 

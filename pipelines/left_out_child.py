@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from left_out_cases import BATCH, SIZES, Size, Way, forced, scene_of
-from peak import peak
+from studies.peak import peak
 
 from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import make_plan

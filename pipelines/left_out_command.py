@@ -11,7 +11,7 @@ import sys
 import time
 from importlib import import_module
 
-from peak import peak
+from studies.peak import peak
 
 
 def main(modules: str, *arguments: str) -> None:

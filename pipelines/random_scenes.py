@@ -24,7 +24,7 @@ from random_scenes_inputs import Inputs
 from random_scenes_judge import OUTCOMES, judge
 from random_scenes_picture import draw
 from random_scenes_space import scenes
-from study import Study, named, table
+from studies.study import Study, named, table
 
 from roughmdr.shapes import SHAPES
 

@@ -16,7 +16,7 @@ import click
 import numpy as np
 import xarray as xr
 from batch import by_cell
-from plain_methods import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
+from oracles.plain_sums import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals

@@ -17,7 +17,7 @@ import xarray as xr
 from stated_error_picture import draw
 from stated_error_references import expected_force, force_of_draws
 from stated_error_scenes import ESTIMATORS, Drawn, scene
-from study import Study, named, table
+from studies.study import Study, named, table
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats

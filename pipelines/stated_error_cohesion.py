@@ -6,21 +6,17 @@ leads from it to the indentation itself.
 
 import itertools
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
-from mpmath import mp
+from oracles.dugdale import Array, Cohesion, Integrals, State
+from oracles.dugdale_curve import Curve, Place, each_of
+from oracles.dugdale_punch import Punch
+from oracles.multiprecision import Number, mp
+from oracles.profiles import profile_of
 from scipy.optimize import brentq
 from stated_error_contacts import Follower
 
 from roughmdr.shapes import Paraboloid, Shape
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
-from precise_cohesion import Array, Cohesion, Integrals, State
-from precise_curve import Curve, Place, each_of
-from precise_profiles import Number, profile_of
-from precise_punch import Punch
 
 DIGITS = 22
 _BEYOND = 16.0  # times the largest contact radius: farther out there is no fold

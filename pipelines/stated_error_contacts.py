@@ -5,20 +5,16 @@ no contact; up at its end to the next; on at first touch.
 """
 
 import math
-import sys
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 from typing import Any
 
-from mpmath import mp
+from oracles.jkr import Asperity, Branch
+from oracles.multiprecision import Number, mp
+from oracles.profiles import Piece, Profile, SphereProfile, profile_of
 from scipy.optimize import brentq
 
 from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.shapes import Cone, Paraboloid, PowerLaw, PowerSeries, Shape, Sphere, Tabulated
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
-from precise_asperity import Asperity, Branch
-from precise_profiles import Number, Piece, Profile, SphereProfile, profile_of
 
 DIGITS = 40
 _NEAR = 1e-11  # of the way from the foot of a branch: so near its tangent is right to the square of it

@@ -1,10 +1,7 @@
 """The force of a scene at least ten times finer than a run computes it: of draws, asperity by asperity; or expected."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
-from mpmath import mp
+from oracles.multiprecision import Number, mp
 from stated_error_cohesion import Cohesive, CohesivePunch
 from stated_error_contacts import DIGITS, Follower, Punch, Touching
 from stated_error_expected import ORDERS, Expected
@@ -13,9 +10,6 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, FlatPunch, Shape
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "data_gen"))
-from precise_profiles import Number
 
 FINER = 10.0
 """Times the error that is stated: how right a reference is at least."""

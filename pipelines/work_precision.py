@@ -15,7 +15,7 @@ import numpy as np
 import work_precision_rough as rough
 import work_precision_tip as tip
 import xarray as xr
-from study import Study, named, table
+from studies.study import Study, named, table
 from work_precision_picture import draw
 from work_precision_points import QUANTITIES, Method, Point, Reference
 

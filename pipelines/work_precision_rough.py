@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
-from plain_expected import Rough
-from plain_methods import Sums, with_brentq, with_numpy
+from oracles.expected_paraboloids import Rough
+from oracles.plain_sums import Sums, with_brentq, with_numpy
 from work_precision_points import Curve, Method, Point, Reference, root_mean_square, timed
 
 from roughmdr.aggregate import LoadSeparation

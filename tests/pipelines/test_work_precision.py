@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import studies
 import work_precision
 import work_precision_tip
 import xarray as xr
 from click.testing import CliRunner
+from studies import all_studies
 from work_precision_points import QUANTITIES, Method, Point
 from work_precision_rough import SURFACES, law
 
@@ -18,8 +18,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the studies leave behind, of which one fails."""
     folder = tmp_path_factory.mktemp("studies")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(studies, "NAMES", ("no_such_study", "work_precision"))
-        done = CliRunner().invoke(studies.main, ["-o", str(folder), "--quick"])
+        patch.setattr(all_studies, "NAMES", ("no_such_study", "work_precision"))
+        done = CliRunner().invoke(all_studies.main, ["-o", str(folder), "--quick"])
     assert done.exit_code == 1
     assert "failed: no_such_study" in done.output
     return folder
