@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from precise_profiles import Floats, Parameters, knot_slopes
+from oracles.profiles import Floats, Parameters, knot_slopes
 
 SEED = 2012
 MODULUS = (1e3, 1e13)

@@ -9,13 +9,16 @@ The inputs are doubles, written so that they read back to the last bit; the answ
 
 import json
 import multiprocessing
+import sys
 from pathlib import Path
 from typing import Any
 
 import click
-from mpmath import mp
-from precise_asperity import ENERGY_WRITTEN, WRITTEN, Asperity
-from precise_profiles import ENERGY_WORKING, Number, profile_of
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
+from oracles.jkr import ENERGY_WRITTEN, WRITTEN, Asperity
+from oracles.multiprecision import Number, digits, mp
+from oracles.profiles import ENERGY_WORKING, profile_of
 from reference_cases import CASES, Case, Draw, few
 
 WORKING = 100
@@ -31,11 +34,6 @@ ENERGY_DISTANCES = (1e-3, 1.0, 30.0)
 DECADES = {"indentation": (-8.0, -5.0, -2.0, -0.5, 0.4, 3.0), "force": (-8.0, -4.0, -1.0, 0.5, 3.0)}
 """Without adhesion: powers of ten of the shape's own rise, and of modulus * width * rise."""
 ENERGY_DECADES = (-2.0, 0.4)
-
-
-def digits(number: Number, count: int = WRITTEN) -> str:
-    """``number`` to so many digits."""
-    return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))
 
 
 def values(case: Case, control: str, pull_off: Number) -> list[tuple[float, bool]]:
@@ -66,7 +64,7 @@ def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     lost = -mp.sqrt(2 * mp.pi * b * work / effective_modulus)
     end = {"contact_radius": b, "indentation": lost, "force": k * lost}
     if work > 0:
-        written = {name: digits(number) for name, number in end.items()}
+        written = {name: digits(number, WRITTEN) for name, number in end.items()}
         entry["pull_off"] = {"displacement": written, "force": written}
     rows = []
     for control in DISTANCES:
@@ -92,7 +90,7 @@ def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
         wanted = values(case, control, least.value)
         if case.work > 0.0:
             state = asperity.state(least.lo)
-            end = {name: digits(state[name]) for name in ("contact_radius", "indentation", "force")}
+            end = {name: digits(state[name], WRITTEN) for name in ("contact_radius", "indentation", "force")}
             entry.setdefault("pull_off", {})["displacement" if control == "indentation" else "force"] = end
             outer = branches[-1].value
             if outer > least.value:  # either side of the jump inwards
@@ -112,7 +110,7 @@ def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
 def row(control: str, value: float, state: dict[str, Number], energy: Number | None) -> dict[str, Any]:
     """One line of a table."""
     line: dict[str, Any] = {"control": control, "value": value}
-    line |= {name: digits(number) for name, number in state.items()}
+    line |= {name: digits(number, WRITTEN) for name, number in state.items()}
     return line if energy is None else {**line, "energy": digits(energy, ENERGY_WRITTEN)}
 
 

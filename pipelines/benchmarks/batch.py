@@ -148,8 +148,8 @@ def report(result: xr.Dataset) -> str:
             f"Two workers for one (goal {SPEED_GOAL}):",
             table(["pool", "median", "best", "ms a task"], workers),
             table(["ms a task", *SCHEDULERS], tasks),
-            f"An asperity is drawn in {1e9 * costs.drawing:.0f} ns, visited in {1e9 * costs.visiting:.0f} ns, and takes "
-            f"{costs.asperity:.0f} bytes; a task result takes {1e-3 * costs.task_result:.0f} kB and "
+            f"An asperity is drawn in {1e9 * costs.drawing:.0f} ns, visited in {1e9 * costs.visiting:.0f} ns, takes "
+            f"{costs.asperity:.0f} bytes; a task result {1e-3 * costs.task_result:.0f} kB and "
             f"{1e3 * costs.writer:.1f} ms.",
             table([f"{CELLS} cells of {ASPERITIES:,} asperities", f"{WORKERS} workers, extrapolated"], large.rows()),
         ]

@@ -4,7 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from twins import Real, kappa, mp
+from oracles.jkr_power_law import kappa
+from oracles.multiprecision import Number, mp
 
 import roughmdr as rm
 from roughmdr.shapes.kappa import kappa as kappa_of_package
@@ -23,7 +24,7 @@ SHAPES = [
 ]
 
 
-def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Real) -> Real:
+def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Number) -> Number:
     given = {name: mp.mpf(value) for name, value in shape.parameters.items()}
     if "radius" in given:
         return r / given["radius"]
@@ -47,7 +48,7 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
         for i, x in enumerate(mp.mpf(x) for x in radii(shape)):
             steepest = slope(shape, x)
 
-            def relative(s: Real, x: Real = x, steepest: Real = steepest) -> Real:
+            def relative(s: Number, x: Number = x, steepest: Number = steepest) -> Number:
                 return slope(shape, x * s) / steepest
 
             # r = x sin(angle) takes the root out of both integrands.

@@ -32,11 +32,14 @@ def draw(result: xr.Dataset) -> "Figure":
     return figure
 
 
+def _numbers(case: xr.Dataset) -> list[str]:
+    return [f"{number:,.6g}" for number in case.counted.to_numpy()]
+
+
 def report(result: xr.Dataset) -> str:
     """Return the table, and how far the forces are apart."""
     rows = [
-        [str(case.part.values), str(case.scene.values), *(f"{number:,.6g}" for number in case.counted.to_numpy())]
-        + [str(case.unit.values)]
+        [*(str(case[name].values) for name in ("part", "scene")), *_numbers(case), str(case.unit.values)]
         for case in (result.isel(case=number) for number in range(result.sizes["case"]))
     ]
     ranged = result.part == "range of adhesion"

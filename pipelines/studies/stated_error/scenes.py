@@ -31,7 +31,7 @@ class RandomScene(NamedTuple):
 
 
 class Size(NamedTuple):
-    """A tip is about ``rise`` high at the radius ``width``, and its natural depth under adhesion is about ``depth`` [m]."""
+    """A tip is about ``rise`` high at the radius ``width``; its natural depth with adhesion is about ``depth`` [m]."""
 
     width: float
     rise: float

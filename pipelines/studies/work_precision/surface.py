@@ -72,7 +72,7 @@ def _cell(surface: Surface) -> Cell:
 
 
 def reference(surface: Surface, *, quick: bool) -> Reference:
-    """Compute double integrals with ``DIGITS`` digits; the pull-off force at the step where the expected curve has it."""
+    """Compute double integrals with ``DIGITS`` digits; the pull-off force at the lowest step of the expected curve."""
     separation, rough = _cell(surface).path.separation, surface.rough
     lowest, turn = int(np.argmin(simulate(surface, "expected").force)), int(np.argmin(separation))
 
@@ -156,7 +156,7 @@ def _plain(sum_up: Callable[..., Sums]) -> Draw:
 
 
 def _to_error(method: str) -> Points:
-    """Return a point for each error that is asked for: the r.m.s. error and the mean cost of runs with several seeds."""
+    """Return a point for each error that is asked for: r.m.s. error and mean cost of runs with several seeds."""
 
     def points(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
         _run(surface, method, _ERRORS[-1], 0)  # all is loaded before the clock runs

@@ -2,9 +2,9 @@
 
 import numba
 import pytest
-from cohesive_twin import CohesiveTwin
-from judgement import judge_cohesive
-from twins import Real, mp
+from oracles.dugdale_power_law import DugdalePowerLaw
+from oracles.multiprecision import Number, mp
+from oracles.promises import judge_dugdale
 
 import roughmdr as rm
 
@@ -24,44 +24,44 @@ def asked(exponent: float, tabor: float) -> tuple[rm.PowerLaw, dict[str, float]]
 @pytest.mark.parametrize("exponent", [0.53, 1.0, 2.0, 50.0, 200.0])
 def test_every_answer_is_as_accurate_as_promised(exponent: float, tabor: float) -> None:
     shape, numbers = asked(exponent, tabor)
-    twin = CohesiveTwin(shape, **numbers)
+    exact = DugdalePowerLaw(shape, **numbers)
 
-    def holds(control: str, value: Real) -> None:
+    def holds(control: str, value: Number) -> None:
         contact = rm.indent(shape, **numbers, adhesion="dugdale", **{control: float(value)})
         got = {str(name): float(contact[name]) for name in contact.variables}
-        for name, judged in judge_cohesive(twin, control, got).items():
+        for name, judged in judge_dugdale(exact, control, got).items():
             assert judged.excess <= 1.0, (control, name, judged)
 
     for control in ("indentation", "force"):
         for distance in (1e-11, 1e-4, 0.3, 40.0):
-            holds(control, twin.pull_off(control).under(control) * (1 - mp.mpf(distance)))
+            holds(control, exact.pull_off(control).under(control) * (1 - mp.mpf(distance)))
     for part in (0.9, 3.0):
-        holds("contact_radius", part * twin.pull_off("force").contact_radius)
+        holds("contact_radius", part * exact.pull_off("force").a)
 
 
 @pytest.mark.parametrize("exponent", [0.53, 1.0, 2.0, 50.0])
-def test_the_twin_fulfils_the_definitions(exponent: float) -> None:
+def test_the_oracle_fulfils_the_definitions(exponent: float) -> None:
     """Gap and force by quadrature over u1, as Maugis has them for the sphere."""
     shape, numbers = asked(exponent, 0.9)
-    twin = CohesiveTwin(shape, **numbers)
-    state = twin.answer("indentation", twin.pull_off("indentation").indentation / 3)
-    a, c, plain = state.contact_radius, state.cohesive_radius, twin.plain
+    exact = DugdalePowerLaw(shape, **numbers)
+    state = exact.retracted("indentation", exact.pull_off("indentation").delta / 3)
+    a, c, jkr = state.a, state.c, exact.jkr
 
-    unit = twin.beta * c  # quadrature stops at an absolute error
+    unit = exact.beta * c  # quadrature stops at an absolute error
 
-    def u1(phi: Real) -> Real:
+    def u1(phi: Number) -> Number:
         x = c * mp.sin(phi)
-        return (state.indentation - plain.g(x) if x < a else -twin.beta * mp.sqrt(c * c - x * x)) / unit
+        return (state.delta - jkr.g(x) if x < a else -exact.beta * mp.sqrt(c * c - x * x)) / unit
 
     places = [0, mp.asin(a / c), mp.pi / 2] if a > 0 else [0, mp.pi / 2]
     with mp.workdps(25):
         opened = unit * mp.quad(u1, places)
-        force = 2 * plain.effective_modulus * unit * c * mp.quad(lambda phi: u1(phi) * mp.cos(phi), places)
-        gap = plain.g(c) / plain.kappa - state.indentation + 2 / mp.pi * opened
+        force = 2 * jkr.effective_modulus * unit * c * mp.quad(lambda phi: u1(phi) * mp.cos(phi), places)
+        gap = jkr.g(c) / jkr.kappa - state.delta + 2 / mp.pi * opened
     if a > 0:
         assert abs(force / state.force - 1) < 1e-15
-        assert abs(gap / twin.range - 1) < 1e-15
-    assert mp.diff(lambda d: twin.answer("indentation", d).force, state.indentation) == pytest.approx(
+        assert abs(gap / exact.range - 1) < 1e-15
+    assert mp.diff(lambda d: exact.retracted("indentation", d).force, state.delta) == pytest.approx(
         state.stiffness, rel=1e-12
     )
 

@@ -1,66 +1,21 @@
-"""Profiles of which the slope f' alone is known: g and G with as many digits as asked, by quadrature (H 17)."""
+"""Profiles given by their slope f' alone: g and G from it by quadrature with any number of digits (H 17), or closed."""
 
-import math
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeAlias
 
 import numpy as np
-from mpmath import mp
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-Number: TypeAlias = Any
-"""A number of any precision (mpf)."""
+from oracles.multiprecision import Number, mp
+from oracles.quadrature_rules import gauss, tanh_sinh, whole_moments
+from roughmdr.shapes import Shape, Tabulated
+
 Floats: TypeAlias = NDArray[np.float64]
 Parameters: TypeAlias = dict[str, Any]
 ENERGY_WORKING = 45
 """Digits carried in the energy, of which 25 are written: an integral over an integral costs too much otherwise."""
-
-
-@cache
-def gauss(digits: int) -> list[tuple[Number, Number]]:
-    """Gauss-Legendre nodes and weights on (0, 1), enough of them for trigonometric polynomials to ``digits``."""
-    n = 8 + 32 * digits // 100
-    rule = []
-    with mp.workdps(digits + 10):
-        for guess in np.polynomial.legendre.leggauss(n)[0]:
-            x = mp.mpf(float(guess))
-            for _ in range(2 + math.ceil(math.log2(digits / 14.0))):  # Newton doubles the digits
-                before, value = mp.mpf(1), x
-                for k in range(2, n + 1):
-                    before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
-                slope = n * (x * value - before) / (x * x - 1)
-                x -= value / slope
-            rule.append(((1 + x) / 2, 1 / ((1 - x * x) * slope * slope)))
-    return rule
-
-
-@cache
-def tanh_sinh(digits: int, steps: int) -> list[tuple[Number, Number]]:
-    """Double-exponential nodes and weights on (0, 1), ``steps`` to the unit: for end points that are not smooth."""
-    rule = []
-    with mp.workdps(digits + 10):
-        edge = math.asinh((digits + 5) * math.log(10.0) / math.pi)
-        for i in range(-math.ceil(edge * steps), math.ceil(edge * steps) + 1):
-            t = mp.mpf(i) / steps
-            grow = mp.exp(mp.pi * mp.sinh(t))
-            rule.append((grow / (1 + grow), mp.pi * mp.cosh(t) * grow / (1 + grow) ** 2 / steps))
-    return rule
-
-
-@cache
-def whole_moments(power: float, digits: int) -> tuple[Number, Number]:
-    """∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over 0 < psi < pi/2, for power > -1/2."""
-    stretch = 8  # sin(phi)^power with phi ~ v^8 is smooth enough at 0 for the rule to see all of it
-    plain, squared = mp.mpf(0), mp.mpf(0)
-    with mp.workdps(digits + 20):
-        for v, weight in tanh_sinh(digits + 20, 256):
-            phi = mp.pi / 2 * v**stretch
-            density = weight * mp.pi / 2 * stretch * v ** (stretch - 1) * mp.sin(phi) ** mp.mpf(power)
-            plain += density
-            squared += density * mp.cos(phi) ** 2
-    return plain, squared
 
 
 @dataclass(frozen=True)
@@ -71,21 +26,22 @@ class Piece:
     hi: Number | None
     terms: tuple[tuple[Number, float], ...]
 
+    @property
     def whole(self) -> bool:
         """Whether there is no other piece."""
-        return self.lo == 0 and self.hi is None
+        return bool(self.lo == 0) and self.hi is None
 
 
 def angle(r: Number, a: Number) -> Number:
-    """psi where a cos(psi) = r [m], without loss next to r = a; 0 from there on."""
+    """Return psi where a cos(psi) = r [m], without loss next to r = a; 0 from there on."""
     return mp.atan2(mp.sqrt((a - r) * (a + r)), r) if r < a else mp.mpf(0)
 
 
 class Profile:
-    """An asperity known by f' alone, which is piecewise a sum of powers."""
+    """A profile given by f' alone, which is piecewise a sum of powers; g and G are found by quadrature."""
 
     end: Number | None = None
-    """Where the profile becomes vertical [m], or None."""
+    """Radius at which the profile becomes vertical [m], or None."""
 
     def __init__(self, pieces: list[Piece], corners: list[tuple[Number, Number]] | None = None) -> None:
         self.pieces = pieces
@@ -94,7 +50,7 @@ class Profile:
 
     @property
     def kinks(self) -> list[Number]:
-        """Where f' or its derivative jumps [m]."""
+        """Radii at which f' or its derivative jumps [m]."""
         return [piece.lo for piece in self.pieces if piece.lo > 0]
 
     @property
@@ -104,7 +60,7 @@ class Profile:
         return lead[-1] if lead else mp.mpf(0)
 
     def mdr(self, a: Number) -> tuple[Number, Number, Number]:
-        """g(a) [m], g'(a) [1] and G(a) [m2]. On a corner itself g' is that from inside."""
+        """Return g(a) [m], g'(a) [1] and G(a) [m2]; at a corner itself g' is that from inside."""
         g, slope, G = mp.mpf(0), mp.mpf(0), mp.mpf(0)
         for piece in self.pieces:
             if piece.lo < a and any(c != 0 for c, _ in piece.terms):
@@ -118,9 +74,9 @@ class Profile:
                 slope += jump * b / mp.sqrt((a - b) * (a + b))
         return g * a, slope, G * a * a
 
-    @staticmethod
-    def _moments(piece: Piece, a: Number) -> list[tuple[Number, Number]]:
-        if piece.whole():
+    def _moments(self, piece: Piece, a: Number) -> list[tuple[Number, Number]]:
+        """Return, for each term, ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over the piece, r = a cos(psi)."""
+        if piece.whole:
             return [whole_moments(power, mp.dps) for _, power in piece.terms]
         begin = mp.mpf(0) if piece.hi is None else angle(piece.hi, a)
         length = angle(piece.lo, a) - begin
@@ -134,12 +90,12 @@ class Profile:
         return [(total[0], total[1]) for total in sums]
 
     def rough_slope(self, base: float, above: Floats) -> Floats:
-        """g' [1] at a = base + above [m] in plain double, for the search for folds; ``base`` is 0 or a kink."""
+        """Return g' [1] at a = base + above [m] in double precision, to search for folds; ``base`` is 0 or a kink."""
         nodes, weights = np.polynomial.legendre.leggauss(48)
         a = base + above
 
         def across(r: float) -> Floats:
-            """sqrt(a^2 - r^2), without loss next to the kink; 0 beyond a."""
+            """Return sqrt(a^2 - r^2), without loss next to the kink; 0 beyond a."""
             return np.sqrt(np.maximum((base - r + above) * (base + r + above), 0.0))
 
         slope = np.zeros_like(a)
@@ -163,7 +119,7 @@ class SphereProfile(Profile):
         self.end = radius
 
     def mdr(self, a: Number) -> tuple[Number, Number, Number]:
-        """g(a) [m], g'(a) [1] and G(a) [m2]."""
+        """Return g(a) [m], g'(a) [1] and G(a) [m2]."""
         R: Number = self.end
         gap = (R - a) * (R + a)
         g, slope, G = mp.mpf(0), mp.mpf(0), mp.mpf(0)
@@ -177,6 +133,46 @@ class SphereProfile(Profile):
         return g * a, slope, G * a * a
 
 
+class ClosedProfile(Profile):
+    """A profile with the integrals over f' in closed form, for any power where there is one piece, else for 0, 1, 2."""
+
+    def _moments(self, piece: Piece, a: Number) -> list[tuple[Number, Number]]:
+        if piece.whole:
+            return [_closed_moments(power, mp.dps) for _, power in piece.terms]
+        ends = [mp.mpf(0) if piece.hi is None else angle(piece.hi, a), angle(piece.lo, a)]
+        (begin, end) = (self._antiderivatives(psi) for psi in ends)
+        return [
+            (end[int(power)][0] - begin[int(power)][0], end[int(power)][1] - begin[int(power)][1])
+            for _, power in piece.terms
+        ]
+
+    @staticmethod
+    def _antiderivatives(psi: Number) -> list[tuple[Number, Number]]:
+        cos, sin = mp.cos_sin(psi)
+        quarter = psi - sin * cos * (1 - 2 * sin * sin)
+        return [
+            (psi, (psi - sin * cos) / 2), (sin, sin**3 / 3), ((psi + sin * cos) / 2, quarter / 8)
+        ]  # fmt: skip
+
+
+@cache
+def _closed_moments(power: float, digits: int) -> tuple[Number, Number]:
+    """Return the moments of a piece that is the whole profile; ``digits`` are those of ``mp``."""
+    n = mp.mpf(power)
+    plain = mp.sqrt(mp.pi) / 2 * mp.gamma((n + 1) / 2) / mp.gamma(n / 2 + 1)
+    return plain, plain / (n + 2)
+
+
+class ClosedSphereProfile(SphereProfile):
+    """A sphere in closed form; its quadrature is slow next to the equator."""
+
+    def mdr(self, a: Number) -> tuple[Number, Number, Number]:
+        """Return g(a) [m], g'(a) [1] and G(a) [m2]."""
+        R: Number = self.end
+        angle, gap = mp.atanh(a / R), (R - a) * (R + a)
+        return a * angle, angle + a * R / gap, (R * a - gap * angle) / 2
+
+
 @cache
 def _sphere_rule(digits: int) -> list[tuple[Number, Number, Number]]:
     rule = []
@@ -186,54 +182,81 @@ def _sphere_rule(digits: int) -> list[tuple[Number, Number, Number]]:
     return rule
 
 
-def profile_of(shape: str, parameters: Parameters, slopes: list[float] | None = None) -> Profile:
-    """The slope f' of ``shape``, from its parameters (doubles, taken as exact)."""
+def closed_profile(shape: Shape) -> Profile:
+    """Return the profile of a shape that is not a flat punch, in closed form."""
+    if isinstance(shape, Tabulated):
+        columns = {name: column.tolist() for name, column in shape.parameters.items()}
+        return profile_of(shape.name, columns, shape.knot_slopes.tolist(), closed=True)
+    return profile_of(shape.name, dict(shape.parameters), closed=True)
+
+
+def profile_of(
+    shape: str, parameters: Parameters, slopes: list[float] | None = None, *, closed: bool = False
+) -> Profile:
+    """Return the profile of ``shape`` from its parameters (doubles, taken as exact), by quadrature or closed."""
     p = {name: mp.mpf(value) for name, value in parameters.items() if isinstance(value, float)}
-    b: Number = p.get("flat_radius", p.get("blend_radius"))
-    nothing, none = ((mp.mpf(0), 0.0),), mp.mpf(0)
+    if shape == "sphere":
+        return (ClosedSphereProfile if closed else SphereProfile)(p["radius"])
+    corners: list[tuple[Number, Number]] = []
+    if shape == "tabulated":
+        pieces = _tabulated_pieces(parameters["r"], parameters["f"], slopes or [])
+    elif (b := p.get("flat_radius", p.get("blend_radius"))) is not None:
+        inner, outer = _terms_about(shape, p, b)
+        pieces = [Piece(mp.mpf(0), b, inner), Piece(b, None, outer)]
+        jump = sum(c * b ** mp.mpf(power) for c, power in outer) - sum(c * b ** mp.mpf(power) for c, power in inner)
+        corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
+    else:
+        pieces = [Piece(mp.mpf(0), None, _whole_terms(shape, parameters, p))]
+    return (ClosedProfile if closed else Profile)(pieces, corners)
+
+
+Terms: TypeAlias = tuple[tuple[Number, float], ...]
+
+
+def _whole_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> Terms:
+    """Return the terms of f' of a shape with one piece."""
     match shape:
         case "cone":
-            return Profile([Piece(none, None, ((p["slope"], 0.0),))])
+            return ((p["slope"], 0.0),)
         case "paraboloid":
-            return Profile([Piece(none, None, ((1 / p["radius"], 1.0),))])
-        case "sphere":
-            return SphereProfile(p["radius"])
+            return ((1 / p["radius"], 1.0),)
         case "power_law":
             n = p["exponent"]
-            return Profile([Piece(none, None, ((n * p["rise"] * p["width"] ** -n, _one_less(n)),))])
+            c = p["coefficient"] if "coefficient" in p else p["rise"] * p["width"] ** -n
+            return ((n * c, _one_less(n)),)
         case "power_series":
             terms = [(mp.mpf(float(n)), mp.mpf(c)) for n, c in parameters["terms"].items()]
-            return Profile([Piece(none, None, tuple((n * c, _one_less(n)) for n, c in terms))])
+            return tuple((n * c, _one_less(n)) for n, c in terms)
+    raise ValueError(f"no shape {shape}")
+
+
+def _terms_about(shape: str, p: dict[str, Number], b: Number) -> tuple[Terms, Terms]:
+    """Return the terms of f' within and beyond ``b`` [m]."""
+    nothing = ((mp.mpf(0), 0.0),)
+    match shape:
         case "truncated_cone":
-            flank = ((p["slope"], 0.0),)
-            return Profile([Piece(none, b, nothing), Piece(b, None, flank)], [(b, p["slope"])])
+            return nothing, ((p["slope"], 0.0),)
         case "truncated_paraboloid":
-            flank = ((1 / p["radius"], 1.0),)
-            return Profile([Piece(none, b, nothing), Piece(b, None, flank)], [(b, b / p["radius"])])
+            return nothing, ((1 / p["radius"], 1.0),)
         case "rounded_cone":
-            return Profile([Piece(none, b, ((p["slope"] / b, 1.0),)), Piece(b, None, ((p["slope"], 0.0),))])
+            return ((p["slope"] / b, 1.0),), ((p["slope"], 0.0),)
         case "capped_paraboloid":
-            jump = b / p["radius"] - b / p["cap_radius"]
-            pieces = [Piece(none, b, ((1 / p["cap_radius"], 1.0),)), Piece(b, None, ((1 / p["radius"], 1.0),))]
-            return Profile(pieces, [(b, jump)] if jump > 0 else [])
+            return ((1 / p["cap_radius"], 1.0),), ((1 / p["radius"], 1.0),)
         case "rounded_punch":
-            R = p["edge_radius"]
-            return Profile([Piece(none, b, nothing), Piece(b, None, ((-b / R, 0.0), (1 / R, 1.0)))])
-        case "tabulated":
-            return _tabulated_profile(parameters["r"], parameters["f"], slopes or [])
+            return nothing, ((-b / p["edge_radius"], 0.0), (1 / p["edge_radius"], 1.0))
     raise ValueError(f"no shape {shape}")
 
 
 def _one_less(n: Number) -> float:
-    """n - 1, which is a double wherever n >= 1/2 is one."""
+    """Return n - 1, which is a double wherever n >= 1/2 is one."""
     power = float(n - 1)
     if mp.mpf(power) != n - 1:
         raise ValueError(f"exponent {n} - 1 is not a double")
     return power
 
 
-def _tabulated_profile(r: list[float], f: list[float], slopes: list[float]) -> Profile:
-    """The cubic Hermite spline's f', a parabola on each piece, and the last slope beyond the table."""
+def _tabulated_pieces(r: list[float], f: list[float], slopes: list[float]) -> list[Piece]:
+    """Return f' of the cubic Hermite spline, a parabola on each piece, and the last slope beyond the table."""
     pieces = []
     for i in range(len(r) - 1):
         lo, hi = mp.mpf(r[i]), mp.mpf(r[i + 1])
@@ -244,12 +267,11 @@ def _tabulated_profile(r: list[float], f: list[float], slopes: list[float]) -> P
         second = (3 * left + 3 * right - 6 * secant) / h**2
         terms = ((left - first * lo + second * lo**2, 0.0), (first - 2 * second * lo, 1.0), (second, 2.0))
         pieces.append(Piece(lo, hi, terms))
-    pieces.append(Piece(mp.mpf(r[-1]), None, ((mp.mpf(slopes[-1]), 0.0),)))
-    return Profile(pieces)
+    return [*pieces, Piece(mp.mpf(r[-1]), None, ((mp.mpf(slopes[-1]), 0.0),))]
 
 
 def knot_slopes(r: list[float], f: list[float]) -> list[float]:
-    """Slopes [1] at the knots, in plain double: those of the not-a-knot spline, kept from overshooting."""
+    """Return the slopes [1] at the knots, in doubles: those of the not-a-knot spline, kept from overshooting."""
     secants = np.diff(f) / np.diff(r)
     most = 3.0 * np.minimum(np.append(secants, np.inf), np.insert(secants, 0, np.inf))
     spline = CubicSpline(np.array(r), np.array(f), bc_type="not-a-knot").derivative()(np.array(r))

@@ -13,17 +13,21 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from mpmath import mp
 from numpy.typing import NDArray
-from precise_profiles import Number, Piece, Profile, tanh_sinh
+
+from oracles.multiprecision import Number, mp
+from oracles.profiles import Piece, Profile
+from oracles.quadrature_rules import tanh_sinh
 
 Array = NDArray[Any]
 """Of doubles, or of numbers of any precision."""
 STEPS = 64
+FIELDS = {"contact_radius": "a", "cohesive_radius": "c", "indentation": "delta", "force": "force"}
+"""The fields of a state by the names of results."""
 
 
 class Arithmetic(NamedTuple):
-    """The functions of doubles, or of numbers of any precision, and nodes x, 1 - x and weights on (0, 1)."""
+    """Functions of doubles, or of numbers of any precision, and nodes x, 1 - x and weights on (0, 1)."""
 
     number: Callable[[Any], Any]
     sqrt: Callable[..., Array]
@@ -36,7 +40,7 @@ class Arithmetic(NamedTuple):
 
 @cache
 def arithmetic(digits: int) -> Arithmetic:
-    """Plain doubles where ``digits`` is 0."""
+    """Return the arithmetic of ``digits``, of doubles where that is 0."""
     nodes: Array = np.array(tanh_sinh(digits or 16, STEPS if digits else 12))
     if digits:
         sqrt, sin, log, exp = (np.frompyfunc(function, 1, 1) for function in (mp.sqrt, mp.sin, mp.log, mp.exp))
@@ -47,7 +51,7 @@ def arithmetic(digits: int) -> Arithmetic:
 
 
 class Integrals(NamedTuple):
-    """See above."""
+    """The integrals of the module's docstring; ``push`` is a g - G."""
 
     g: Array
     push: Array
@@ -56,7 +60,7 @@ class Integrals(NamedTuple):
 
 
 class State(NamedTuple):
-    """An equilibrium: radii and depth [m], force [N], and D [1] and a D - beta c theta^2 [m], which tell its growth."""
+    """An equilibrium: radii and indentation [m], force [N], stiffness [N/m], D [1] and a D - beta c theta^2 [m]."""
 
     a: Any
     c: Any
@@ -67,15 +71,50 @@ class State(NamedTuple):
     force_growth: Any
 
     def under(self, control: str) -> Any:
-        """What is held under "displacement" or "force"."""
-        return self.delta if control == "displacement" else self.force
+        """Return the force under "force", else the indentation."""
+        return self.force if control == "force" else self.delta
 
     def grows(self, control: str) -> Any:
-        """Above 0 where that grows along the curve, which is stable."""
-        return self.growth if control == "displacement" else self.force_growth
+        """Return a number that is above 0 where the control grows along the curve: where the state is stable."""
+        return self.force_growth if control == "force" else self.growth
 
 
-class Cohesion:
+class Dugdale:
+    """Adhesion of finite range on a half-space: ``work`` [J/m2] and ``strength`` sigma0 [Pa], with pi as precise."""
+
+    def __init__(self, effective_modulus: Number, work: Number, strength: Number, pi: Number) -> None:
+        self.effective_modulus, self.work, self.strength, self.pi = effective_modulus, work, strength, pi
+        self.beta = 2 * strength / effective_modulus
+        self.range = work / strength
+        """The gap [m] at which cohesion ends."""
+
+    def touching(
+        self, a: Array, c: Array, m_theta: tuple[Array, Array], g_push: tuple[Array, Array], J: Array
+    ) -> State:
+        """Return the states on the curve with a > 0, from their integrals."""
+        (m, theta), (g, push) = m_theta, g_push
+        growth = J - self.beta * m * m / (c * (c + a))
+        pull = self.beta * c * theta**2
+        force = 2 * self.effective_modulus * push - 2 * self.strength * (a * m + c * c * theta)
+        stiffness = 2 * self.effective_modulus * (a - _ratio(pull, growth))
+        return State(a, c, g - self.beta * m, force, stiffness, growth, a * growth - pull)
+
+    def not_touching(self, c: Array, f: Array, slope: Array) -> State:
+        """Return the states with a = 0 and cohesive radii ``c`` [m], where the profile is ``f`` [m]."""
+        growth = self.pi / 2 * slope - self.beta
+        delta = f - 2 * self.beta * c / self.pi - self.range
+        pull = self.beta * c * self.pi**2 / 4
+        force = -self.pi * self.strength * c * c
+        return State(0 * c, c, delta, force, -2 * self.effective_modulus * _ratio(pull, growth), growth, -pull)
+
+
+def _ratio(pull: Array, growth: Array) -> Any:
+    """Return their ratio, infinite at a fold itself."""
+    fold = growth == 0
+    return np.where(fold, mp.inf, pull / np.where(fold, 1, growth))[()]
+
+
+class Cohesion(Dugdale):
     """One asperity of ``profile`` on a half-space of ``effective_modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
 
     def __init__(
@@ -84,16 +123,12 @@ class Cohesion:
         self.profile, self.digits = profile, digits
         self.math = arithmetic(digits)
         number = self.math.number
-        self.pi = number(mp.pi)
-        self.effective_modulus, self.work, self.strength = number(effective_modulus), number(work), number(strength)
-        self.beta = 2 * self.strength / self.effective_modulus
-        self.range = self.work / self.strength
-        """The gap [m] at which cohesion ends."""
+        super().__init__(number(effective_modulus), number(work), number(strength), number(mp.pi))
         self.end = None if profile.end is None else number(profile.end)
         self.pieces = profile.pieces or [Piece(mp.mpf(0), None, ((mp.mpf(0), 0.0),))]
 
     def f(self, r: Array) -> Array:
-        """The profile [m] at ``r`` [m]."""
+        """Return the profile [m] at ``r`` [m]."""
         if self.end is not None:
             return np.asarray(r * r / (self.end + self.math.sqrt((self.end - r) * (self.end + r))))
         total = 0 * r
@@ -106,11 +141,11 @@ class Cohesion:
         return total
 
     def height(self, r: Number) -> Number:
-        """``f`` of a number."""
+        """Return ``f`` of a number."""
         return self.f(np.array([r]))[0]
 
     def slope(self, r: Array, inside: bool = False) -> Array:
-        """f' [1] at ``r`` [m]; at a corner itself that from outside, or from ``inside``."""
+        """Return f' [1] at ``r`` [m]; at a corner itself that from outside, or from ``inside``."""
         total = 0 * r
         for piece in self.pieces:
             hi = np.inf if piece.hi is None else self.math.number(piece.hi)
@@ -125,7 +160,7 @@ class Cohesion:
         return np.asarray(sum(self.math.number(c) * r ** self.math.number(power) for c, power in piece.terms))
 
     def integrals(self, a: Array, m: Array, c: Array, inside: bool = False) -> Integrals:
-        """For arrays ``a`` > 0, ``m`` > 0 and ``c`` [m]."""
+        """Return the integrals for arrays ``a`` > 0, ``m`` > 0 and ``c`` [m]."""
         sin, atan2 = self.math.sin, self.math.atan2
         x, rest, weight = self.math.rule
         T, theta = (m / a)[:, None], atan2(m, a)
@@ -147,13 +182,13 @@ class Cohesion:
         return Integrals(a * g, a * a * push, opening, self.pi / 2 * self.slope(c, inside) - m / c * shade)
 
     def _angle(self, r: Number, a: Array) -> Array:
-        """psi where a cos(psi) = r; 0 beyond a."""
+        """Return psi where a cos(psi) = r; 0 beyond a."""
         edge = self.math.number(r)
         inner = np.minimum(edge, a)
         return self.math.atan2(self.math.sqrt((a - inner) * (a + inner)), edge)
 
     def excess(self, a: Array, m: Array) -> tuple[Array, Array]:
-        """2 sigma0 gap(c)/(pi w), which is 1 on the curve, and its derivative by ln(m)."""
+        """Return 2 sigma0 gap(c)/(pi w), which is 1 on the curve, and its derivative by ln(m)."""
         c, theta = self.math.sqrt(a * a + m * m), self.math.atan2(m, a)
         found = self.integrals(a, m, c)
         unit = self.pi * self.range / 2
@@ -162,7 +197,7 @@ class Cohesion:
         return value / unit, by_c * m * m / (c * unit)
 
     def spread(self, a: Array, guess: Array) -> Array:
-        """m [m] on the curve at each ``a`` > 0: Newton in logarithms from ``guess``."""
+        """Return m [m] on the curve at each ``a`` > 0, by Newton's method in logarithms from ``guess``."""
         if self.end is not None:
             guess = np.minimum(guess, self.math.sqrt((self.end - a) * (self.end + a)) / 2)
         m, small = guess, (mp.mpf(10) ** (-self.digits // 2 - 4) if self.digits else 1e-6)
@@ -177,25 +212,11 @@ class Cohesion:
         raise ArithmeticError("no cohesive radius")
 
     def at(self, a: Array, m: Array, corner: Array | None = None, inside: bool = False) -> State:
-        """The states with contact radii ``a`` > 0 [m] and ``m`` [m] on the curve; c is given at a corner."""
+        """Return the states with contact radii ``a`` > 0 [m] and ``m`` [m] on the curve; c is given at a corner."""
         c, theta = self.math.sqrt(a * a + m * m) if corner is None else corner, self.math.atan2(m, a)
         found = self.integrals(a, m, c, inside)
-        growth = found.J - self.beta * m * m / (c * (c + a))
-        pull = self.beta * c * theta**2
-        force = 2 * self.effective_modulus * found.push - 2 * self.strength * (a * m + c * c * theta)
-        stiffness = 2 * self.effective_modulus * (a - _over(pull, growth))
-        return State(a, c, found.g - self.beta * m, force, stiffness, growth, a * growth - pull)
+        return self.touching(a, c, (m, theta), (found.g, found.push), found.J)
 
     def lifted(self, c: Array, inside: bool = False) -> State:
-        """The states with a = 0 and cohesive radii ``c`` [m]."""
-        growth = self.pi / 2 * self.slope(c, inside) - self.beta
-        delta = self.f(c) - 2 * self.beta * c / self.pi - self.range
-        pull = self.beta * c * self.pi**2 / 4
-        force = -self.pi * self.strength * c * c
-        return State(0 * c, c, delta, force, -2 * self.effective_modulus * _over(pull, growth), growth, -pull)
-
-
-def _over(pull: Array, growth: Array) -> Array:
-    """Their ratio; infinite at a fold itself."""
-    fold = growth == 0
-    return np.where(fold, mp.inf, pull / np.where(fold, 1, growth))
+        """Return the states with a = 0 and cohesive radii ``c`` [m]."""
+        return self.not_touching(c, self.f(c), self.slope(c, inside))

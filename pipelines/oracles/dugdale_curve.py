@@ -1,4 +1,4 @@
-"""The equilibrium curve of one asperity with adhesion of finite range: its turns, and what its states answer to."""
+"""The equilibrium curve of one asperity with adhesion of finite range: its folds, and how its states are reached."""
 
 import itertools
 from collections.abc import Iterator
@@ -6,45 +6,43 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from mpmath import mp
-from precise_asperity import bracket, root
-from precise_cohesion import Cohesion, State
-from precise_profiles import Floats, Number, Profile
+
+from oracles.dugdale import Cohesion, State
+from oracles.multiprecision import Number, bracket, mp, root
+from oracles.profiles import Floats, Profile
 
 WORKING = 55
 DIGITS = 45
 """Of the integrals; the folds are right to a few less."""
 CONTROLS = ("displacement", "force")
 NEAREST = 1e-9
-"""A state that is closer to its fold is not asked for: a double does not tell it from the fold."""
+"""A state closer to its fold is left out: a double does not distinguish it from the fold."""
 
 
-class Turn(NamedTuple):
-    """Where the control of a state begins to grow along the curve (or to fall)."""
+class Fold(NamedTuple):
+    """A fold: where a control begins to grow along the curve, or to fall."""
 
     rising: bool
     state: State
 
 
 class Place(NamedTuple):
-    """A place on the curve: at a contact radius [m], or lifted (a = 0) with a cohesive radius [m]."""
+    """A point of the curve: at a contact radius [m], or lifted (a = 0) with a cohesive radius [m]."""
 
     radius: Any
     lifted: bool
     corner: Any = None
-    """The cohesive radius [m] where it is at a corner of the profile, which is then seen from ``inside`` or not."""
+    """The cohesive radius [m] where it is at a corner of the profile, with the slope from ``inside`` or not."""
     inside: bool = False
 
 
 def each_of(states: State) -> list[State]:
-    """An array of states, one by one."""
+    """Return an array of states one by one."""
     return [State(*numbers) for numbers in zip(*states, strict=True)]
 
 
 class Curve:
-    """The curve from c = 0 outwards; contacts of interest have radii like ``size`` [m], and all folds are below
-    ``reach`` [m].
-    """
+    """The curve from c = 0 outwards, for contacts with radii near ``size`` [m] and folds below ``reach`` [m]."""
 
     def __init__(
         self, profile: Profile, effective_modulus: Number, work: Number, strength: Number, size: float, reach: float
@@ -71,7 +69,7 @@ class Curve:
         return self._radius(root(above, *bracket(above)))
 
     def state(self, place: Place) -> State:
-        """All that is known of a place."""
+        """Return the state at a place."""
         radius = np.array([mp.mpf(place.radius)])
         if place.lifted:
             return each_of(self.exact.lifted(radius, place.inside))[0]
@@ -82,13 +80,13 @@ class Curve:
         return each_of(self.exact.at(radius, m))[0]
 
     def roughly(self, a: Floats) -> Floats:
-        """m [m] at contact radii ``a`` > 0 [m], in double precision."""
+        """Return m [m] at contact radii ``a`` > 0 [m], in double precision."""
         touch = float(self.touch)
         return self.rough.spread(a, np.sqrt(touch * (touch + a)))
 
     @cached_property
     def places(self) -> list[tuple[Place, State]]:
-        """Many places along the curve, in order and in double precision; corners exactly, on both of their sides."""
+        """Many places along the curve, in order and in double precision; corners exactly, on both sides."""
         touch, size = float(self.touch), float(self.size)
         c = np.geomspace(1e-9, 1.0, 300) * touch
         a = np.geomspace(1e-9 * min(size, touch), self.reach, 1500)
@@ -103,7 +101,7 @@ class Curve:
         return sorted(found, key=lambda pair: (not pair[0].lifted, pair[0].radius))
 
     def _under(self, c: Number) -> Number:
-        """The contact radius [m] at a cohesive radius of ``c``, which is beyond ``touch``."""
+        """Return the contact radius [m] at a cohesive radius of ``c``, which is beyond ``touch``."""
 
         def above(y: Number) -> Number:
             a = np.array([c / (1 + mp.exp(-y))])
@@ -113,42 +111,42 @@ class Curve:
         return c / (1 + mp.exp(-y))
 
     @cached_property
-    def turns(self) -> dict[str, list[Turn]]:
-        """All turns of each control, outwards."""
-        return {control: list(self._turns(control)) for control in CONTROLS}
+    def folds(self) -> dict[str, list[Fold]]:
+        """All folds of each control, outwards."""
+        return {control: list(self._find_folds(control)) for control in CONTROLS}
 
-    def _turns(self, control: str) -> Iterator[Turn]:
+    def _find_folds(self, control: str) -> Iterator[Fold]:
         if self.places[0][1].grows(control) > 0:
             zero = mp.mpf(0)
-            yield Turn(True, State(zero, zero, -self.exact.range, zero, zero, zero, zero))
+            yield Fold(True, State(zero, zero, -self.exact.range, zero, zero, zero, zero))
         for (place, state), (after, state_after) in itertools.pairwise(self.places):
             rising = bool(state_after.grows(control) > 0)
             if rising != (state.grows(control) > 0):
-                at = after if place.radius == after.radius else self._between(place, after, control, rising)
-                yield Turn(rising, self.state(at))
+                at = after if place.radius == after.radius else self._between(place, after, control)
+                yield Fold(rising, self.state(at))
         if self.places[-1][1].grows(control) <= 0:
             raise ArithmeticError("the outermost branch lies beyond the search")
 
-    def _between(self, place: Place, after: Place, control: str, rising: bool) -> Place:
-        lifted, sign = after.lifted, 1 if rising else -1
+    def _between(self, place: Place, after: Place, control: str) -> Place:
+        lifted = after.lifted
         start = place.radius if place.lifted == lifted else after.radius * mp.mpf("1e-20")
 
-        def level(y: Number) -> Number:
-            return sign * self.state(Place(mp.exp(y), lifted)).grows(control)
+        def growth(y: Number) -> Number:
+            return self.state(Place(mp.exp(y), lifted)).grows(control)
 
-        return Place(mp.exp(root(level, mp.log(start), mp.log(after.radius))), lifted)
+        return Place(mp.exp(root(growth, mp.log(start), mp.log(after.radius))), lifted)
 
     def minima(self, control: str) -> list[State]:
-        """Where a control, "displacement" or "force", begins to grow, outwards."""
-        return [turn.state for turn in self.turns[control] if turn.rising]
+        """Return where a control, "displacement" or "force", begins to grow, outwards."""
+        return [fold.state for fold in self.folds[control] if fold.rising]
 
     def pull_off(self, control: str) -> State:
-        """Where a slow retraction ends."""
+        """Return where a slow retraction ends."""
         return min(self.minima(control), key=lambda state: state.under(control))
 
     def answers(self, state: State) -> dict[str, Number]:
-        """The controls under which a slow retraction comes by ``state``: it is stable and all that is farther out lies
-        higher. With each, the distance to the branch's fold over that of the pull-off to 0.
+        """Return the controls under which a slow retraction passes ``state``: it is stable, and the folds farther out
+        lie higher. With each, the distance to the branch's fold over that of the pull-off to 0.
         """
         found = {}
         for control in CONTROLS:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.stats
-from plain_probability import mean_of_heights, mean_of_radii
+from oracles.quantile_means import mean_of_heights, mean_of_radii
 from scipy.stats import rv_continuous
 from scipy.stats._distn_infrastructure import rv_generic
 

@@ -1,9 +1,7 @@
 """A flat punch with adhesion of finite range: all its contacts have c = b, and a > 0 until the springs' edges meet."""
 
-from mpmath import mp
-from precise_asperity import root
-from precise_cohesion import State
-from precise_profiles import Number
+from oracles.dugdale import State
+from oracles.multiprecision import Number, mp, root
 
 
 class Punch:
@@ -16,7 +14,7 @@ class Punch:
         self.beta = 2 * self.strength / self.effective_modulus
 
     def state(self, delta: Number) -> State:
-        """The state at an indentation [m], stable while it holds."""
+        """Return the state at an indentation [m], stable while in contact."""
         b, always = self.b, mp.mpf(1)
         if delta >= 0:
             return State(
@@ -28,8 +26,9 @@ class Punch:
         return State(a, b, delta, force, 2 * self.effective_modulus * a, always, mp.sign(a))
 
     def pull_off(self, control: str) -> State:
-        """Where gap(b) is all that the work allows. Under dead load a lifted punch is lost where it lifts: farther out
-        the force stays the same.
+        """Return the state where gap(b) reaches the range of the adhesion.
+
+        Under dead load a lifted punch detaches where it lifts: farther out the force stays the same.
         """
         b, unit = self.b, 2 * self.beta * self.strength / (mp.pi * self.work)
 
@@ -44,7 +43,7 @@ class Punch:
         return self.state(-2 * self.beta * b / mp.pi - self.work / self.strength)
 
     def energy(self, state: State) -> Number:
-        """U [J] as in ``precise_springs``, by hand."""
+        """Return U [J], its integrals done by hand."""
         a, b, beta = state.a, self.b, self.beta
         around = beta**2 * (2 * b**3 - 3 * b * b * a + a**3) / 3  # ∫ u1^2 from a to b
         area = (b * b * mp.acos(a / b) - a * mp.sqrt((b - a) * (b + a))) / 2  # ∫ sqrt(b^2 - x^2) from a to b
