@@ -8,9 +8,10 @@ from zlib import crc32
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.batch.plan import make_plan
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
 from roughmdr.kernels.closed import hertz as elastic
 from roughmdr.kernels.closed import jkr_paraboloid
-from roughmdr.kernels.interface import Kernels, choose
+from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.rebind import rebuilt

@@ -259,9 +259,5 @@ class Tip:
         """[N] on a branch at indentations so far above its foot."""
         law, params = self.contact.law, self.contact.params
         x = self.feet[branch] + above / self.contact.depth[0]
-        if law.branched and law.state_on is not None:
-            state = apply(law.state_on, x, branch + 1.0, params)
-        else:
-            state = apply(law.state, x, params)
-        force = apply(law.force, state, params) if law.answer is None else apply_all(law.answer, state, params)[1]
-        return self.contact.force * force
+        state = apply(law.state_on_branch, x, branch + 1.0, params) if law.branched else apply(law.state, x, params)
+        return np.asarray(self.contact.force * apply_all(law.radius_force_stiffness, state, params)[1])

@@ -1,158 +1,112 @@
-"""The state of each contact of a block at one step, and what follows from it.
+"""The state of each contact of a block at one step, and radius, force and stiffness from it."""
 
-``found`` has a row for the state, and where the law has an ``answer`` one each for a, P and k, which then come
-together; else each is computed from the state when it is asked for.
-"""
-
-from collections.abc import Callable
-from typing import Any
-
-from roughmdr.aggregate.scales import DEPTH, PER_DEPTH
-from roughmdr.numerics.arguments import Floats
-
-STATE, RADIUS, FORCE, STIFFNESS = range(4)
-FOUND = 4
-
-# Names that ``specialise`` fills with the kernels of a law.
-_adhesive: bool
-_branched: bool
-_passes: int
-_state: Callable[..., float]
-_state_on: Callable[..., float]
-_rung: Callable[..., float]
-_guess: Callable[..., float]
-_nearer: Callable[..., tuple[float, float, float]]
-_arrived: Callable[..., bool]
-_answer: Callable[..., tuple[float, float, float]]
-_radius: Callable[..., float]
-_force: Callable[..., float]
-_stiffness: Callable[..., float]
-_own: Callable[..., Any]
+from roughmdr.aggregate.block import DEPTH, FORCE, PER_DEPTH, RADIUS, STATE, STIFFNESS, Block, law
+from roughmdr.loading.staircase import Staircase
 
 
-def hold(count: int, z: Floats, begin: int, end: int, bottom: Floats, top: Floats, depth: Floats, held: Floats) -> None:
-    """Whether each of the first ``count`` contacts holds on (1) or not (0), by the staircase."""
-    low, high = bottom[begin], top[begin]
+def update_contact(count: int, block: Block, memory: Staircase, begin: int, end: int) -> None:
+    """Set which of the first ``count`` asperities are in contact, by steps begin to end of the staircase."""
+    z, depth, in_contact = block.z, block.scales[DEPTH], block.in_contact
+    low, high = memory.bottom[begin], memory.top[begin]
     for i in range(count):
-        held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
+        in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
     for j in range(begin + 1, end):
-        low, high = bottom[j], top[j]
+        low, high = memory.bottom[j], memory.top[j]
         for i in range(count):
-            held[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else held[i]
+            in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else in_contact[i]
 
 
-def conclude(count: int, params: Floats, found: Floats) -> None:
+def evaluate(count: int, block: Block) -> None:
     """Find a, P and k of the first ``count`` contacts."""
-    a, force, stiffness = found[RADIUS], found[FORCE], found[STIFFNESS]
+    a, force, stiffness = block.contacts[RADIUS], block.contacts[FORCE], block.contacts[STIFFNESS]
     for i in range(count):
-        a[i], force[i], stiffness[i] = _answer(found[STATE, i], _own(params, i))
+        a[i], force[i], stiffness[i] = law.radius_force_stiffness(
+            block.contacts[STATE, i], law.params_of(block.params, i)
+        )
 
 
-def leave(count: int, params: Floats, found: Floats) -> None:
-    """Leave a, P and k to who asks for them."""
+def skip(count: int, block: Block) -> None:
+    """Leave a, P and k to be computed from the state where they are asked for."""
 
 
-def settle(
-    count: int,
-    z: Floats,
-    params: Floats,
-    h: float,
-    reach: float,
-    begin: int,
-    end: int,
-    bottom: Floats,
-    top: Floats,
-    scales: Floats,
-    held: Floats,
-    found: Floats,
-    terms: Floats,
+def solve_closed(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Find the first ``count`` contacts with the flat at h, and in ``held`` whether each holds on (1) or not (0).
+    """Find the first ``count`` contacts with the flat at h, and which of them are in contact.
 
-    Without adhesion all of them do, and ``held`` is left alone. What does not hold on has the state of first touch.
+    Without adhesion all of them are. Those out of contact have the state of first touch.
     """
-    depth, per_depth, state = scales[DEPTH], scales[PER_DEPTH], found[STATE]
-    if _adhesive:
-        hold(count, z, begin, end, bottom, top, depth, held)
+    z, depth, per_depth, state = block.z, block.scales[DEPTH], block.scales[PER_DEPTH], block.contacts[STATE]
+    if law.adhesive:
+        law.update_contact(count, block, memory, begin, end)
         for i in range(count):
             x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = _state(x if held[i] > 0.0 else 1.0, _own(params, i))
+            state[i] = law.state(x if block.in_contact[i] > 0.0 else 1.0, law.params_of(block.params, i))
     else:
         for i in range(count):
-            state[i] = _state((z[i] - h) * per_depth[i], _own(params, i))
-    conclude(count, params, found)
+            state[i] = law.state((z[i] - h) * per_depth[i], law.params_of(block.params, i))
+    law.evaluate(count, block)
 
 
-def settle_curved(
-    count: int,
-    z: Floats,
-    params: Floats,
-    h: float,
-    reach: float,
-    begin: int,
-    end: int,
-    bottom: Floats,
-    top: Floats,
-    scales: Floats,
-    held: Floats,
-    found: Floats,
-    terms: Floats,
+def solve_iterative(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """The same where contacts are found by Newton's method: all a step at a time, so that none waits for another.
+    """Do as ``solve_closed`` by Newton's method: one step for all contacts at a time, so that none waits for another.
 
-    Where a contact can be on one of several branches ``held``, from the step before, is its number.
+    Where a contact can be on one of several branches ``block.in_contact``, from the step before, is its number.
     """
-    depth, per_depth, state = scales[DEPTH], scales[PER_DEPTH], found[STATE]
-    x = found[RADIUS]  # until a is found
-    lift = 1.0 if _adhesive else 0.0
+    z, params, in_contact, last_step = block.z, block.params, block.in_contact, block.scratch
+    depth, per_depth, state = block.scales[DEPTH], block.scales[PER_DEPTH], block.contacts[STATE]
+    x = block.contacts[RADIUS]  # until a is found
+    lift = 1.0 if law.adhesive else 0.0
     for i in range(count):
         x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
-    if _branched:
+    if law.branched:
         for i in range(count):
-            held[i] = _rung(x[i], held[i], z[i] >= h - reach, _own(params, i))
-    elif _adhesive:
-        hold(count, z, begin, end, bottom, top, depth, held)
-    if _adhesive:
+            in_contact[i] = law.branch(x[i], in_contact[i], z[i] >= h - adhesion_range, law.params_of(params, i))
+    elif law.adhesive:
+        law.update_contact(count, block, memory, begin, end)
+    if law.adhesive:
         for i in range(count):
-            x[i] = x[i] if held[i] > 0.0 else 1.0
+            x[i] = x[i] if in_contact[i] > 0.0 else 1.0
     for i in range(count):
-        state[i] = _guess(x[i], _own(params, i))
-    for _ in range(_passes):
+        state[i] = law.initial_guess(x[i], law.params_of(params, i))
+    for _ in range(law.newton_steps):
         for i in range(count):
-            state[i], terms[i], _ = _nearer(state[i], x[i], _own(params, i))
+            state[i], last_step[i], _ = law.newton_step(state[i], x[i], law.params_of(params, i))
     for i in range(count):
-        rung = held[i] if _adhesive else 1.0
-        if rung > 0.0 and not _arrived(state[i], terms[i], x[i], rung, _own(params, i)):
-            t, step, _ = _nearer(state[i], x[i], _own(params, i))
-            state[i] = t if _arrived(t, step, x[i], rung, _own(params, i)) else _state_on(x[i], rung, _own(params, i))
-    conclude(count, params, found)
+        branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
+        if branch > 0.0 and not law.converged(state[i], last_step[i], x[i], branch, own):
+            t, step, _ = law.newton_step(state[i], x[i], own)
+            state[i] = t if law.converged(t, step, x[i], branch, own) else law.state_on_branch(x[i], branch, own)
+    law.evaluate(count, block)
 
 
-def radius_at(i: int, found: Floats, params: Floats) -> float:
-    """a of one contact over its natural scale."""
-    return _radius(found[STATE, i], _own(params, i))
+def radius_of_state(block: Block, i: int) -> float:
+    """Return a of one contact over its natural scale."""
+    return law.radius(block.contacts[STATE, i], law.params_of(block.params, i))
 
 
-def force_at(i: int, found: Floats, params: Floats) -> float:
-    """P of one contact over its natural scale."""
-    return _force(found[STATE, i], _own(params, i))
+def force_of_state(block: Block, i: int) -> float:
+    """Return P of one contact over its natural scale."""
+    return law.force(block.contacts[STATE, i], law.params_of(block.params, i))
 
 
-def stiffness_at(i: int, found: Floats, params: Floats) -> float:
-    """k of one contact over its natural scale."""
-    return _stiffness(found[STATE, i], _own(params, i))
+def stiffness_of_state(block: Block, i: int) -> float:
+    """Return k of one contact over its natural scale."""
+    return law.stiffness(block.contacts[STATE, i], law.params_of(block.params, i))
 
 
-def radius_found(i: int, found: Floats, params: Floats) -> float:
-    """The same where it was found with the state."""
-    return float(found[RADIUS, i])
+def found_radius(block: Block, i: int) -> float:
+    """Return a of one contact that was found with its state."""
+    return float(block.contacts[RADIUS, i])
 
 
-def force_found(i: int, found: Floats, params: Floats) -> float:
-    """The same where it was found with the state."""
-    return float(found[FORCE, i])
+def found_force(block: Block, i: int) -> float:
+    """Return P of one contact that was found with its state."""
+    return float(block.contacts[FORCE, i])
 
 
-def stiffness_found(i: int, found: Floats, params: Floats) -> float:
-    """The same where it was found with the state."""
-    return float(found[STIFFNESS, i])
+def found_stiffness(block: Block, i: int) -> float:
+    """Return k of one contact that was found with its state."""
+    return float(block.contacts[STIFFNESS, i])

@@ -17,100 +17,82 @@ and g is z - h + dl. Where the state comes from the distance to the fold itself,
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
-from roughmdr.aggregate.contacts import FORCE, RADIUS, STATE, STIFFNESS
-from roughmdr.aggregate.scales import DEPTH, LOAD, PER_DEPTH, RIGIDITY
-from roughmdr.numerics.arguments import Floats
+from roughmdr.aggregate.block import (
+    DEPTH,
+    FORCE,
+    LOAD,
+    PER_DEPTH,
+    RADIUS,
+    RIGIDITY,
+    STATE,
+    STIFFNESS,
+    Block,
+    law,
+)
 from roughmdr.numerics.double_double import ROUNDING
-from roughmdr.numerics.summation import least
+from roughmdr.numerics.summation import block_minimum
 
 _NEXT_TO_A_FOLD = 3.0  # m
 
-# Names that ``specialise`` fills with the kernels of a law.
-_adhesive: bool
-_state: Callable[..., float]
-_force: Callable[..., float]
-_stiffness: Callable[..., float]
-_errors: Callable[..., tuple[float, float]]
-_pulled: Callable[..., tuple[float, float]]
-_magnitude: Callable[..., tuple[float, float]] | None
-_own: Callable[..., Any]
-_mixed: Callable[..., bool]
 
+def total_error(count: int, block: Block, h: float, stiffness: float, force_error: float, rounding: float) -> float:
+    """Return the error [N] of ``count`` contacts whose |k| add up to ``stiffness`` [N/m].
 
-def worst(count: int, z: Floats, h: float, slope: float, push: float, swing: float, greatest: Floats) -> float:
-    """The error [N] of ``count`` contacts whose |k| add up to ``slope`` [N/m] and the errors of whose forces, each at
-    its state, to ``push`` [N]; z - h, as a term of the computed indentation, has a relative error of ``swing``.
+    ``force_error`` [N] is the sum of the errors of their forces, each at its state; ``rounding`` the relative error of
+    z - h as a term of the computed indentation.
     """
-    deepest = greatest[DEPTH] if _adhesive else 0.0
-    farthest = max(abs(z[0]), abs(z[count - 1])) + abs(h) + deepest
-    return float(slope * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * swing) * farthest + push)
+    deepest = block.max_scales[DEPTH] if law.adhesive else 0.0
+    farthest = max(abs(block.z[0]), abs(block.z[count - 1])) + abs(h) + deepest
+    return float(stiffness * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * rounding) * farthest + force_error)
 
 
-def bound(
-    count: int,
-    z: Floats,
-    params: Floats,
-    h: float,
-    retracted: bool,
-    scales: Floats,
-    greatest: Floats,
-    held: Floats,
-    found: Floats,
-    terms: Floats,
-) -> float:
-    """A bound on the error [N] of what the first ``count`` asperities of a block add to the force.
+def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
+    """Return a bound on the error [N] of the force of the first ``count`` asperities of a block.
 
-    For laws whose k grows along the branch, from -inf at the fold of a cone or a paraboloid, so that |k| is largest in
-    the least or the greatest state: two calls bound a block of one form. Only a retraction brings a state below that of
-    first touch, x = 1.
+    For kernels whose k grows along the branch, from -inf at the fold of a cone or a paraboloid, so that |k| is largest
+    in the lowest or the highest state: two calls bound a block whose parameters are alike. Only a retraction brings a
+    state below that of first touch, x = 1.
     """
-    high = _state(((z[0] - h) + (greatest[DEPTH] if _adhesive else 0.0)) * greatest[PER_DEPTH], _own(params, 0))
+    params, first, state, scratch = block.params, law.params_of(block.params, 0), block.contacts[STATE], block.scratch
+    lift = block.max_scales[DEPTH] if law.adhesive else 0.0
+    high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
-    if _adhesive:
-        low = _state(1.0, _own(params, 0))
+    if law.adhesive:
+        low = law.state(1.0, first)
         if retracted:
             for i in range(count):
-                terms[i] = found[STATE, i] if held[i] > 0.0 else math.inf
-            low = max(min(low, least(terms, count)), ROUNDING)
-    slope = max(abs(_stiffness(low, _own(params, 0))), abs(_stiffness(high, _own(params, 0))))
-    least_push = 1.0 if _adhesive else 0.0  # without adhesion the natural force is no force of this contact
-    push = max(least_push, abs(_force(high, _own(params, 0)))) * _errors(_own(params, 0))[0]
-    if _mixed(params):
+                scratch[i] = state[i] if block.in_contact[i] > 0.0 else math.inf
+            low = max(min(low, block_minimum(scratch, count)), ROUNDING)
+    stiffness = max(abs(law.stiffness(low, first)), abs(law.stiffness(high, first)))
+    least_force = 1.0 if law.adhesive else 0.0  # without adhesion the natural force is no force of this contact
+    error = max(least_force, abs(law.force(high, first))) * law.relative_errors(first)[0]
+    if law.heterogeneous(params):
         for i in range(count):
-            slope = max(slope, abs(_stiffness(max(found[STATE, i], low), _own(params, i))))
-            push = max(push, abs(_force(found[STATE, i], _own(params, i))) * _errors(_own(params, i))[0])
-    slope, push = count * slope * greatest[RIGIDITY], count * push * greatest[LOAD]
-    return worst(count, z, h, slope, push, 0.0, greatest)
+            own = law.params_of(params, i)
+            stiffness = max(stiffness, abs(law.stiffness(max(state[i], low), own)))
+            error = max(error, abs(law.force(state[i], own)) * law.relative_errors(own)[0])
+    stiffness, error = count * stiffness * block.max_scales[RIGIDITY], count * error * block.max_scales[LOAD]
+    return law.total_error(count, block, h, stiffness, error, 0.0)
 
 
-def bound_found(
-    count: int,
-    z: Floats,
-    params: Floats,
-    h: float,
-    retracted: bool,
-    scales: Floats,
-    greatest: Floats,
-    held: Floats,
-    found: Floats,
-    terms: Floats,
-) -> float:
-    """The bound where P and k were found with the state: one by one, so that nothing is asked of how k goes."""
-    slope, push, swing = 0.0, 0.0, 0.0
+def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
+    """Return the bound where P and k were found with the state: one by one, whichever way k goes along the branch."""
+    contacts, stiffness, error, rounding = block.contacts, 0.0, 0.0, 0.0
     for i in range(count):
-        if not _adhesive or held[i] > 0.0:
-            own, each = _errors(_own(params, i))
-            k, stretch, share = abs(found[STIFFNESS, i]), 0.0, 0.0
-            if _adhesive:
-                stretch, share = _pulled(found[RADIUS, i], _own(params, i))
+        if not law.adhesive or block.in_contact[i] > 0.0:
+            own = law.params_of(block.params, i)
+            of_force, of_indentation = law.relative_errors(own)
+            k, stretch, pull = abs(contacts[STIFFNESS, i]), 0.0, 0.0
+            if law.adhesive:
+                stretch, pull = law.adhesion_terms(contacts[RADIUS, i], own)
                 if k == math.inf:  # on the fold itself
-                    k = share / stretch / ROUNDING
-            off = own * (abs(found[FORCE, i]) + 2.0 * share) + 2.0 * _NEXT_TO_A_FOLD * each * k * stretch
-            if _magnitude is not None:
-                g, pushed = _magnitude(found[STATE, i], _own(params, i))
-                off += own * pushed + _NEXT_TO_A_FOLD * each * k * g
-            slope, push, swing = slope + scales[RIGIDITY, i] * k, push + scales[LOAD, i] * off, max(swing, each)
-    return worst(count, z, h, slope, push, swing, greatest)
+                    k = pull / stretch / ROUNDING
+            each = of_force * (abs(contacts[FORCE, i]) + 2.0 * pull)
+            each += 2.0 * _NEXT_TO_A_FOLD * of_indentation * k * stretch
+            if law.terms_cancel:
+                g, load = law.term_sizes(contacts[STATE, i], own)
+                each += of_force * load + _NEXT_TO_A_FOLD * of_indentation * k * g
+            stiffness, error = stiffness + block.scales[RIGIDITY, i] * k, error + block.scales[LOAD, i] * each
+            rounding = max(rounding, of_indentation)
+    return law.total_error(count, block, h, stiffness, error, rounding)

@@ -14,7 +14,8 @@ from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import Adhesion, Model
-from roughmdr.kernels.interface import choose
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats, check_number, check_values
@@ -25,18 +26,6 @@ from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, 
 if TYPE_CHECKING:
     import xarray as xr
 
-ROW = {
-    "force": totals.FORCE,
-    "pressure": totals.FORCE,
-    "contact_area": totals.AREA,
-    "contact_fraction": totals.AREA,
-    "contact_count": totals.COUNT,
-    "contact_radius_sum": totals.RADIUS,
-    "stiffness": totals.STIFFNESS,
-    "energy": totals.ENERGY,
-    "dissipated_energy": totals.DISSIPATED,
-}
-"""Which row of the totals a variable is made from."""
 _PER_AREA = {"pressure", "contact_fraction"}
 
 
@@ -70,7 +59,7 @@ class LoadSeparation(NamedTuple):
         model: str,
     ) -> "LoadSeparation":
         """The law that ``total`` [row, step] comes to; OutOfRange where a variable is not representable."""
-        results = {name: total[ROW[name]] for name in names}
+        results = {name: total[totals.TOTAL_INDEX[name]] for name in names}
         for name in _PER_AREA.intersection(names):
             with np.errstate(over="ignore"):  # refused below
                 results[name] = results[name] / nominal_area
@@ -102,12 +91,12 @@ def compute(
     total, reached, visits = loop.add_asperities(
         law,
         ensemble.height,
-        columns,
+        Columns(*columns),
         effective_modulus,
         adhesion,
         route.separation,
         route.memory,
-        {totals.ERROR, totals.FORCE, *(ROW[name] for name in names)},
+        {totals.ERROR, totals.FORCE, *(totals.TOTAL_INDEX[name] for name in names)},
     )
     extremes = ensemble.extremes(reached)
     found = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
@@ -123,7 +112,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
     for model in adhesion.candidates:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
-        loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        loop.add_asperities(law, np.zeros(1), Columns(*columns), 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 

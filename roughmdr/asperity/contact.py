@@ -7,8 +7,9 @@ import numpy as np
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
 from roughmdr.kernels.elementwise import apply, apply_all
-from roughmdr.kernels.interface import Kernels, choose
+from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.numerics.arguments import Floats, check_number
@@ -52,7 +53,7 @@ class Contact(NamedTuple):
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
                     f"of {shape} is lost in its roundings; it must be larger"
                 )
-            scales = law.natural(effective_modulus, adhesion.work, width, rise, params)
+            scales = law.scales(effective_modulus, adhesion.work, width, rise, params)
             contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
         contact._check(
             indentation=contact.depth[0],
@@ -67,13 +68,13 @@ class Contact(NamedTuple):
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
             params = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
-            force, radius = self.law.natural_force(self.effective_modulus, self.adhesion.work, width, rise, params)
+            force, radius = self.law.force_scales(self.effective_modulus, self.adhesion.work, width, rise, params)
         self._check(force=force[0], contact_radius=radius)
         return self._exact(force, params), radius, params
 
     def _exact(self, depth: tuple[float, float], params: Any) -> tuple[float, float]:
         """A natural depth with the digits that the fold needs."""
-        if not (self.law.adhesive and self.law.curved) or self.adhesion.cohesive:
+        if not (self.law.adhesive and self.law.iterative) or self.adhesion.cohesive:
             return depth
         return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, params)
 
@@ -163,7 +164,7 @@ class Contact(NamedTuple):
         a = np.where(touching, radius, self.radius)
         state = apply(law.state_of_radius, a, self.radius, self.params)
         off_the_fold = state
-        if law.adhesive and not law.curved:  # the folds of rows lie between the floats
+        if law.adhesive and not law.iterative:  # the folds of rows lie between the floats
             above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             off_the_fold = np.where(state == 0.0, above, state)
         results = {
@@ -178,21 +179,18 @@ class Contact(NamedTuple):
         """Contact radius [m], force [N] and stiffness [N/m] of each state."""
         law, params = self.law, self.params
         with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
-            if law.answer is None:
-                parts = [apply(kernel, state, params) for kernel in (law.radius, law.force, law.stiffness)]
-            else:
-                parts = list(apply_all(law.answer, state, params))
+            parts = apply_all(law.radius_force_stiffness, state, params)
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
     def _cohesive(self, state: Floats) -> Results:
         """The cohesive radius [m] of each state, where adhesion has a range."""
-        if self.law.cohesive_radius is None:
+        if not self.law.cohesive:
             return {}
         return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.params)}
 
     def _indentation(self, state: Floats) -> Floats:
         """Indentation [m] of each state."""
-        distance = apply(self.law.distance, state, self.params)
+        distance = apply(self.law.reduced_control, state, self.params)
         if not self.law.adhesive:
             return self.depth[0] * distance
         return self.depth[0] * (distance - 1.0) - self.depth[1]
@@ -200,6 +198,5 @@ class Contact(NamedTuple):
 
 def _prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
-    return law.own(
-        law.prepare(effective_modulus, adhesion.work, adhesion.strength, width, rise, params, 0, 1, control), 0
-    )
+    material = Material(effective_modulus, adhesion.work, adhesion.strength)
+    return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control), 0)

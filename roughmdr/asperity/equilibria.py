@@ -63,12 +63,12 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
     onset = -contact.depth[0] if law.adhesive else 0.0
     if delta < onset or (delta == 0.0 and not law.adhesive):
         return
-    if law.branched and law.state_on is not None and law.rung is not None and delta > onset:
+    if law.branched and delta > onset:
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
         for number in range(1, int(contact.params[COUNT]) + 1):
             # A way that begins on a branch ends there just where the branch reaches so far.
-            if law.rung(x, float(number), True, contact.params) == number:
-                state = law.state_on(x, float(number), contact.params)
+            if law.branch(x, float(number), True, contact.params) == number:
+                state = law.state_on_branch(x, float(number), contact.params)
                 yield (
                     contact.radius * law.radius(state, contact.params),
                     contact.force * law.force(state, contact.params),
@@ -114,7 +114,7 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
 
 def _falls(contact: Contact) -> Iterator[tuple[float, float]]:
     """Contact radii between which the indentation falls."""
-    if contact.law.curved:
+    if contact.law.iterative:
         params = contact.params
         radii: Floats = np.array(
             [

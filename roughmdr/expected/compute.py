@@ -10,9 +10,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
-from roughmdr.aggregate.load_separation import ROW
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE
+from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE, TOTAL_INDEX
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -37,7 +36,7 @@ def compute(
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
     """
     names, steps = list(variables), path.separation.size
-    rows, dissipating = _rows(names), any(ROW[name] == DISSIPATED for name in names)
+    rows, dissipating = _rows(names), any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = _stand_ins(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     reach = jkr_validity(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
     asked = Problem(source, path, effective_modulus, adhesion.resolved(reach.jkr_error), rows)
@@ -85,7 +84,7 @@ def prepare(
 
 def _rows(variables: Iterable[str]) -> tuple[int, ...]:
     """What is integrated over the heights: the force and what is asked for, but for the losses, which have jumps."""
-    return tuple(dict.fromkeys([FORCE, *(ROW[name] for name in variables if ROW[name] != DISSIPATED)]))
+    return tuple(dict.fromkeys([FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]))
 
 
 def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:

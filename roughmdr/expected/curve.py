@@ -126,14 +126,8 @@ def _quantities(contact: Contact, s: Floats, foot: float, rung: int, rows: tuple
     """The wanted quantities at s, the stiffness times 2 s: [row, s]."""
     law, params = contact.law, contact.params
     x = foot + s * s
-    if law.branched and law.state_on is not None:
-        state = apply(law.state_on, x, float(rung), params)
-    else:
-        state = apply(law.state, x, params)
-    if law.answer is not None:
-        radius, force, stiffness = apply_all(law.answer, state, params)
-    else:
-        radius, force, stiffness = (apply(kernel, state, params) for kernel in (law.radius, law.force, law.stiffness))
+    state = apply(law.state_on_branch, x, float(rung), params) if law.branched else apply(law.state, x, params)
+    radius, force, stiffness = apply_all(law.radius_force_stiffness, state, params)
     found = {
         FORCE: force,
         RADIUS: radius,

@@ -56,9 +56,6 @@ def _on_one(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
 def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Intervals]:
     """With branches: the heights are cut wherever a jump begins, and each interval moves as one."""
     row, depth, reach = contact.params, contact.depth[0], contact.adhesion.range
-    law_rung = contact.law.rung
-    if law_rung is None:
-        raise AssertionError("a branched law has rungs")
     feet, tops = branch_ends(contact)
     offsets = [(mark - 1.0) * depth for mark in (*feet, *tops, float(row[ONSET]))]
     bounds, rungs = [-math.inf, math.inf], [0]
@@ -73,7 +70,7 @@ def _on_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Inter
             z = _within(low, high, depth)
             x = max(((z - h) + depth) / depth, 0.0)
             befores.append(rungs[at])
-            afters.append(int(law_rung(x, float(rungs[at]), z >= h - reach, row)))
+            afters.append(int(contact.law.branch(x, float(rungs[at]), z >= h - reach, row)))
         bounds, rungs = [-math.inf], []
         for (low, high), before, after in zip(pairwise(cuts), befores, afters, strict=True):
             if before != after:
@@ -101,8 +98,8 @@ def lost(contact: Contact, moved: Intervals) -> Floats:
     law, row = contact.law, contact.params
     if not law.adhesive:
         return np.zeros(moved.step.size)
-    if law.branched and law.spent is not None:
+    if law.branched:
         jumps = zip(moved.before.astype(float), moved.rung.astype(float), strict=True)
-        return np.array([law.spent(before, after, row) for before, after in jumps])
+        return np.array([law.jump_energy(before, after, row) for before, after in jumps])
     on, off = (law.energy(law.state(x, row), row) for x in (1.0, 0.0))
     return np.where(moved.rung > 0, -on, off)

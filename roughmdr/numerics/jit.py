@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
@@ -90,14 +90,15 @@ def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[.
 
 
 def specialise(
-    loop: FunctionType, name: str, kernels: dict[str, object], *, inline: bool = False, small: bool = False
+    loop: Callable[..., Any], law: ModuleType, *, inline: bool = False, small: bool = False
 ) -> Callable[..., Any]:
-    """A compiled copy of ``loop`` in which the global names in ``kernels`` stand for the given kernels.
+    """Return a compiled copy of ``loop`` in which the global name ``law`` stands for the given module of kernels.
 
     numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own
-    can be. ``name`` must tell the copies of one loop apart: numba finds them in its cache by it.
+    can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it.
     """
-    copy = FunctionType(loop.__code__, {**loop.__globals__, **kernels}, name)
-    copy.__qualname__ = f"{loop.__qualname__}_{name}"
+    plain = cast(FunctionType, loop)
+    copy = FunctionType(plain.__code__, {**plain.__globals__, "law": law}, loop.__name__)
+    copy.__qualname__ = f"{loop.__qualname__}_{law.__name__}"
     copy.__module__ = loop.__module__
     return njit(copy, inline=inline, small=small)

@@ -1,7 +1,7 @@
-"""Adding up in an order that depends on nothing but the terms: within a block by halves, over the blocks with the
-rounding errors carried along (A. Neumaier, Z. angew. Math. Mech. 54 (1974) 39).
+"""Sums in an order that depends on the terms alone: within a block by halves, over the blocks with compensated
+rounding errors (A. Neumaier, Z. angew. Math. Mech. 54 (1974) 39).
 
-Halves, since a running sum may not be reordered and so never becomes vector code.
+By halves, since a running sum must not be reordered and so never becomes vector code.
 """
 
 import math
@@ -15,8 +15,8 @@ BLOCK = 256
 
 
 @njit
-def add_up(terms: Floats, count: int) -> float:
-    """The sum of the first ``count`` terms, by halves over the whole block; the terms are spoilt."""
+def block_sum(terms: Floats, count: int) -> float:
+    """Return the sum of the first ``count`` terms, by halves over the whole block; the terms are overwritten."""
     for i in range(count, BLOCK):
         terms[i] = 0.0
     half = BLOCK // 2
@@ -28,8 +28,8 @@ def add_up(terms: Floats, count: int) -> float:
 
 
 @njit
-def least(terms: Floats, count: int) -> float:
-    """The least of the first ``count`` terms, by halves like ``add_up``; the terms are spoilt."""
+def block_minimum(terms: Floats, count: int) -> float:
+    """Return the least of the first ``count`` terms, by halves like ``block_sum``; the terms are overwritten."""
     for i in range(count, BLOCK):
         terms[i] = math.inf
     half = BLOCK // 2
@@ -41,21 +41,21 @@ def least(terms: Floats, count: int) -> float:
 
 
 @njit
-def accumulate(total: Floats, carried: Floats, step: int, term: float) -> None:
-    """total[step] += term, with the rounding error added to carried[step]."""
+def accumulate(total: Floats, compensation: Floats, step: int, term: float) -> None:
+    """Add ``term`` to total[step], and the rounding error of that to compensation[step]."""
     before = total[step]
     after = before + term
     if abs(before) >= abs(term):
-        carried[step] += (before - after) + term
+        compensation[step] += (before - after) + term
     else:
-        carried[step] += (term - after) + before
+        compensation[step] += (term - after) + before
     total[step] = after
 
 
 @njit
-def run_on(terms: Floats) -> None:
-    """Each term becomes the sum of itself and all before it."""
-    total, carried = np.zeros(1), np.zeros(1)
+def cumulative_sum(terms: Floats) -> None:
+    """Replace each term by the sum of itself and all before it."""
+    total, compensation = np.zeros(1), np.zeros(1)
     for i in range(terms.size):
-        accumulate(total, carried, 0, terms[i])
-        terms[i] = total[0] + carried[0]
+        accumulate(total, compensation, 0, terms[i])
+        terms[i] = total[0] + compensation[0]

@@ -16,7 +16,7 @@ from studies.asperity_error.judge import random_error
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import choose
+from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.shapes import SHAPES as EVERY_SHAPE
 from roughmdr.shapes.base import Shape

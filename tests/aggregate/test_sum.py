@@ -12,7 +12,7 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.load_separation import Route, compute
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import choose
+from roughmdr.kernels.choose import choose
 from roughmdr.variables import CURVE_VARIABLES
 
 E, W = 4e6, 0.05

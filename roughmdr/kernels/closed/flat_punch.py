@@ -14,7 +14,7 @@ _KERNEL_ERROR = 1e-14
 
 
 @njit
-def natural(
+def scales(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where no float can hold the stretch."""
@@ -30,15 +30,15 @@ def natural(
 
 
 @njit
-def errors(n: float) -> tuple[float, float]:
+def relative_errors(n: float) -> tuple[float, float]:
     """The scales and the state are a few roundings each."""
     return _KERNEL_ERROR, 0.0
 
 
 @njit
-def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at the depth, and b [m]."""
-    depth = natural(effective_modulus, work, width, rise, n)[0]
+    depth = scales(effective_modulus, work, width, rise, n)[0]
     return extended.multiply(extended.two_product(2.0 * effective_modulus, width), depth), width
 
 
@@ -61,13 +61,13 @@ def state_of_radius(radius: float, size: float, n: float) -> float:
 
 
 @njit
-def distance(s: float, n: float) -> float:
+def reduced_control(s: float, n: float) -> float:
     """x without adhesion."""
     return s
 
 
 @njit
-def distance_jkr(s: float, n: float) -> float:
+def reduced_control_jkr(s: float, n: float) -> float:
     """x(s)."""
     return s + 1.0
 
@@ -100,3 +100,6 @@ def energy(s: float, n: float) -> float:
 def energy_jkr(s: float, n: float) -> float:
     """U, elastic and surface, over 2 E* b dl^2: pi w b^2 = E* b dl^2/2."""
     return 0.5 * s * s - 0.25
+
+
+state_of_force, state_of_force_jkr = state, state_jkr

@@ -14,29 +14,29 @@ _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
 @njit
-def _natural(effective_modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
+def _scales(effective_modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
     """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured."""
     return (depth, 0.0), width, 2.0 * effective_modulus * width * depth, 2.0 * effective_modulus * width
 
 
 @njit
-def natural_paraboloid(
+def scales_paraboloid(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """The natural scales with kappa(2) = 2."""
-    return _natural(effective_modulus, width, 2.0 * rise)
+    return _scales(effective_modulus, width, 2.0 * rise)
 
 
 @njit
-def natural_cone(
+def scales_cone(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """The natural scales with kappa(1) = pi/2."""
-    return _natural(effective_modulus, width, 0.5 * math.pi * rise)
+    return _scales(effective_modulus, width, 0.5 * math.pi * rise)
 
 
 @njit
-def natural_power(
+def scales_power(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """The natural scales with any kappa(n).
@@ -50,7 +50,7 @@ def natural_power(
     power, rest = two_product(k, n)
     whole = math.floor(power)
     lifted = math.ldexp(rise * math.pow(2.0, (power - whole) + rest), int(whole))
-    return _natural(effective_modulus, math.ldexp(width, int(k)), kappa(n) * lifted)
+    return _scales(effective_modulus, math.ldexp(width, int(k)), kappa(n) * lifted)
 
 
 @njit
@@ -80,7 +80,7 @@ def state_of_radius(radius: float, size: float, n: float) -> float:
 
 
 @njit
-def distance(t: float, n: float) -> float:
+def reduced_control(t: float, n: float) -> float:
     """x(t)."""
     return math.pow(t, n)
 
@@ -136,15 +136,15 @@ def energy_power(t: float, n: float) -> float:
 
 
 @njit
-def errors(n: float) -> tuple[float, float]:
+def relative_errors(n: float) -> tuple[float, float]:
     """A rounding of t moves t^(n + 1) by n + 1 of them."""
     return _KERNEL_ERROR + 4.0 * ROUNDING * n, 0.0
 
 
 @njit
-def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at t = 1, and the radius [m] there."""
-    _, size, force, _ = natural_power(effective_modulus, work, width, rise, n)
+    _, size, force, _ = scales_power(effective_modulus, work, width, rise, n)
     return (force * (n / (n + 1.0)), 0.0), size
 
 

@@ -2,21 +2,21 @@
 
 import math
 
-from roughmdr.kernels.closed.jkr_paraboloid import errors, radius, state_of_radius
+from roughmdr.kernels.closed.jkr_paraboloid import radius, relative_errors, state_of_radius
 from roughmdr.kernels.closed.jkr_power import branch
 from roughmdr.numerics import double_double as extended
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import njit
 
 __all__ = [
-    "distance",
     "energy",
-    "errors",
     "force",
-    "natural",
-    "natural_force",
+    "force_scales",
     "radius",
     "radius_of_force",
+    "reduced_control",
+    "relative_errors",
+    "scales",
     "state",
     "state_of_force",
     "state_of_radius",
@@ -33,7 +33,7 @@ def _fold(effective_modulus: float, work: float, width: float, rise: float) -> t
 
 
 @njit
-def natural(
+def scales(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; dl(a_c) = 2 |delta_c|."""
@@ -42,7 +42,7 @@ def natural(
 
 
 @njit
-def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 54 w^2/(pi S^3 E*) [N] under dead load, and a_P = 9 a_c [m]."""
     depth, a_c = _fold(effective_modulus, work, width, rise)
     return extended.multiply(extended.multiply(extended.two_product(27.0, effective_modulus), a_c), depth), 9.0 * a_c[0]
@@ -67,7 +67,7 @@ def state_of_force(x: float, n: float) -> float:
 
 
 @njit
-def distance(v: float, n: float) -> float:
+def reduced_control(v: float, n: float) -> float:
     """X(v)."""
     return v * v
 

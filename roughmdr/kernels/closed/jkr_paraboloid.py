@@ -36,7 +36,7 @@ def _reduced_work(effective_modulus: float, work: float, radius: float) -> Pair:
 
 
 @partial(njit, inline=True)
-def natural(
+def scales(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """|delta_c| = 3/4 (pi^2 w^2 R/E*^2)^(1/3) [m], a_c = (pi w R^2/(8 E*))^(1/3) [m], pi w R [N], 2 E* a_c [N/m].
@@ -55,13 +55,13 @@ def natural(
 
 
 @njit
-def errors(n: float) -> tuple[float, float]:
+def relative_errors(n: float) -> tuple[float, float]:
     """The state comes from the distance to the fold."""
     return _KERNEL_ERROR, 0.0
 
 
 @njit
-def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
     curvature_radius = _curvature_radius(width, rise)
     force = extended.multiply(extended.PI, extended.multiply(extended.two_product(1.5, work), (curvature_radius, 0.0)))
@@ -103,7 +103,7 @@ def state_of_force(x: float, n: float) -> float:
 
 
 @njit
-def distance(v: float, n: float) -> float:
+def reduced_control(v: float, n: float) -> float:
     """X(v)."""
     return v * v * (6.0 + v * (4.0 + v)) / 3.0
 

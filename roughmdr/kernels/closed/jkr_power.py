@@ -47,7 +47,7 @@ def _log_growth(effective_modulus: float, work: float, width: float, rise: float
 
 
 @njit
-def natural(
+def scales(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
     """|delta_c| [m], a_c [m], 2 E* a_c dl(a_c) [N] and 2 E* a_c [N/m]; all 0 where no float can hold them."""
@@ -68,13 +68,13 @@ def natural(
 
 
 @njit
-def errors(n: float) -> tuple[float, float]:
+def relative_errors(n: float) -> tuple[float, float]:
     """The state comes from the distance to the fold."""
     return _KERNEL_ERROR, 0.0
 
 
 @njit
-def pulled(a: float, n: float) -> tuple[float, float]:
+def adhesion_terms(a: float, n: float) -> tuple[float, float]:
     """dl over dl(a_c), and a dl over a_c dl(a_c)."""
     stretch = math.sqrt(a)
     return stretch, a * stretch
@@ -144,14 +144,14 @@ def state_of_force(x: float, n: float) -> float:
 
 
 @njit
-def distance(l: float, n: float) -> float:
+def reduced_control(l: float, n: float) -> float:
     """X(l)."""
     e = 2.0 * n - 1.0
     return _distance(l, e, 1.0 / e)[0]
 
 
 @_vector
-def answer(l: float, n: float) -> tuple[float, float, float]:
+def radius_force_stiffness(l: float, n: float) -> tuple[float, float, float]:
     """a/a_c, P over 2 E* a_c dl(a_c), and k over 2 E* a_c.
 
     k goes to -inf from the right at the fold l = 0, which the caller keeps away from.
@@ -164,21 +164,21 @@ def answer(l: float, n: float) -> tuple[float, float, float]:
 @njit
 def radius(l: float, n: float) -> float:
     """a/a_c."""
-    a, _, _ = answer(l, n)
+    a, _, _ = radius_force_stiffness(l, n)
     return a
 
 
 @njit
 def force(l: float, n: float) -> float:
     """P over 2 E* a_c dl(a_c)."""
-    _, push, _ = answer(l, n)
+    _, push, _ = radius_force_stiffness(l, n)
     return push
 
 
 @njit
 def stiffness(l: float, n: float) -> float:
     """k over 2 E* a_c."""
-    _, _, k = answer(l, n)
+    _, _, k = radius_force_stiffness(l, n)
     return k
 
 
@@ -191,7 +191,7 @@ def energy(l: float, n: float) -> float:
 
 
 @njit
-def natural_force(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
+def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable.
 
     All in logarithms: near n = 1/2 these can be ordinary where a_c is not.

@@ -1,34 +1,30 @@
-"""Laws whose form is one number, or none: the kernels take it as it is."""
+"""Parameters of contacts in closed form: one number each, or none, which the kernels take as it is."""
 
 import numpy as np
 
+from roughmdr.kernels.interface import Columns, Material, law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 
 @njit
-def prepare(
-    effective_modulus: float,
-    work: float,
-    strength: float,
-    width: Floats,
-    rise: Floats,
-    params: Floats,
-    start: int,
-    stop: int,
-    control: float,
-) -> Floats:
-    """The forms of the asperities from start to stop."""
-    return params[start:stop]
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+    """Return the parameters of the asperities from start to stop."""
+    return columns.params[start:stop]
 
 
 @njit
-def own(params: Floats, i: int) -> float:
-    """The form of one asperity."""
+def params_of(params: Floats, i: int) -> float:
+    """Return the parameter of one asperity."""
     return float(params[i])
 
 
 @njit
-def mixed(params: Floats) -> bool:
-    """Whether the forms differ."""
+def heterogeneous(params: Floats) -> bool:
+    """Return whether the parameters differ."""
     return bool(np.any(params != params[0]))
+
+
+def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:
+    """Return a, P and k, each over its natural scale."""
+    return law.radius(t, n), law.force(t, n), law.stiffness(t, n)

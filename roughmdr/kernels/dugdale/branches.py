@@ -4,24 +4,10 @@ Looked for at places ever further out, and between two of them where the slope c
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
-
-# Names that ``specialise`` fills with the functions of a profile, of ``dugdale``, ``margins`` and ``folds``.
-_curve: Callable[..., tuple[float, float, float, float]]
-_flat: bool
-_end: float
-_STRIDE: float
-_edge_count: Callable[..., int]
-_edge: Callable[..., tuple[float, float]]
-_branch: Callable[..., int]
-load: Callable[..., tuple[float, float]]
-margins: Callable[..., tuple[float, float, float, float, float, float, float]]
-find_junction: Callable[..., bool]
-measure_branches: Callable[..., None]
 
 _FIRST = 2.0**-24  # of the way to contact
 _BEGIN = 2.0**-8  # of the unit beyond it
@@ -33,22 +19,22 @@ _PATIENCE = 200
 _LAST = 1.0 - 1e-9  # of the end of the profile: beyond, a float does not tell c from a
 
 
-def following(s: float) -> float:
+def next_trial(s: float) -> float:
     """The next place to look at."""
     if s < 1.0:
         return max(2.0 * s, _FIRST)
-    if _flat and s < 2.0:
+    if law.flat and s < 2.0:
         return s + _ON_FLAT
-    begin = 2.0 if _flat else 1.0
-    return begin + max(_STRIDE * (s - begin), _BEGIN)
+    begin = 2.0 if law.flat else 1.0
+    return begin + max(law.stride * (s - begin), _BEGIN)
 
 
-def turn(low: float, high: float, params: Floats) -> float:
+def slope_root(low: float, high: float, params: Floats) -> float:
     """Where the slope changes its sign between low and high, on the side where it is positive.
 
     By secants (the Illinois method) and halves, since the slope may jump.
     """
-    at_low, at_high = load(low, params)[1], load(high, params)[1]
+    at_low, at_high = law.control_at(low, params)[1], law.control_at(high, params)[1]
     rising = at_high > 0.0
     for i in range(_PATIENCE):
         if high - low <= _CLOSE * high:
@@ -57,7 +43,7 @@ def turn(low: float, high: float, params: Floats) -> float:
         if i % 3 != 2 and abs(at_low) < math.inf and abs(at_high) < math.inf:
             middle = low - at_low * (high - low) / (at_high - at_low)
             middle = min(max(middle, low + _CLOSE * high), high - _CLOSE * high)
-        slope = load(middle, params)[1]
+        slope = law.control_at(middle, params)[1]
         if (slope > 0.0) == rising:
             high, at_high, at_low = middle, slope, 0.5 * at_low
         else:
@@ -68,32 +54,29 @@ def turn(low: float, high: float, params: Floats) -> float:
 def find_branches(params: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
     params[COUNT], params[FOLD], params[DEPTH], params[ONSET] = 0.0, 0.0, 1.0, 0.0
-    if not find_junction(params):
+    if not law.find_junction(params):
         return
-    edge_count = _edge_count(params)
-    beyond = 2.0 * _edge(edge_count - 1, params)[0] if edge_count > 0 else 0.0
+    edge_count = law.breakpoint_count(params)
+    beyond = 2.0 * law.breakpoint(edge_count - 1, params)[0] if edge_count > 0 else 0.0
     count, s, foot = 0, 0.0, 0.0
-    stable = load(s, params)[1] > 0.0
+    stable = law.control_at(s, params)[1] > 0.0
     while True:
         before, was = s, stable
-        s = following(s)
-        if s > 1.0 and _end < math.inf and _curve((s - 1.0) * params[UNIT], params)[0] > _LAST * _end:
+        s = law.next_trial(s)
+        if s > 1.0 and law.end < math.inf and law.mdr_profile((s - 1.0) * params[UNIT], params)[0] > _LAST * law.end:
             if stable:
                 break
             return
-        stable = load(s, params)[1] > 0.0
+        stable = law.control_at(s, params)[1] > 0.0
         if stable and not was:
-            foot = turn(before, s, params)
+            foot = law.slope_root(before, s, params)
         elif was and not stable:
-            count = _branch(count, foot, turn(before, s, params), params)
+            count = law.note_branch(count, foot, law.slope_root(before, s, params), params)
         if s > 1.0:
-            _, a, m, _, _, _, _ = margins(s, params)
+            _, a, m, _, _, _, _ = law.zone_edge(s, params)
             if stable and m < _SHARP * a and a > beyond:
                 break
         if not s < _LARGEST or count >= MOST:
             return
-    measure_branches(_branch(count, foot, math.inf, params), params)
+    law.measure_branches(law.note_branch(count, foot, math.inf, params), params)
     params[ONSET] = 1.0 - params[RANGE] / params[DEPTH]
-
-
-PARTS: tuple[Callable[..., Any], ...] = (following, turn, find_branches)

@@ -17,91 +17,82 @@ grows with s. Notation of ``params``.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
-
-# Names that ``specialise`` fills with the functions of a profile, of ``zone`` and of ``margins``.
-_push: Callable[..., float]
-_height: Callable[..., tuple[float, float]]
-zone: Callable[..., tuple[float, float, float]]
-margins: Callable[..., tuple[float, float, float, float, float, float, float]]
-strain: Callable[..., float]
-_roundings: Callable[..., float]
 
 _ZONE_ERROR = 1e-12  # of the force: as it is tested
 _ZONE_ROUNDINGS = 32.0  # of the zone's share of the indentation
 
 
-def along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
+def state_along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
     """a over width, delta over rise and its slope over s, P over 2 E* width rise and its slope over s."""
     beta = params[STRENGTH]
     if s <= 1.0:
         size = params[JUNCTION]
         c = s * size
-        f, slope = _height(c, params)
+        f, slope = law.f_and_slope(c, params)
         delta = f - 2.0 / math.pi * beta * c - params[RANGE]
         rise = size * (slope - 2.0 / math.pi * beta)
         return 0.0, delta, rise, -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * size
-    t, a, m, theta, g, da, dg = margins(s, params)
-    _, k, _ = zone(a, g, m, theta, params)
+    t, a, m, theta, g, da, dg = law.zone_edge(s, params)
+    _, k, _ = law.zone_integrals(a, g, m, theta, params)
     square = a * a + m * m
     firm = k - beta * m * m / (math.sqrt(square) + a)  # B
     rise = (dg * m + beta * a * da) / (firm * m + beta * square * theta)
-    push = _push(t, params) - 0.5 * beta * (a * m + square * theta)
+    push = law.reduced_load(t, params) - 0.5 * beta * (a * m + square * theta)
     return a, g - beta * m, rise * firm, push, rise * (a * firm - beta * theta * theta * square)
 
 
-def stretched(s: float, params: Floats) -> tuple[float, float]:
+def indentation_at(s: float, params: Floats) -> tuple[float, float]:
     """The indentation at s, and its slope over s."""
-    _, delta, rise, _, _ = along(s, params)
+    _, delta, rise, _, _ = law.state_along(s, params)
     return delta, rise
 
 
-def load(s: float, params: Floats) -> tuple[float, float]:
+def control_at(s: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over s."""
-    _, delta, rise, push, growth = along(s, params)
+    _, delta, rise, push, growth = law.state_along(s, params)
     return (delta, rise) if params[CONTROL] == 0.0 else (push, growth)
 
 
-def distance(s: float, params: Floats) -> float:
+def reduced_control(s: float, params: Floats) -> float:
     """The controlled quantity from the lowest foot on, over its depth."""
-    return (load(s, params)[0] + params[DEPTH]) / params[DEPTH]
+    return (law.control_at(s, params)[0] + params[DEPTH]) / params[DEPTH]
 
 
-def answer(s: float, params: Floats) -> tuple[float, float, float]:
+def radius_force_stiffness(s: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/B."""
-    a, _, rise, push, growth = along(s, params)
+    a, _, rise, push, growth = law.state_along(s, params)
     return a, push, growth / rise
 
 
 def radius(s: float, params: Floats) -> float:
     """a over width."""
-    return margins(s, params)[1] if s > 1.0 else 0.0
+    return law.zone_edge(s, params)[1] if s > 1.0 else 0.0
 
 
 def cohesive_radius(s: float, params: Floats) -> float:
     """c over width."""
     if s <= 1.0:
         return s * params[JUNCTION]
-    _, a, m, _, _, _, _ = margins(s, params)
+    _, a, m, _, _, _, _ = law.zone_edge(s, params)
     return math.sqrt(a * a + m * m)
 
 
 def force(s: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return answer(s, params)[1]
+    return law.radius_force_stiffness(s, params)[1]
 
 
 def stiffness(s: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return answer(s, params)[2]
+    return law.radius_force_stiffness(s, params)[2]
 
 
-def pulled(a: float, params: Floats) -> tuple[float, float]:
+def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
     """No less than beta m over rise, and beta/2 (a m + c^2 theta) over width rise.
 
     The gap at c is at most w/sigma0, so that beta (m theta - c + a) <= pi/2 RANGE; and the bracket is at least
@@ -111,9 +102,9 @@ def pulled(a: float, params: Floats) -> tuple[float, float]:
     return stretch, stretch * (a + 0.25 * math.pi * stretch / params[STRENGTH])
 
 
-def errors(params: Floats) -> tuple[float, float]:
+def relative_errors(params: Floats) -> tuple[float, float]:
     """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
-    error = ROUNDING * (_roundings(params) + _ZONE_ROUNDINGS)
+    error = ROUNDING * (law.roundings(params) + _ZONE_ROUNDINGS)
     return max(_ZONE_ERROR, error), error
 
 
@@ -126,12 +117,12 @@ def energy(s: float, params: Floats) -> float:
     if s == 0.0:
         return 0.0
     if s > 1.0:
-        t, a, m, theta, g, _, _ = margins(s, params)
-    stretch = beta * m if s > 1.0 else -stretched(s, params)[0]
+        t, a, m, theta, g, _, _ = law.zone_edge(s, params)
+    stretch = beta * m if s > 1.0 else -law.indentation_at(s, params)[0]
     square = a * a + m * m
     c = math.sqrt(square)
-    bent, push = (strain(t, params), _push(t, params)) if s > 1.0 else (0.0, 0.0)
-    _, _, l = zone(a, g, m, theta, params)
+    bent, push = (law.elastic_integral(t, params), law.reduced_load(t, params)) if s > 1.0 else (0.0, 0.0)
+    _, _, l = law.zone_integrals(a, g, m, theta, params)
     short = m * m / (c + a)
     elastic = bent - 2.0 * stretch * push + stretch * stretch * a
     cohesive = 2.0 * l + stretch * (square * theta - a * m) - beta * short * short * (2.0 * c + a) / 3.0
@@ -142,19 +133,3 @@ def energy(s: float, params: Floats) -> float:
 def kink(low: float, high: float, params: Floats) -> bool:
     """Whether the indentation may not be smooth from low to high."""
     return True
-
-
-PARTS: tuple[Callable[..., Any], ...] = (
-    along,
-    stretched,
-    load,
-    distance,
-    answer,
-    radius,
-    cohesive_radius,
-    force,
-    stiffness,
-    pulled,
-    errors,
-    energy,
-)

@@ -8,24 +8,23 @@ so that c follows from a quadratic equation (D. Maugis, J. Colloid Interface Sci
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, RANGE, STRENGTH
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
 from roughmdr.shapes.special import less_atan
 
-# The name that ``specialise`` fills with the function of ``margins``.
-extent: Callable[..., float]
+_less_atan = compiled(less_atan, small=True)
 
 
-def margins(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
+def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t = a, a, m, theta, g, and da/ds and dg/ds."""
     beta, wanted = params[STRENGTH], math.pi * params[RANGE]
     sigma = s - 1.0
     e = 1.0 + sigma * sigma
     root, q = math.sqrt(e), 1.0 / sigma
-    beyond = less_atan(q)
+    beyond = _less_atan(q)
     theta = q - beyond
     spread = (theta + sigma * sigma * beyond) / e
     pull = beta * (theta - 1.0 / (root + sigma)) / root
@@ -37,10 +36,10 @@ def margins(s: float, params: Floats) -> tuple[float, float, float, float, float
     return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
 
 
-def zone(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
+def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L of ``zone``."""
     square = a * a + m * m
-    beyond = less_atan(m / a) if a > 0.0 else 0.0
+    beyond = _less_atan(m / a) if a > 0.0 else 0.0
     l = 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
     return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
 
@@ -50,8 +49,4 @@ def state_of_radius(radius: float, width: float, params: Floats) -> float:
     if params[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / extent(a, 2.0 * a * a, 4.0 * a, params)
-
-
-PARTS: tuple[Callable[..., Any], ...] = (zone,)
-AFTER: tuple[Callable[..., Any], ...] = (margins, state_of_radius)
+    return 1.0 + a / law.zone_width(a, 2.0 * a * a, 4.0 * a, params)

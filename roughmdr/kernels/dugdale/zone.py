@@ -13,21 +13,11 @@ dx/sqrt(c^2 - x^2) is q/x dpsi. Where the zone is thin g(x) - g(a) has few digit
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.numerics.arguments import Floats
-
-# Names that ``specialise`` fills with the functions of a profile.
-_curve: Callable[..., tuple[float, float, float, float]]
-_place: Callable[..., float]
-_edge_count: Callable[..., int]
-_edge: Callable[..., tuple[float, float]]
-_beyond: Callable[..., float] | None
-_flat: bool
-_end: float
 
 # Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
 _Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
@@ -42,19 +32,19 @@ _UPRIGHT = 1e100  # stands for what is without bound
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 
 
-def widest(a: float) -> float:
+def widest_zone(a: float) -> float:
     """m where the zone comes to the end of the profile."""
-    return max(math.sqrt((_end - a) * (_end + a)), _NEAREST) if _end < math.inf else math.inf
+    return max(math.sqrt((law.end - a) * (law.end + a)), _NEAREST) if law.end < math.inf else math.inf
 
 
-def onward(q: float, base: float, params: Floats) -> float:
+def t_along(q: float, base: float, params: Floats) -> float:
     """t where q = sqrt(x^2 - base^2)."""
-    if _beyond is not None and base > 0.0:
-        return _beyond(q, params)
-    return _place(min(math.sqrt(base * base + q * q), _BEFORE * _end), 1.0, params)
+    if law.has_t_of_q and base > 0.0:
+        return law.t_of_q(q, params)
+    return law.t_of_radius(min(math.sqrt(base * base + q * q), _BEFORE * law.end), 1.0, params)
 
 
-def panel(
+def zone_panel(
     low: float, high: float, base: float, g: float, c: float, m: float, thin: bool, params: Floats
 ) -> tuple[float, float, float]:
     """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2). By parts where ``thin``."""
@@ -66,7 +56,7 @@ def panel(
         psi = end + (begin - end) * _NODES[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
-        _, da, value, dg = _curve(onward(q, base, params), params)
+        _, da, value, dg = law.mdr_profile(law.t_along(q, base, params), params)
         push = _WEIGHTS[i] * q * dg / da
         k += push
         if thin:
@@ -82,40 +72,37 @@ def panel(
 
 def rise_begins(low: float, c: float, params: Floats) -> float:
     """From where on the profile rises, to all digits, where it is as steep as x^n with a large n; else ``low``."""
-    a, da, g, dg = _curve(_place(c, 1.0, params), params)
+    a, da, g, dg = law.mdr_profile(law.t_of_radius(c, 1.0, params), params)
     n = a * dg / (da * g) if 0.0 < g < math.inf else 0.0
     return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
 
 
-def zone(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
+def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
     """J, K and L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
     c, thin = math.sqrt(a * a + m * m), m < _THIN * a
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m
-    count = _edge_count(params)
+    count = law.breakpoint_count(params)
     for i in range(count + 1):
-        begin, after = _edge(i, params) if i < count else (math.inf, 0.0)
+        begin, after = law.breakpoint(i, params) if i < count else (math.inf, 0.0)
         if begin > low:
             high = min(begin, c)
             while base > 0.0 and _FAR * low < high:  # at q << x as smooth as at q = x
-                parts = panel(low, _FAR * low, base, g, c, beside, thin, params)
+                parts = law.zone_panel(low, _FAR * low, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _FAR * low
                 beside = math.sqrt((c - low) * (c + low))
-            if base == 0.0 and not _flat and high == c:
-                middle = rise_begins(low, c, params)
+            if base == 0.0 and not law.flat and high == c:
+                middle = law.rise_begins(low, c, params)
                 if middle > low:
-                    parts = panel(low, middle, base, g, c, beside, thin, params)
+                    parts = law.zone_panel(low, middle, base, g, c, beside, thin, params)
                     j, k, l = j + parts[0], k + parts[1], l + parts[2]
                     low, beside = middle, math.sqrt((c - middle) * (c + middle))
-            if beside > 0.0 and (base > 0.0 or not _flat):
-                parts = panel(low, high, base, g, c, beside, thin, params)
+            if beside > 0.0 and (base > 0.0 or not law.flat):
+                parts = law.zone_panel(low, high, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
             if begin >= c:
                 break
             low, beside = begin, math.sqrt((c - begin) * (c + begin))
         base = after
-    return j, k if m < widest(a) else _UPRIGHT, l
-
-
-PARTS: tuple[Callable[..., Any], ...] = (widest, onward, panel, rise_begins, zone)
+    return j, k if m < law.widest_zone(a) else _UPRIGHT, l

@@ -1,21 +1,14 @@
 """Where the contact and the cohesive zone of any profile end, along all equilibria. Notation of ``dugdale``."""
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import atan
 
-# Names that ``specialise`` fills with the functions of a profile and of ``zone``.
-_curve: Callable[..., tuple[float, float, float, float]]
-_height: Callable[..., tuple[float, float]]
-_place: Callable[..., float]
-_flat: bool
-_end: float
-widest: Callable[..., float]
-zone: Callable[..., tuple[float, float, float]]
+_atan = compiled(atan, small=True)
 
 _CLOSE = 1e-9  # its square is below rounding
 _ROUNDING = 1e-15
@@ -28,12 +21,12 @@ def find_junction(params: Floats) -> bool:
     not hold its square.
     """
     wanted, per_c = params[RANGE], (1.0 - 2.0 / math.pi) * params[STRENGTH]
-    low, high = 0.0, min(wanted / per_c, _end)
-    if not (high > 0.0 and _height(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
+    low, high = 0.0, min(wanted / per_c, law.end)
+    if not (high > 0.0 and law.f_and_slope(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
         return False
-    c = high if high < _end else 0.5 * high
+    c = high if high < law.end else 0.5 * high
     for _ in range(_PATIENCE):
-        f, slope = _height(c, params)
+        f, slope = law.f_and_slope(c, params)
         value = f + per_c * c
         low, high = (c, high) if value < wanted else (low, c)
         better = c * math.exp((math.log(wanted) - math.log(value)) * value / (c * (slope + per_c)))
@@ -42,27 +35,27 @@ def find_junction(params: Floats) -> bool:
             break
         c = better if low < better < high else 0.5 * (low + high)
     params[JUNCTION] = c
-    t = params[TENSION] if _flat else _place(c, 1.0, params)
+    t = params[TENSION] if law.flat else law.t_of_radius(c, 1.0, params)
     params[UNIT] = t
     return 1.0 / _LARGEST < c < _LARGEST and 0.0 < t < math.inf
 
 
-def opened(a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
+def gap_at(a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
     """pi/2 times the gap at c, and its slope over m^2/2."""
-    c, theta = math.sqrt(a * a + m * m), atan(m / a)
-    j, k, _ = zone(a, g, m, theta, params)
+    c, theta = math.sqrt(a * a + m * m), _atan(m / a)
+    j, k, _ = law.zone_integrals(a, g, m, theta, params)
     short = m * m / (c + a)
     return j + params[STRENGTH] * (m * theta - short), (k / c + params[STRENGTH] * (c * theta / m - short / c)) / c
 
 
-def extent(a: float, g: float, slope: float, params: Floats) -> float:
+def zone_width(a: float, g: float, slope: float, params: Floats) -> float:
     """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms.
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
     beta, wanted, c0 = params[STRENGTH], 0.5 * math.pi * params[RANGE], params[JUNCTION]
-    low, high = 0.0, widest(a)
-    if high < math.inf and not opened(a, g, high, params)[0] > wanted:
+    low, high = 0.0, law.widest_zone(a)
+    if high < math.inf and not law.gap_at(a, g, high, params)[0] > wanted:
         return high
     lone = wanted / beta
     most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
@@ -71,7 +64,7 @@ def extent(a: float, g: float, slope: float, params: Floats) -> float:
     if not m < high:
         m = 0.5 * high
     for _ in range(_PATIENCE):
-        value, growth = opened(a, g, m, params)
+        value, growth = law.gap_at(a, g, m, params)
         if not 0.0 < value < math.inf:  # so near to the end of the profile that floats do not tell c from a
             low, high = (m, high) if value <= 0.0 else (low, m)
             m = 0.5 * (low + high)
@@ -85,23 +78,20 @@ def extent(a: float, g: float, slope: float, params: Floats) -> float:
     return m
 
 
-def margins(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
+def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
-    if _flat and s < 2.0:
+    if law.flat and s < 2.0:
         a = s - 1.0
-        m = extent(a, 0.0, 0.0, params)
-        return 0.0, a, m, atan(m / a), 0.0, 1.0, 0.0
-    t = (s - (2.0 if _flat else 1.0)) * params[UNIT]
-    a, da, g, dg = _curve(t, params)
-    m = extent(a, g, dg / da if da > 0.0 else math.inf, params)
-    return t, a, m, atan(m / a), g, da * params[UNIT], dg * params[UNIT]
+        m = law.zone_width(a, 0.0, 0.0, params)
+        return 0.0, a, m, _atan(m / a), 0.0, 1.0, 0.0
+    t = (s - (2.0 if law.flat else 1.0)) * params[UNIT]
+    a, da, g, dg = law.mdr_profile(t, params)
+    m = law.zone_width(a, g, dg / da if da > 0.0 else math.inf, params)
+    return t, a, m, _atan(m / a), g, da * params[UNIT], dg * params[UNIT]
 
 
 def state_of_radius(radius: float, width: float, params: Floats) -> float:
     """s at a contact radius [m]."""
     if params[COUNT] == 0.0:
         return math.nan
-    return _place(radius, width, params) / params[UNIT] + (2.0 if _flat else 1.0)
-
-
-PARTS: tuple[Callable[..., Any], ...] = (find_junction, opened, extent, margins, state_of_radius)
+    return law.t_of_radius(radius, width, params) / params[UNIT] + (2.0 if law.flat else 1.0)

@@ -4,87 +4,81 @@ Notation of ``params``. All in units of the shape's width and rise.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, DEPTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
-
-# Names that ``specialise`` fills with the functions of a profile.
-_curve: Callable[..., tuple[float, float, float, float]]
-_push: Callable[..., float]
-_roundings: Callable[..., float]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
-def stretched(t: float, params: Floats) -> tuple[float, float]:
+def indentation_at(t: float, params: Floats) -> tuple[float, float]:
     """The indentation at t > 0, and its slope over t."""
-    a, da, g, dg = _curve(t, params)
+    a, da, g, dg = law.mdr_profile(t, params)
     root, tension = math.sqrt(a), params[TENSION]
     return g - tension * root, dg - 0.5 * tension * da / root
 
 
-def load(t: float, params: Floats) -> tuple[float, float]:
+def control_at(t: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its slope over t."""
     tension = params[TENSION]
     if params[CONTROL] == 0.0 and tension > 0.0:
-        return stretched(t, params)
-    a, da, g, dg = _curve(t, params)
+        return law.indentation_at(t, params)
+    a, da, g, dg = law.mdr_profile(t, params)
     if params[CONTROL] == 0.0:
         return g, dg
     root = math.sqrt(a)
     slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
-    return _push(t, params) - tension * a * root, a * slope
+    return law.reduced_load(t, params) - tension * a * root, a * slope
 
 
-def distance(t: float, params: Floats) -> float:
+def reduced_control(t: float, params: Floats) -> float:
     """The controlled quantity from the lowest foot on, over its depth; without adhesion from first touch on."""
-    value = load(t, params)[0]
+    value = law.control_at(t, params)[0]
     return (value + params[DEPTH]) / params[DEPTH] if params[TENSION] > 0.0 else value
 
 
 def radius(t: float, params: Floats) -> float:
     """a over width."""
-    return _curve(t, params)[0]
+    return law.mdr_profile(t, params)[0]
 
 
-def answer(t: float, params: Floats) -> tuple[float, float, float]:
+def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl)."""
-    a, da, _, dg = _curve(t, params)
+    a, da, _, dg = law.mdr_profile(t, params)
     root, tension = math.sqrt(a), params[TENSION]
     rising, pull = root * dg, 0.5 * tension * da
     k = a * (rising - 3.0 * pull) / (rising - pull) if tension > 0.0 else a
-    return a, _push(t, params) - tension * a * root, k
+    return a, law.reduced_load(t, params) - tension * a * root, k
 
 
 def force(t: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return answer(t, params)[1]
+    return law.radius_force_stiffness(t, params)[1]
 
 
 def stiffness(t: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return answer(t, params)[2]
+    return law.radius_force_stiffness(t, params)[2]
 
 
-def pulled(a: float, params: Floats) -> tuple[float, float]:
+def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
     """dl over rise, and a dl over width rise."""
     stretch = params[TENSION] * math.sqrt(a)
     return stretch, a * stretch
 
 
-def errors(params: Floats) -> tuple[float, float]:
+def relative_errors(params: Floats) -> tuple[float, float]:
     """Both from the roundings of the profile and of dl."""
-    error = ROUNDING * _roundings(params)
+    error = ROUNDING * law.roundings(params)
     return error, error
 
 
-def strain(t: float, params: Floats) -> float:
+def elastic_integral(t: float, params: Floats) -> float:
     """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
     total, low = 0.0, 0.0
     while low < t:
@@ -92,7 +86,9 @@ def strain(t: float, params: Floats) -> float:
         for i in range(_NODES.size):
             z, weight = _NODES[i], _WEIGHTS[i]
             at = low + (high - low) * z * z * z * z
-            total += 8.0 * (high - low) * weight * z * z * z * _curve(at, params)[3] * _push(at, params)
+            total += (
+                8.0 * (high - low) * weight * z * z * z * law.mdr_profile(at, params)[3] * law.reduced_load(at, params)
+            )
         low = high
     return total
 
@@ -100,21 +96,8 @@ def strain(t: float, params: Floats) -> float:
 def energy(t: float, params: Floats) -> float:
     """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
     tension = params[TENSION]
-    a = _curve(t, params)[0]
+    a = law.mdr_profile(t, params)[0]
     stretch = tension * math.sqrt(a)
-    return (strain(t, params) - 2.0 * stretch * _push(t, params) + 0.5 * stretch * stretch * a) / (2.0 * params[DEPTH])
-
-
-PARTS: tuple[Callable[..., Any], ...] = (
-    stretched,
-    load,
-    distance,
-    radius,
-    answer,
-    force,
-    stiffness,
-    pulled,
-    errors,
-    strain,
-    energy,
-)
+    return (
+        law.elastic_integral(t, params) - 2.0 * stretch * law.reduced_load(t, params) + 0.5 * stretch * stretch * a
+    ) / (2.0 * params[DEPTH])

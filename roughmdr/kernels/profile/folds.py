@@ -5,9 +5,8 @@ A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import (
     CONTROL,
     COUNT,
@@ -26,13 +25,6 @@ from roughmdr.kernels.profile.layout import (
 )
 from roughmdr.numerics.arguments import Floats
 
-# Names that ``specialise`` fills with the functions of a profile and of ``balance``.
-_curve: Callable[..., tuple[float, float, float, float]]
-_dip_count: Callable[..., int]
-_dip: Callable[..., tuple[float, float]]
-_corner: bool
-load: Callable[..., tuple[float, float]]
-
 _LARGEST = 1e140  # its square is a float
 _CLOSE = 1e-15
 # From what part of the foot on a difference has lost too many digits for a square root of it: in ordinary profiles, and
@@ -41,19 +33,19 @@ _NEAR, _SWING, _FARTHEST = 4e-3, 8.0, 0.1
 _NEXT = 2.0**-52
 
 
-def _steepness(t: float, params: Floats) -> float:
+def steepness(t: float, params: Floats) -> float:
     """2 sqrt(a) g'(a)."""
-    a, da, _, dg = _curve(t, params)
+    a, da, _, dg = law.mdr_profile(t, params)
     return 2.0 * math.sqrt(a) * dg / da if da > 0.0 else math.inf
 
 
-def _excess(t: float, tension: float, params: Floats) -> float:
+def log_excess(t: float, tension: float, params: Floats) -> float:
     """ln(steepness/tension), within bounds."""
-    steepness = _steepness(t, params)
+    steepness = law.steepness(t, params)
     return math.log(steepness / tension) if 0.0 < steepness < math.inf else (500.0 if steepness > 0.0 else -500.0)
 
 
-def _crossing(low: float, high: float, tension: float, params: Floats) -> float:
+def steepness_crossing(low: float, high: float, tension: float, params: Floats) -> float:
     """The t between low (or 0) and high (or inf) where the steepness passes the tension; inf where none is found.
 
     By secants and halves in ln t, in which the steepness is nearly a power law.
@@ -61,26 +53,26 @@ def _crossing(low: float, high: float, tension: float, params: Floats) -> float:
     rising, factor = True, 16.0
     if high == math.inf:
         low, high = max(low, 1e-3), max(low, 1.0)
-        while not _steepness(high, params) >= tension:
+        while not law.steepness(high, params) >= tension:
             if high > _LARGEST:
                 return math.inf
             low, high, factor = high, high * factor, min(factor * factor, 1e20)
     else:
-        rising = _steepness(high, params) >= tension
-    if low == 0.0 or (_steepness(low, params) >= tension) == rising:
+        rising = law.steepness(high, params) >= tension
+    if low == 0.0 or (law.steepness(low, params) >= tension) == rising:
         low, factor = min(0.5 * high, 1.0), 16.0
-        while (_steepness(low, params) >= tension) == rising:
+        while (law.steepness(low, params) >= tension) == rising:
             if low < 1.0 / _LARGEST:
                 return math.inf
             high, low, factor = low, low / factor, min(factor * factor, 1e20)
     z_low, z_high = math.log(low), math.log(high)
-    e_low, e_high = _excess(low, tension, params), _excess(high, tension, params)
+    e_low, e_high = law.log_excess(low, tension, params), law.log_excess(high, tension, params)
     z = z_high
     for i in range(200):
         z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % 3 < 2 else 0.5 * (z_low + z_high)
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
-        excess = _excess(math.exp(z), tension, params)
+        excess = law.log_excess(math.exp(z), tension, params)
         if abs(excess) < _CLOSE or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
@@ -90,30 +82,30 @@ def _crossing(low: float, high: float, tension: float, params: Floats) -> float:
     return math.exp(z)
 
 
-def _branch(count: int, foot: float, top: float, params: Floats) -> int:
+def note_branch(count: int, foot: float, top: float, params: Floats) -> int:
     """Note one more branch; the new count, or more than MOST."""
     if count < MOST:
         params[FOOT + count], params[TOP + count] = foot, top
     return count + 1
 
 
-def _list_branches(tension: float, params: Floats) -> int:
+def list_branches(tension: float, params: Floats) -> int:
     """Fill in where the stable branches begin and end; how many there are, 0 where it cannot be said."""
     count, low, foot, stable = 0, 0.0, 0.0, False
-    for i in range(_dip_count(params)):
-        peak, dip = _dip(i, params)
-        if not stable and peak > low and _steepness(peak, params) >= tension:
-            foot, stable = _crossing(low, peak, tension, params), True
-        elif not stable and _corner:
+    for i in range(law.softening_count(params)):
+        peak, dip = law.softening_interval(i, params)
+        if not stable and peak > low and law.steepness(peak, params) >= tension:
+            foot, stable = law.steepness_crossing(low, peak, tension, params), True
+        elif not stable and law.corner:
             foot, stable = peak, True
-        if stable and _steepness(dip, params) < tension:
-            beyond = peak * (1.0 + _NEXT) if _corner else peak
-            count = _branch(count, foot, _crossing(beyond, dip, tension, params), params)
+        if stable and law.steepness(dip, params) < tension:
+            beyond = peak * (1.0 + _NEXT) if law.corner else peak
+            count = law.note_branch(count, foot, law.steepness_crossing(beyond, dip, tension, params), params)
             stable = False
         low = dip
     if not stable:
-        foot = _crossing(low, math.inf, tension, params)
-    count = _branch(count, foot, math.inf, params)
+        foot = law.steepness_crossing(low, math.inf, tension, params)
+    count = law.note_branch(count, foot, math.inf, params)
     return count if count <= MOST and foot < math.inf else 0
 
 
@@ -124,9 +116,9 @@ def find_branches(params: Floats) -> None:
         params[FOOT], params[TOP], params[FOOT_X], params[TOP_X], params[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
         params[LAST], params[LAST_X] = 0.0, 0.0
         return
-    measure_branches(_list_branches(params[TENSION] * (1.0 + 2.0 * params[CONTROL]), params), params)
+    law.measure_branches(law.list_branches(params[TENSION] * (1.0 + 2.0 * params[CONTROL]), params), params)
     if params[COUNT] > 0.0:
-        a = _curve(params[FOLD], params)[0]
+        a = law.mdr_profile(params[FOLD], params)[0]
         swing = 2.0 * params[TENSION] * math.sqrt(a) * (a if params[CONTROL] > 0.0 else 1.0) / params[DEPTH]
         params[NEAR] = min(_NEAR * max(swing / _SWING, 1.0), _FARTHEST)
 
@@ -135,16 +127,14 @@ def measure_branches(count: int, params: Floats) -> None:
     """Fill in the depth and the distances of the ``count`` branches that are listed."""
     params[DEPTH] = -math.inf
     for j in range(count):
-        depth = -load(params[FOOT + j], params)[0]
+        depth = -law.control_at(params[FOOT + j], params)[0]
         if depth > params[DEPTH]:
             params[FOLD], params[DEPTH] = params[FOOT + j], depth
     if not 0.0 < params[DEPTH] < math.inf:
         return
     for j in range(count):
-        params[FOOT_X + j] = load(params[FOOT + j], params)[0] / params[DEPTH] + 1.0
-        params[TOP_X + j] = load(params[TOP + j], params)[0] / params[DEPTH] + 1.0 if j < count - 1 else math.inf
+        params[FOOT_X + j] = law.control_at(params[FOOT + j], params)[0] / params[DEPTH] + 1.0
+        params[TOP_X + j] = (
+            law.control_at(params[TOP + j], params)[0] / params[DEPTH] + 1.0 if j < count - 1 else math.inf
+        )
     params[COUNT], params[LAST], params[LAST_X] = float(count), params[FOOT + count - 1], params[FOOT_X + count - 1]
-
-
-LISTING: tuple[Callable[..., Any], ...] = (_branch, measure_branches)
-PARTS: tuple[Callable[..., Any], ...] = (*LISTING, _steepness, _excess, _crossing, _list_branches, find_branches)

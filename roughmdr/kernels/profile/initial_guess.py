@@ -5,21 +5,16 @@ y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adh
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import octave
 
-# Names that ``specialise`` fills with the functions of ``balance`` and ``root``, and with how fine the nodes are.
-SPLIT: int
-NODE: int
-load: Callable[..., tuple[float, float]]
-root: Callable[..., float]
-nearer: Callable[..., tuple[float, float, float]]
+_octave = compiled(octave, small=True)
 
 _LOWEST = 2.0 ** (OCTAVES // 2)  # over which depth the start without adhesion begins
 _LARGEST = 2.0**OCTAVES
@@ -28,32 +23,35 @@ _CORNER = 1e-6  # of the depth over the foot: a fold has no slope
 _BEND = 1e-4  # of the foot: over it the slope at a fold is linear
 
 
-def scale(x: float, params: Floats) -> float:
+def y_of_x(x: float, params: Floats) -> float:
     """y at the distance x to the lowest foot."""
     side = 1.0 + math.sqrt(max(x - params[LAST_X], 0.0))
     return side * side if params[TENSION] > 0.0 else x * _LOWEST
 
 
-def guess(x: float, params: Floats) -> float:
+def initial_guess(x: float, params: Floats) -> float:
     """t within the octaves; beyond them anything."""
-    node, u = octave(scale(x, params), SPLIT)
-    node = min(max(node, 0), (OCTAVES << SPLIT) - 1)
-    at, parts = NODE + 2 * node, (1 << SPLIT) + (node & ((1 << SPLIT) - 1))  # parts in the y of the node
+    node, u = _octave(law.y_of_x(x, params), law.split)
+    node = min(max(node, 0), (OCTAVES << law.split) - 1)
+    at, parts = (
+        law.first_node + 2 * node,
+        (1 << law.split) + (node & ((1 << law.split) - 1)),
+    )  # parts in the y of the node
     t, rise = params[at], params[at + 2] - params[at]
     first, last = params[at + 1] / float(parts), params[at + 3] / float(parts + 1)
     return float(t + u * (first + u * ((3.0 * rise - 2.0 * first - last) + u * (first + last - 2.0 * rise))))
 
 
-def first_guess(x: float, params: Floats) -> float:
+def guess_anywhere(x: float, params: Floats) -> float:
     """t anywhere."""
-    y = scale(x, params)
+    y = law.y_of_x(x, params)
     if 1.0 <= y < _LARGEST:
-        return guess(x, params)
-    end = NODE if y < 1.0 else NODE + 2 * (OCTAVES << SPLIT)
+        return law.initial_guess(x, params)
+    end = law.first_node if y < 1.0 else law.first_node + 2 * (OCTAVES << law.split)
     return float(params[end] * math.pow(y if y < 1.0 else y / _LARGEST, params[end + 1] / params[end]))
 
 
-def place(y: float, params: Floats) -> tuple[float, float]:
+def x_of_y(y: float, params: Floats) -> tuple[float, float]:
     """The distance x to the lowest foot at y, and dx/dy times y."""
     side = math.sqrt(y)
     if params[TENSION] > 0.0:
@@ -61,71 +59,62 @@ def place(y: float, params: Floats) -> tuple[float, float]:
     return y / _LOWEST, y / _LOWEST
 
 
-def extrapolated(node: int, interval: float, params: Floats) -> float:
+def extrapolate_node(node: int, interval: float, params: Floats) -> float:
     """About t at a node, from the one before with ln y less by ``interval``: the way from the foot is a power of y."""
-    foot, at = params[LAST], NODE + 2 * node
+    foot, at = params[LAST], law.first_node + 2 * node
     way, step = params[at - 2] - foot, params[at - 1] * interval
     power = step / way if way > 0.0 else 0.0
     return float(params[at - 2] + step * (1.0 + power * (0.5 + power / 6.0)))
 
 
-def find_first_node(params: Floats) -> None:
+def fill_first_node(params: Floats) -> None:
     """Fill in the first node: the foot, or without adhesion a small contact."""
     foot = params[LAST]
     if params[TENSION] == 0.0:
-        find_node(0, 1.0, params)
+        law.fill_node(0, 1.0, params)
         return
-    params[NODE] = foot
-    if foot == 0.0 or load(foot, params)[1] > _CORNER * params[DEPTH] / foot:
-        params[NODE + 1] = 0.0
+    params[law.first_node] = foot
+    if foot == 0.0 or law.control_at(foot, params)[1] > _CORNER * params[DEPTH] / foot:
+        params[law.first_node + 1] = 0.0
     else:
-        bent = load(foot + _BEND * foot, params)[1] / (_BEND * foot)
-        params[NODE + 1] = math.sqrt(0.5 * params[DEPTH] / bent)
+        bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
+        params[law.first_node + 1] = math.sqrt(0.5 * params[DEPTH] / bent)
 
 
-def find_node(node: int, y: float, params: Floats) -> None:
+def fill_node(node: int, y: float, params: Floats) -> None:
     """Fill in a node by itself."""
-    foot, at = params[LAST], NODE + 2 * node
-    x, dx = place(y, params)
+    foot, at = params[LAST], law.first_node + 2 * node
+    x, dx = law.x_of_y(y, params)
     before = params[at - 2] if node > 0 else 0.0
     start = 2.0 * before - foot if before > foot else max(2.0 * foot, 1e-3)
-    params[at] = root(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
-    params[at + 1] = dx * params[DEPTH] / load(params[at], params)[1]
+    params[at] = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
+    params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1]
 
 
-def find_starts(rows: Floats) -> None:
+def fill_nodes(rows: Floats) -> None:
     """Fill in the nodes of all rows, one after the other for all at once, so that no row waits for another."""
     count = rows.shape[0]
     t, step, per = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
         if rows[i, COUNT] > 0.0:
-            find_first_node(rows[i])
+            law.fill_first_node(rows[i])
     y = 1.0
-    for node in range(1, (OCTAVES << SPLIT) + 1):
+    for node in range(1, (OCTAVES << law.split) + 1):
         before = y
-        y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << SPLIT) - 1)), -SPLIT), node >> SPLIT)
+        y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
         interval = math.log(y / before)
         for i in range(count):
-            t[i] = extrapolated(node, interval, rows[i])
+            t[i] = law.extrapolate_node(node, interval, rows[i])
         for _ in range(2):
             for i in range(count):
-                t[i], step[i], per[i] = nearer(t[i], place(y, rows[i])[0], rows[i])
+                t[i], step[i], per[i] = law.newton_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
         for i in range(count):
-            rows[i, NODE + 2 * node], rows[i, NODE + 2 * node + 1] = t[i], place(y, rows[i])[1] * per[i]
+            rows[i, law.first_node + 2 * node], rows[i, law.first_node + 2 * node + 1] = (
+                t[i],
+                law.x_of_y(y, rows[i])[1] * per[i],
+            )
         for i in range(count):
             # Under dead load ``nearer`` has gone elsewhere.
             trusted = (abs(step[i]) < _ROUGH * (t[i] - rows[i, LAST])) & (rows[i, CONTROL] == 0.0)
             if not trusted and rows[i, COUNT] > 0.0:
-                find_node(node, y, rows[i])
-
-
-PARTS: tuple[Callable[..., Any], ...] = (
-    scale,
-    guess,
-    first_guess,
-    place,
-    extrapolated,
-    find_node,
-    find_first_node,
-    find_starts,
-)
+                law.fill_node(node, y, rows[i])

@@ -1,16 +1,10 @@
 """The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``params``."""
 
 import math
-from collections.abc import Callable
-from typing import Any
 
+from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 from roughmdr.numerics.arguments import Floats
-
-# Names that ``specialise`` fills with the functions of a profile and of ``balance``.
-_kink: Callable[..., bool]
-load: Callable[..., tuple[float, float]]
-stretched: Callable[..., tuple[float, float]]
 
 _LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, four digits are lost
 # Gauss's rule of five nodes, exact for a slope of ninth degree: from the middle over the length, and weights.
@@ -22,29 +16,29 @@ _LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that w
 _PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
 
 
-def above(t: float, j: int, params: Floats) -> tuple[float, float]:
+def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
     """How far the controlled quantity lies above the lowest foot, and its slope; t on branch j."""
-    value, slope = load(t, params)
+    value, slope = law.control_at(t, params)
     foot = params[FOOT + j]
     step = t - foot
     if params[TENSION] == 0.0:
         return value, slope
     lifted = value + params[DEPTH]
     far = step > params[NEAR] * t and (foot > 0.0 or lifted > _LOST * params[DEPTH])
-    if far or _kink(foot, t, params):
+    if far or law.kink(foot, t, params):
         return lifted, slope
     middle = foot + 0.5 * step
-    inner = load(middle - _INNER * step, params)[1] + load(middle + _INNER * step, params)[1]
-    outer = load(middle - _OUTER * step, params)[1] + load(middle + _OUTER * step, params)[1]
-    mean = _MIDDLE * load(middle, params)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
+    inner = law.control_at(middle - _INNER * step, params)[1] + law.control_at(middle + _INNER * step, params)[1]
+    outer = law.control_at(middle - _OUTER * step, params)[1] + law.control_at(middle + _OUTER * step, params)[1]
+    mean = _MIDDLE * law.control_at(middle, params)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
     return params[FOOT_X + j] * params[DEPTH] + step * mean, slope
 
 
-def root(wanted: float, t: float, low: float, high: float, j: int, params: Floats) -> float:
+def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, params: Floats) -> float:
     """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
     foot, lift = params[FOOT + j], params[DEPTH] if params[TENSION] > 0.0 else 0.0
     for i in range(200):
-        value, slope = above(t, j, params)
+        value, slope = law.control_above_fold(t, j, params)
         if value < wanted:
             low = t
         elif value > wanted:
@@ -66,13 +60,13 @@ def root(wanted: float, t: float, low: float, high: float, j: int, params: Float
     return math.nan
 
 
-def nearer(t: float, x: float, params: Floats) -> tuple[float, float, float]:
+def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     """One step of Newton's method on the last branch under fixed grips, not below its foot: t, how far it was away, and
     dt/dx.
 
     So far away is it as the step, or as the step makes of the value: that of a steep power changes more than t.
     """
-    value, slope = stretched(t, params)
+    value, slope = law.indentation_at(t, params)
     lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0
     wanted, beyond = x * params[DEPTH], t - params[LAST]
     rest = (value + lift) - wanted
@@ -81,11 +75,8 @@ def nearer(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     return max(t - step, params[LAST] + _LEAST_WAY * beyond), away, params[DEPTH] / slope
 
 
-def arrived(t: float, away: float, x: float, rung: float, params: Floats) -> bool:
-    """Whether a step from so far ``away`` has come to the state on branch ``rung``: one lies beyond the last foot."""
+def converged(t: float, away: float, x: float, branch: float, params: Floats) -> bool:
+    """Whether a step from so far ``away`` has come to the state on branch ``branch``: one lies beyond the last foot."""
     beyond = t - params[LAST]
-    is_last = (rung == params[COUNT]) & (x > params[LAST_X])
+    is_last = (branch == params[COUNT]) & (x > params[LAST_X])
     return bool(is_last & (beyond > params[NEAR] * t) & (away <= _FINE * beyond))
-
-
-PARTS: tuple[Callable[..., Any], ...] = (above, root, nearer, arrived)

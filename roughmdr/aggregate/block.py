@@ -1,0 +1,72 @@
+"""A block of asperities in the sum: its arrays, and the kernels that a sum is compiled with."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from numpy import bool_
+from numpy.typing import NDArray
+
+from roughmdr.kernels.interface import Kernels
+from roughmdr.numerics.arguments import Floats
+
+# Rows of the natural scales of a block.
+DEPTH, PER_DEPTH, SIZE, LOAD, RIGIDITY, WORTH = range(6)
+SCALES = 6
+# Rows of its contacts; the last three are filled where the kernels find them together with the state.
+STATE, RADIUS, FORCE, STIFFNESS = range(4)
+CONTACT_ROWS = 4
+
+
+class Block(NamedTuple):
+    """Arrays over the asperities of a block, from the highest to the lowest."""
+
+    z: Floats
+    """Heights [m]."""
+    params: Any
+    """As ``Kernels.prepare`` returns them."""
+    scales: Floats
+    """Natural scales, [row, asperity] in SI."""
+    max_scales: Floats
+    """The largest of each row."""
+    in_contact: Floats
+    """1 in contact, else 0; with several branches the number of the branch."""
+    in_contact_before: Floats
+    """As ``in_contact`` at the step before."""
+    contacts: Floats
+    """[row, asperity], over natural scales."""
+    scratch: Floats
+
+
+class Totals(NamedTuple):
+    """The sums over all asperities."""
+
+    wanted: NDArray[bool_]
+    """Which rows are asked for."""
+    total: Floats
+    """[row, step] in SI."""
+    compensation: Floats
+    """The rounding errors of ``total``."""
+    max_radius: Floats
+    """The contact radius [m] of each asperity where the flat is closest."""
+
+
+class SumKernels(Kernels):
+    """Kernels of a shape under an adhesion model, with the parts of the sum that are compiled with them."""
+
+    natural_scales: Callable[..., bool]
+    lowest_in_contact: Callable[..., float]
+    update_contact: Callable[..., None]
+    evaluate: Callable[..., None]
+    solve_contacts: Callable[..., None]
+    radius_at: Callable[[Block, int], float]
+    force_at: Callable[[Block, int], float]
+    stiffness_at: Callable[[Block, int], float]
+    total_error: Callable[..., float]
+    error_bound: Callable[..., float]
+    jumps: Callable[..., float]
+    add_totals: Callable[..., None]
+    loop: Callable[..., int]
+
+
+law = SumKernels("law")
+"""Stands for the kernels in parts of the sum that ``specialise`` is given."""

@@ -1,0 +1,82 @@
+"""Which kernels compute which shape, with and without adhesion. A new shape with a profile needs no line here."""
+
+from functools import cache
+from types import ModuleType
+
+from roughmdr.errors import OutOfRange
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.closed import flat_punch, hertz, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.kernels.dugdale import flat_punch as dugdale_flat_punch
+from roughmdr.kernels.interface import Kernels
+from roughmdr.kernels.profile.build import build
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import specialise
+from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape, Shape
+
+_NAMES = tuple(Kernels.__annotations__)
+
+
+def _of_module(name: str, module: ModuleType, suffix: str = "") -> Kernels:
+    """Return the kernels of a module, those that end in ``suffix`` before others."""
+    law = Kernels(name)
+    found = {name: getattr(module, name + suffix, None) or getattr(module, name, None) for name in _NAMES}
+    vars(law).update({name: kernel for name, kernel in found.items() if kernel is not None})
+    return law
+
+
+@cache
+def _closed(shape: str, adhesive: bool) -> Kernels:
+    """Return the kernels of a shape whose states have a closed form."""
+    module, suffix = {
+        ("paraboloid", False): (hertz, "_paraboloid"),
+        ("cone", False): (hertz, "_cone"),
+        ("power_law", False): (hertz, "_power"),
+        ("flat_punch", False): (flat_punch, ""),
+        ("paraboloid", True): (jkr_paraboloid, ""),
+        ("cone", True): (jkr_cone, ""),
+        ("power_law", True): (jkr_power, ""),
+        ("flat_punch", True): (flat_punch, "_jkr"),
+    }[shape, adhesive]
+    law = _of_module(f"{'jkr' if adhesive else 'elastic'}_{shape}", module, suffix)
+    law.adhesive = adhesive
+    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
+    law.found_together = "radius_force_stiffness" in vars(law)
+    if not law.found_together:
+        law.radius_force_stiffness = specialise(scalar.radius_force_stiffness, law)
+    return law
+
+
+@cache
+def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
+    """Return the kernels of a shape that is known by its profile."""
+    law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
+    law.adhesive, law.branched = adhesive, adhesive and shape.branched()
+    return law
+
+
+@cache
+def _dugdale(shape: type[Shape]) -> Kernels:
+    """Return the kernels of a shape under adhesion with a range."""
+    if shape is not FlatPunch:
+        return build(shape, cohesive=True)
+    law = _of_module("dugdale_flat_punch", dugdale_flat_punch)
+    law.adhesive = law.iterative = law.branched = law.cohesive = law.found_together = True
+    return law
+
+
+def choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:
+    """Return the kernels for asperities of one shape, whose ``params`` are as from ``Shape.nondimensionalise``.
+
+    OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
+    springs' detachment runs parallel to the profile.
+    """
+    kind = SHAPES[shape]
+    if adhesion.work > 0.0:
+        lowest = kind.least_exponent(params)
+        if not lowest > 0.5:
+            raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
+    if adhesion.cohesive:
+        return _dugdale(kind)
+    if issubclass(kind, ProfileShape):
+        return _of_profile(kind, adhesion.work > 0.0)
+    return _closed(shape, adhesion.work > 0.0)

@@ -1,0 +1,80 @@
+"""The kernels that those of any profile are made of, beside the ones that loops call (``kernels.interface``).
+
+In units of the shape's width and rise; ``params`` is a row as ``layout`` describes it.
+"""
+
+from collections.abc import Callable
+
+from roughmdr.kernels.interface import Kernel, Kernels
+from roughmdr.numerics.arguments import Floats
+
+
+class ProfileKernels(Kernels):
+    """Kernels of a shape that is known by its profile."""
+
+    iterative = True
+    found_together = True
+
+    mdr_profile: Callable[..., tuple[float, float, float, float]]
+    """As in ``shapes.profile.Profile``, and so what follows down to ``t_of_q``."""
+    reduced_load: Kernel
+    t_of_radius: Kernel
+    f_and_slope: Callable[..., tuple[float, float]]
+    softening_count: Callable[[Floats], int]
+    softening_interval: Callable[[int, Floats], tuple[float, float]]
+    kink: Callable[..., bool]
+    breakpoint_count: Callable[[Floats], int]
+    breakpoint: Callable[[int, Floats], tuple[float, float]]
+    precompute: Callable[[Floats], None]
+    roundings: Kernel
+    elastic_integral: Kernel
+    corner: bool
+    flat: bool
+    end: float
+    has_t_of_q: bool
+    t_of_q: Kernel
+
+    indentation_at: Callable[..., tuple[float, float]]
+    """(t, params) -> the indentation and its slope over t."""
+    control_at: Callable[..., tuple[float, float]]
+    """(t, params) -> the controlled quantity, indentation or force, and its slope over t."""
+    steepness: Kernel
+    log_excess: Kernel
+    steepness_crossing: Kernel
+    note_branch: Callable[..., int]
+    list_branches: Callable[..., int]
+    measure_branches: Callable[[int, Floats], None]
+    find_branches: Callable[[Floats], None]
+    control_above_fold: Callable[..., tuple[float, float]]
+    solve_on_branch: Kernel
+    split: int
+    """Times an octave of the initial guess is halved."""
+    first_node: int
+    """The place in a row of the first node of the initial guess."""
+    y_of_x: Kernel
+    guess_anywhere: Kernel
+    x_of_y: Callable[..., tuple[float, float]]
+    extrapolate_node: Kernel
+    fill_first_node: Callable[[Floats], None]
+    fill_node: Callable[..., None]
+    fill_nodes: Callable[[Floats], None]
+    fill_params: Callable[..., None]
+
+    stride: float
+    """By which factor the search for branches under adhesion with a range goes on."""
+    widest_zone: Kernel
+    t_along: Kernel
+    zone_panel: Callable[..., tuple[float, float, float]]
+    rise_begins: Kernel
+    zone_integrals: Callable[..., tuple[float, float, float]]
+    find_junction: Callable[[Floats], bool]
+    gap_at: Callable[..., tuple[float, float]]
+    zone_width: Kernel
+    zone_edge: Callable[..., tuple[float, float, float, float, float, float, float]]
+    state_along: Callable[..., tuple[float, float, float, float, float]]
+    next_trial: Kernel
+    slope_root: Kernel
+
+
+law = ProfileKernels("law")
+"""Stands for the kernels in those that ``specialise`` is given."""
