@@ -140,7 +140,8 @@ def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
 
     Under dead load P = -(2n-1)/(2n+2) sqrt(8 pi E* w a^3), (a/width)^(n-1/2) = 3 dl(width)/(2 n g(width)): the flat
     face, n -> infinity, adheres best. A blunter profile has its rise nearer to the rim: contact keeps its middle for
-    longer, and its rim for less long. Tension is smallest near (a/width)^(n-1/2) = exp(-1/2), that is n g(width) = 2.5 dl(width).
+    longer, and its rim for less long. Tension is smallest near (a/width)^(n-1/2) = exp(-1/2), that is where
+    n g(width) = 2.5 dl(width).
     """
     exponents = np.geomspace(SHARPEST, FLATTEST, points)
     rises = stretch(WIDTH) / np.array(STRETCHES)

@@ -11,7 +11,8 @@ from oracles.multiprecision import Number, mp
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import choose
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.shapes import SHAPES, Shape
@@ -61,20 +62,20 @@ class _Subject:
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
         width, rise, params = shape.nondimensional()
         self.shape, self.effective_modulus, self.adhesion = shape, effective_modulus, Adhesion(work)
-        self.columns = np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None]
-        self.law = choose(shape.name, self.adhesion, self.columns[2])
-        prepared = self.law.prepare(effective_modulus, work, math.inf, *self.columns, 0, 1, 0.0)
-        self.params = self.law.own(prepared, 0)
-        self.solvable = not (self.law.curved and self.params[COUNT] == 0.0)
+        self.columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
+        self.law = choose(shape.name, self.adhesion, self.columns.params)
+        prepared = self.law.prepare(Material(effective_modulus, work, math.inf), self.columns, 0, 1, 0.0)
+        self.params = self.law.params_of(prepared, 0)
+        self.solvable = not (self.law.iterative and self.params[COUNT] == 0.0)
         if self.solvable:
-            (self.depth, _), self.radius, *_ = self.law.natural(effective_modulus, work, width, rise, self.params)
+            (self.depth, _), self.radius, *_ = self.law.scales(effective_modulus, work, width, rise, self.params)
             kind = ExactPunch if isinstance(shape, rm.FlatPunch) else ExactContact
             self.exact = kind(shape, effective_modulus, work)  # type: ignore[arg-type]
             self.branches = self._branches() if work else []
 
     def _branches(self) -> list[Branch]:
         exact = self.exact
-        if not self.law.curved:
+        if not self.law.iterative:
             foot = exact.fold()
             return [Branch(foot, mp.inf, exact.indentation(foot), mp.inf)]
         found = []
@@ -92,7 +93,7 @@ class _Subject:
     def random_indentation(self, rng: Rng) -> float:
         """Return one at 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
         if not self.branches:
-            return float(self.depth * self.law.distance(power_of_ten(rng, -4.0, 2.0), self.params))
+            return float(self.depth * self.law.reduced_control(power_of_ten(rng, -4.0, 2.0), self.params))
         depth, branch = self.fold_depth, self.branches[int(rng.integers(len(self.branches)))]
         distance = depth * power_of_ten(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
         if branch.highest < mp.inf and rng.random() < 0.5:
@@ -130,17 +131,17 @@ class _Subject:
 
     def _branch_at_end(self, x: list[float]) -> int:
         """Return the number of the branch at the end of a path of reduced controls, from 1; 0 out of contact."""
-        if self.law.rung is None or not self.law.branched:
+        if not self.law.branched:
             return 1
         number = 0.0
         for each in x:
-            number = self.law.rung(max(each, 0.0), number, True, self.params)
+            number = self.law.branch(max(each, 0.0), number, True, self.params)
         return int(number)
 
     def _exact_state(self, indentation: Number, x: float, number: int, ends: tuple[Number, Number]) -> Number | None:
         law, params = self.law, self.params
-        begin = law.state_on(x, float(number), params) if law.state_on is not None else law.state(x, params)
-        if not law.curved:
+        begin = law.state_on_branch(x, float(number), params) if law.branched else law.state(x, params)
+        if not law.iterative:
             begin = self.radius * law.radius(begin, params)
         if not 0.0 <= begin < math.inf:
             return None

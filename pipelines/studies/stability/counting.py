@@ -23,7 +23,7 @@ from roughmdr.kernels.closed import jkr_power
 from roughmdr.kernels.dugdale import equilibrium
 from studies.stability.cases import Case, design
 
-EQUILIBRIUM = {"jkr": jkr_power._distance.__name__, "dugdale": equilibrium.along.__name__}
+EQUILIBRIUM = {"jkr": jkr_power._distance.__name__, "dugdale": equilibrium.state_along.__name__}
 """The kernel that evaluates an equilibrium, by adhesion model."""
 Counts = list[list[list[int] | None]]
 
