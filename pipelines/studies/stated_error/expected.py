@@ -98,7 +98,7 @@ class ExpectedForce:
         return self.scene.asperities.nodes(scores) if self.populations is None else nodes_of(self.populations, scores)
 
     def _scores(self, order: int) -> Rule:
-        """Return Gauss's rule on panels that end at the kinks of all steps; the trapezoidal rule if kinks are curves."""
+        """Return Gauss's rule on panels that end at the kinks of all steps; the trapezoidal rule for curved kinks."""
         if self._count_of_three <= _MAX_POPULATIONS:  # nothing is drawn
             return Rule(np.zeros(1), np.ones(1))
         if self.several:
