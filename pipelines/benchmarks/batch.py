@@ -128,14 +128,13 @@ def report(result: xr.Dataset) -> str:
         memory.append([f"{count:,}", f"{float(row.peak_memory) / 1e6:.0f}", f"{float(row.statistics_time):.1f}"])
     workers = []
     for pool in ups.pool.to_numpy():
-        values, inside = ups.sel(pool=pool).to_numpy(), result.task_time.sel(pool=pool, used=1)
-        figures = [f"{np.median(values):.2f}", f"{values.max():.2f}", f"{1e3 * float(inside.median()):.0f}"]
-        workers.append([str(pool), *figures])
+        values, inside = ups.sel(pool=pool).to_numpy(), 1e3 * float(result.task_time.sel(pool=pool, used=1).median())
+        workers.append([str(pool), f"{np.median(values):.2f}", f"{values.max():.2f}", f"{inside:.0f}"])
     tasks = []
     for name in ("task_overhead", "task_caller", "task_scheduler"):
         for count in result.workers.to_numpy():
-            row = [f"{1e3 * value:.3f}" for value in result[name].sel(workers=count).to_numpy()]
-            tasks.append([f"{name.removeprefix('task_')}, {count} workers", *row])
+            each = [f"{1e3 * value:.3f}" for value in result[name].sel(workers=count).to_numpy()]
+            tasks.append([f"{name.removeprefix('task_')}, {count} workers", *each])
     costs = _costs(result)
     large = Capacity(*(result.attrs[f"large_{name}"] for name in Capacity._fields))
     return "\n\n".join(

@@ -22,7 +22,6 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -81,7 +80,7 @@ def by_the_sum(
     ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = TOTALS
 ) -> Cost:
     """Measure the package's sum, all included."""
-    columns = Columns(*ensemble.columns())
+    columns = ensemble.columns()
     kernels = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 

@@ -134,7 +134,7 @@ def _cluster(workers: int) -> Iterator[tuple[str, int]]:
             worker_class="distributed.Worker",
             n_workers=workers,
             threads_per_worker=1,
-            dashboard_address=None,
+            scheduler_kwargs={"dashboard": False},
             worker_kwargs={"local_directory": folder},
         ) as cluster,
     ):

@@ -132,10 +132,10 @@ def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
             curves.append(draw(surface, number))
             seconds.append(time.perf_counter() - started)
         each, visits = float(np.median(seconds)), float(np.mean([curve.evaluations for curve in curves]))
-        force, area = (np.array([getattr(curve, name) for curve in curves]) for name in ("force", "area"))
+        drawn = [np.array([getattr(curve, name) for curve in curves]) for name in ("force", "area")]
         for size in 2 ** np.arange(int(math.log2(total / _MIN_GROUPS)) + 1):
-            means = [values.reshape(-1, size, values.shape[-1]).mean(axis=1) for values in (force, area)]
-            errors = [exact.errors(_curve(*group, 0)) for group in zip(*means, strict=True)]
+            means = [values.reshape(-1, size, values.shape[-1]).mean(axis=1) for values in drawn]
+            errors = [exact.errors(_curve(force, area, 0)) for force, area in zip(*means, strict=True)]
             yield Point(float(size), root_mean_square(errors), float(size) * each, float(size) * visits)
 
     return points
