@@ -8,59 +8,59 @@ from studies.study import named, table
 
 from benchmarks import child
 from benchmarks.batch_picture import CELL_GOAL, MEMORY_GOAL, SPEED_GOAL
-from benchmarks.capacity import ASPERITIES, CELLS, WORKERS, Capacity, Costs, capacity, writing
+from benchmarks.capacity import ASPERITIES, CELLS, WORKERS, Costs, capacity, rows, writing
 from benchmarks.process import in_new_process
-from benchmarks.tasks import SCHEDULERS, overheads, speed_ups
+from benchmarks.tasks import SCHEDULERS, Overhead, overheads, speed_ups
 
 PARTS = ("loading", "reading", "planning", "keys", "tasks", "file")
 _WORKERS = (1, 2)
+_LARGE = "large_"  # of the attributes that are extrapolated
 
 
-def _medians(rows: list[dict[str, float]]) -> dict[str, float]:
-    return {name: median(row[name] for row in rows) for name in rows[0]}
+def _medians(found: list[dict[str, float]]) -> dict[str, float]:
+    return {name: median(each[name] for each in found) for name in found[0]}
 
 
 def by_cell(cells: int, repeats: int) -> xr.Dataset:
     """Measure the overhead of a cell, by what it is spent on; medians."""
     found = _medians([in_new_process(child.cells, cells) for _ in range(repeats)])
     overhead = [found[name] / cells for name in PARTS]
-    return xr.Dataset(
-        {
-            "cell_overhead": ("part", overhead, named("overhead of a cell, one worker", "s")),
-            "cell_time": ((), found["realisations"] / cells, named("time in the realisation of a cell", "s")),
-            "cell_size": ((), found["size"] / cells, named("a cell in the file", "byte")),
-            "cell_runs": ((), found["runs"], named("cells that were run")),
-        },
-        coords={"part": list(PARTS)},
-        attrs={"cells": cells},
-    )
+    variables = {
+        "cell_overhead": ("part", overhead, named("overhead of a cell, one worker", "s")),
+        "cell_time": ((), found["realisations"] / cells, named("time in the realisation of a cell", "s")),
+        "cell_size": ((), found["size"] / cells, named("a cell in the file", "byte")),
+        "cell_runs": ((), found["runs"], named("cells that were run")),
+    }
+    return xr.Dataset(variables, {"part": list(PARTS)}, {"cells": cells})
 
 
 def by_realizations(counts: list[int]) -> xr.Dataset:
     """Measure memory and time by the number of realisations, where statistics are kept."""
-    rows = [in_new_process(child.statistics, count) for count in counts]
-    names = {
-        "peak_memory": ("peak", named("resident memory at most", "byte")),
-        "memory_before": ("before", named("before the first realisation", "byte")),
-        "statistics_time": ("seconds", named("time of the batch, one worker", "s")),
+    found = [in_new_process(child.statistics, count) for count in counts]
+    peak, before, seconds = ([each[name] for each in found] for name in ("peak", "before", "seconds"))
+    variables = {
+        "peak_memory": ("realizations", peak, named("resident memory at most", "byte")),
+        "memory_before": ("realizations", before, named("before the first realisation", "byte")),
+        "statistics_time": ("realizations", seconds, named("time of the batch, one worker", "s")),
     }
-    variables = {name: ("realizations", [row[key] for row in rows], about) for name, (key, about) in names.items()}
     return xr.Dataset(variables, {"realizations": counts})
 
 
 def by_scheduler(tasks: int, repeats: int, workers: tuple[int, ...]) -> xr.Dataset:
     """Measure what a task costs that does next to nothing, for numbers of workers; medians."""
     found = [overheads(tasks, count, repeats) for count in workers]
-    names = {
-        "task_overhead": ("each", "overhead of a task"),
-        "start": ("start", "time until the first task is done"),
-        "task_caller": ("caller", "processor time a task of the process that calls"),
-        "task_scheduler": ("scheduler", "processor time a task of the scheduler of the cluster"),
+    values = np.array([[each[scheduler] for scheduler in SCHEDULERS] for each in found])  # [workers, scheduler, field]
+    about = dict(
+        zip(
+            ("task_overhead", "start", "task_caller", "task_scheduler"),
+            ("overhead", "time until the first", "processor time of the caller", "processor time of the scheduler"),
+            strict=True,
+        )
+    )
+    variables = {
+        name: (("workers", "scheduler"), values[:, :, field], named(f"{about[name]} of a task", "s"))
+        for field, name in zip(range(len(Overhead._fields)), about, strict=True)
     }
-    variables = {}
-    for name, (field, text) in names.items():
-        values = [[getattr(each[scheduler], field) for scheduler in SCHEDULERS] for each in found]
-        variables[name] = (("workers", "scheduler"), values, named(text, "s"))
     return xr.Dataset(variables, {"workers": list(workers), "scheduler": list(SCHEDULERS)}, {"tasks": tasks})
 
 
@@ -69,32 +69,28 @@ def by_workers(count: int, tasks: int, repeats: int) -> xr.Dataset:
     found = speed_ups(count, tasks, repeats)
     ups = [figures["speed_up"] for figures in found.values()]
     inside = [[figures[f"inside_{workers}"] for workers in _WORKERS] for figures in found.values()]
-    return xr.Dataset(
-        {
-            "speed_up": (("pool", "repeat"), ups, named("time with one worker over time with two")),
-            "task_time": (("pool", "used", "repeat"), inside, named("time in the realisation of a task", "s")),
-        },
-        coords={"pool": list(found), "used": list(_WORKERS)},
-    )
+    variables = {
+        "speed_up": (("pool", "repeat"), ups, named("time with one worker over time with two")),
+        "task_time": (("pool", "used", "repeat"), inside, named("time in the realisation of a task", "s")),
+    }
+    return xr.Dataset(variables, {"pool": list(found), "used": list(_WORKERS)})
 
 
 def by_asperity(count: int, repeats: int) -> xr.Dataset:
-    """Measure time and memory of an asperity in ensembles of ``count`` and of a tenth of it, and of a task result."""
-    counts = [count // 10, count]
-    rows = [_medians([in_new_process(child.ensemble, number) for _ in range(repeats)]) for number in counts]
-    seconds, size = writing()
-    each = {name: [row[name] / n for n, row in zip(counts, rows, strict=True)] for name in ("drawing", "visiting")}
-    memory = (rows[1]["size"] - rows[0]["size"]) / (counts[1] - counts[0])
-    return xr.Dataset(
-        {
-            "drawing_time": ("asperities", each["drawing"], named("time to draw and sort an asperity", "s")),
-            "visiting_time": ("asperities", each["visiting"], named("time of an asperity, 200 steps each way", "s")),
-            "asperity_memory": ((), memory, named("memory of one more asperity", "byte")),
-            "writing_time": ((), seconds, named("time to keep a task result", "s")),
-            "result_size": ((), size, named("a task result of one row of statistics, 400 steps", "byte")),
-        },
-        coords={"asperities": counts},
+    """Measure time and memory of an asperity in large ensembles, and of a task result."""
+    few, many = (
+        _medians([in_new_process(child.ensemble, number) for _ in range(repeats)]) for number in (count // 10, count)
     )
+    seconds, size = writing()
+    memory = (many["size"] - few["size"]) / (count - count // 10)
+    variables = {
+        "drawing_time": ((), many["drawing"] / count, named("time to draw and sort an asperity", "s")),
+        "visiting_time": ((), many["visiting"] / count, named("time to visit an asperity, 200 steps each way", "s")),
+        "asperity_memory": ((), memory, named("memory of one more asperity", "byte")),
+        "writing_time": ((), seconds, named("time to keep a task result", "s")),
+        "result_size": ((), size, named("a task result of one row of statistics, 400 steps", "byte")),
+    }
+    return xr.Dataset(variables, attrs={"asperities": count})
 
 
 def measure(quick: bool) -> xr.Dataset:
@@ -109,47 +105,44 @@ def measure(quick: bool) -> xr.Dataset:
         by_realizations([1_000, 10_000] if quick else [10_000, 100_000, 1_000_000]),
     ]
     result = xr.merge(parts, combine_attrs="no_conflicts")
-    extrapolated = capacity(_costs(result))
-    return result.assign_attrs({f"large_{name}": value for name, value in extrapolated._asdict().items()})
+    return result.assign_attrs({_LARGE + name: value for name, value in capacity(_costs(result)).items()})
 
 
 def _costs(result: xr.Dataset) -> Costs:
-    task = result.sel(scheduler="distributed", workers=max(_WORKERS)).isel(asperities=-1)
+    task = result.sel(scheduler="distributed", workers=max(_WORKERS))
     names = "drawing_time", "visiting_time", "asperity_memory", "task_caller", "task_scheduler", "writing_time"
     return Costs(*(float(task[name]) for name in (*names, "result_size")))
 
 
 def report(result: xr.Dataset) -> str:
     """Return the figures in tables."""
-    milliseconds, ups = 1e3 * result.cell_overhead.to_numpy(), result.speed_up
-    memory = []
-    for count in result.realizations.to_numpy():
-        row = result.sel(realizations=count)
-        memory.append([f"{count:,}", f"{float(row.peak_memory) / 1e6:.0f}", f"{float(row.statistics_time):.1f}"])
-    workers = []
-    for pool in ups.pool.to_numpy():
-        values, inside = ups.sel(pool=pool).to_numpy(), 1e3 * float(result.task_time.sel(pool=pool, used=1).median())
-        workers.append([str(pool), f"{np.median(values):.2f}", f"{values.max():.2f}", f"{inside:.0f}"])
-    tasks = []
-    for name in ("task_overhead", "task_caller", "task_scheduler"):
-        for count in result.workers.to_numpy():
-            each = [f"{1e3 * value:.3f}" for value in result[name].sel(workers=count).to_numpy()]
-            tasks.append([f"{name.removeprefix('task_')}, {count} workers", *each])
+    cell, memory = 1e3 * result.cell_overhead.to_numpy(), 1e-6 * result.peak_memory.to_numpy()
+    runs = zip(result.realizations.to_numpy(), memory, result.statistics_time.to_numpy(), strict=True)
+    inside = 1e3 * result.task_time.sel(used=1).median("repeat").to_numpy()
+    pools = zip(result.pool.to_numpy(), result.speed_up.to_numpy(), inside, strict=True)
+    tasks = [
+        [f"{name}, workers: {count}", *(f"{1e3 * each:.3f}" for each in result[name].sel(workers=count).to_numpy())]
+        for name in ("task_overhead", "task_caller", "task_scheduler")
+        for count in result.workers.to_numpy()
+    ]
     costs = _costs(result)
-    large = Capacity(*(result.attrs[f"large_{name}"] for name in Capacity._fields))
+    large = {name.removeprefix(_LARGE): value for name, value in result.attrs.items() if name.startswith(_LARGE)}
     return "\n\n".join(
         [
-            f"A cell costs {milliseconds.sum():.3f} ms (goal {CELL_GOAL}) beside its realisation, "
+            f"A cell costs {cell.sum():.3f} ms (goal {CELL_GOAL}) beside its realisation, "
             f"{1e3 * float(result.cell_time):.3f} ms:",
-            table([*PARTS], [[f"{each:.4f}" for each in milliseconds]]),
+            table([*PARTS], [[f"{each:.4f}" for each in cell]]),
             f"Memory, statistics kept (goal {MEMORY_GOAL:.0f} MB):",
-            table(["realisations", "MB", "s"], memory),
+            table(["realisations", "MB", "s"], [[f"{n:,}", f"{mb:.0f}", f"{s:.1f}"] for n, mb, s in runs]),
             f"Two workers for one (goal {SPEED_GOAL}):",
-            table(["pool", "median", "best", "ms a task"], workers),
+            table(
+                ["pool", "median", "best", "ms a task"],
+                [[str(name), f"{np.median(ups):.2f}", f"{ups.max():.2f}", f"{ms:.0f}"] for name, ups, ms in pools],
+            ),
             table(["ms a task", *SCHEDULERS], tasks),
             f"An asperity is drawn in {1e9 * costs.drawing:.0f} ns, visited in {1e9 * costs.visiting:.0f} ns, takes "
             f"{costs.asperity:.0f} bytes; a task result {1e-3 * costs.task_result:.0f} kB and "
             f"{1e3 * costs.writer:.1f} ms.",
-            table([f"{CELLS} cells of {ASPERITIES:,} asperities", f"{WORKERS} workers, extrapolated"], large.rows()),
+            table([f"{CELLS} cells of {ASPERITIES:,} asperities", f"{WORKERS} workers, extrapolated"], rows(large)),
         ]
     )

@@ -1,4 +1,4 @@
-"""The picture of ``batch.py``: overhead of cells, memory, overhead of tasks, and what a second worker brings."""
+"""The picture of what the batch engine costs: overhead of cells, memory, overhead of tasks, and a second worker."""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
@@ -14,70 +13,38 @@ CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
 
 
 def draw(result: xr.Dataset) -> "Figure":
-    """Draw four panels."""
+    """Draw four panels; dashed lines are the goals."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13, 3.9), layout="constrained")
-    axes = figure.subplots(1, 4, width_ratios=[1.25, 1, 1, 0.8])
-    _cells(axes[0], result)
-    _memory(axes[1], result)
-    _tasks(axes[2], result)
-    _workers(axes[3], result)
+    cells, memory, tasks, workers = figure.subplots(1, 4, width_ratios=[1.25, 1, 1, 0.8])
+    parts = 1e3 * result.cell_overhead.to_numpy()
+    widths, lefts = [*parts, parts.sum()], [*np.cumsum(parts) - parts, 0.0]
+    bars = cells.barh([*result.part.to_numpy(), "in all"], widths, left=lefts, color=["C0"] * parts.size + ["0.4"])
+    cells.bar_label(bars, [f"{width:.3f}" for width in widths], padding=3, fontsize=8)
+    cells.axvline(CELL_GOAL, color="C3", linestyle="--")
+    cells.invert_yaxis()
+    cells.set(title=f"Overhead of one of {result.attrs['cells']:,} cells", xlabel="ms")
+    cells.set_xlim(right=1.3 * max(CELL_GOAL, parts.sum()))
+    runs = result.realizations.to_numpy()
+    memory.plot(runs, result.peak_memory / 1e6, "o-", label="at most")
+    memory.plot(runs, result.memory_before / 1e6, "o:", color="0.5", label="before the first")
+    memory.axhline(MEMORY_GOAL, color="C3", linestyle="--", label="goal")
+    memory.set(title="Memory, statistics kept", xscale="log", xlabel="realisations", ylabel="MB")
+    memory.set_ylim(0.0, 1.25 * MEMORY_GOAL)
+    memory.legend(frameon=False, loc="lower right")
+    for number, count in enumerate(result.workers.to_numpy()):
+        values = 1e3 * result.task_overhead.sel(workers=count).to_numpy()
+        bars = tasks.bar(np.arange(values.size) + 0.4 * number, values, 0.38, label=f"workers: {count}")
+        tasks.bar_label(bars, [f"{value:.2f}" for value in values], fontsize=8)
+    tasks.set_xticks(np.arange(result.sizes["scheduler"]) + 0.2, result.scheduler.to_numpy())
+    tasks.set(title="Overhead of a task", ylabel="ms")
+    tasks.legend(frameon=False, loc="upper left")
+    for x, values in enumerate(result.speed_up.to_numpy()):
+        workers.plot(np.full(values.size, x), values, "o", color="C0", alpha=0.5)
+        workers.plot(x, np.median(values), "_", color="C0", ms=30, mew=2)
+        workers.annotate(f"{np.median(values):.2f}", (x + 0.28, float(np.median(values))), va="center")
+    workers.axhline(SPEED_GOAL, color="C3", linestyle="--", zorder=0)
+    workers.set_xticks(range(result.sizes["pool"]), result.pool.to_numpy())
+    workers.set(title="Two workers for one", ylabel="times as fast", xlim=(-0.5, 1.7))
     return figure
-
-
-def _cells(ax: "Axes", result: xr.Dataset) -> None:
-    """Draw the overhead of a cell, by what it is spent on and in all."""
-    parts = result["cell_overhead"]
-    values = 1e3 * parts.to_numpy()
-    names = [*parts["part"].to_numpy().tolist(), "in all"]
-    widths, lefts = [*values, values.sum()], [*np.cumsum(values) - values, 0.0]
-    bars = ax.barh(names, widths, left=lefts, color=["C0"] * len(values) + ["0.4"])
-    ax.bar_label(bars, [f"{width:.3f}" for width in widths], padding=3, fontsize=8)
-    ax.axvline(CELL_GOAL, color="C3", linestyle="--")
-    ax.annotate("goal ", (CELL_GOAL, -0.1), color="C3", va="center", ha="right")
-    ax.invert_yaxis()
-    ax.set_xlim(right=1.3 * max(CELL_GOAL, values.sum()))
-    ax.set(title=f"Overhead of one of {result.attrs['cells']:,} cells", xlabel="ms")
-
-
-def _memory(ax: "Axes", result: xr.Dataset) -> None:
-    """Draw the memory at most, and before the first realisation."""
-    runs = result["realizations"].to_numpy()
-    ax.plot(runs, result["peak_memory"].to_numpy() / 1e6, "o-", label="at most")
-    ax.plot(runs, result["memory_before"].to_numpy() / 1e6, "o:", color="0.5", label="before the first")
-    ax.axhline(MEMORY_GOAL, color="C3", linestyle="--", label="goal")
-    ax.set(xscale="log", ylim=(0.0, 1.25 * MEMORY_GOAL), xlabel="realisations", ylabel="MB")
-    ax.set(title="Memory, statistics kept")
-    ax.xaxis.set_minor_formatter("")
-    ax.set_xticks(runs, [f"{run:,}" for run in runs])
-    ax.legend(frameon=False, loc="lower right")
-
-
-def _tasks(ax: "Axes", result: xr.Dataset) -> None:
-    """Draw the overhead of each scheduler, with one worker and with two."""
-    schedulers = result["scheduler"].to_numpy()
-    for number, workers in enumerate(result["workers"].to_numpy()):
-        values = 1e3 * result["task_overhead"].sel(workers=workers).to_numpy()
-        label = f"{workers} worker{'s' if workers > 1 else ''}"
-        bars = ax.bar(np.arange(len(schedulers)) + 0.4 * number, values, 0.38, label=label)
-        ax.bar_label(bars, [f"{value:.2f}" for value in values], fontsize=8)
-    ax.set_xticks(np.arange(len(schedulers)) + 0.2, schedulers)
-    ax.set_ylim(bottom=0.0, top=1.3e3 * float(result["task_overhead"].max()))
-    ax.set(title="Overhead of a task", ylabel="ms")
-    ax.legend(frameon=False, loc="upper left")
-
-
-def _workers(ax: "Axes", result: xr.Dataset) -> None:
-    """Draw how much faster two workers are: each repeat, and the median."""
-    ups = result["speed_up"]
-    for x, values in enumerate(ups.to_numpy()):
-        ax.plot(np.full(values.size, x), values, "o", color="C0", alpha=0.5)
-        middle = float(np.median(values))
-        ax.plot([x - 0.25, x + 0.25], [middle, middle], color="C0", linewidth=2)
-        ax.annotate(f"{middle:.2f}", (x + 0.28, middle), va="center")
-    ax.axhline(SPEED_GOAL, color="C3", linestyle="--", zorder=0)
-    ax.annotate("goal", (-0.45, SPEED_GOAL), color="C3", va="bottom")
-    ax.set_xticks(range(len(ups)), ups["pool"].to_numpy())
-    ax.set(title="Two workers for one", ylabel="times as fast", xlim=(-0.5, 1.7))
-    ax.set_ylim(min(0.9, float(ups.min()) - 0.1), max(2.1, float(ups.max()) + 0.1))

@@ -134,6 +134,7 @@ def _cluster(workers: int) -> Iterator[tuple[str, int]]:
             worker_class="distributed.Worker",
             n_workers=workers,
             threads_per_worker=1,
+            dashboard_address="127.0.0.1:0",
             scheduler_kwargs={"dashboard": False},
             worker_kwargs={"local_directory": folder},
         ) as cluster,
