@@ -24,7 +24,6 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -71,7 +70,7 @@ def by_the_sum(
     ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = ROWS
 ) -> Cost:
     """What the package's sum costs, all included."""
-    columns = Columns(*ensemble.columns())
+    columns = ensemble.columns()
     law = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 

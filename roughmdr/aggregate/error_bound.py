@@ -31,6 +31,7 @@ from roughmdr.aggregate.block import (
     law,
 )
 from roughmdr.numerics.double_double import ROUNDING
+from roughmdr.numerics.jit import njit
 from roughmdr.numerics.summation import block_minimum
 
 _NEXT_TO_A_FOLD = 3.0  # m
@@ -45,6 +46,12 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
     deepest = block.max_scales[DEPTH] if law.adhesive else 0.0
     farthest = max(abs(block.z[0]), abs(block.z[count - 1])) + abs(h) + deepest
     return float(stiffness * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * rounding) * farthest + force_error)
+
+
+@njit
+def no_terms(t: float, params: object) -> tuple[float, float]:
+    """Stand for ``term_sizes`` where no terms cancel."""
+    return 0.0, 0.0
 
 
 def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:

@@ -91,7 +91,7 @@ def compute(
     total, reached, visits = loop.add_asperities(
         law,
         ensemble.height,
-        Columns(*columns),
+        columns,
         effective_modulus,
         adhesion,
         route.separation,
@@ -108,11 +108,11 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
-    columns = (width, rise, params)
+    columns = Columns(width, rise, params)
     for model in adhesion.candidates:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
-        loop.add_asperities(law, np.zeros(1), Columns(*columns), 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 

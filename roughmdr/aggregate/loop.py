@@ -25,7 +25,7 @@ from roughmdr.aggregate.contacts import (
     stiffness_of_state,
     update_contact,
 )
-from roughmdr.aggregate.error_bound import bound_block, bound_each, total_error
+from roughmdr.aggregate.error_bound import bound_block, bound_each, no_terms, total_error
 from roughmdr.aggregate.scales import natural_scales
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, add_totals, jumps, jumps_between_branches
 from roughmdr.errors import OutOfRange
@@ -134,7 +134,7 @@ def _loop(
 def _compiled(kernels: Kernels) -> SumKernels:
     """Return the kernels with the parts of the sum, compiled with them."""
     whole, together = SumKernels(kernels.name), kernels.found_together
-    vars(whole).update(vars(kernels))
+    vars(whole).update({"term_sizes": no_terms, **vars(kernels)})
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,

@@ -8,7 +8,6 @@ from typing import NamedTuple
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material, law
-from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import specialise
 from roughmdr.numerics.summation import BLOCK
 from roughmdr.shapes import SHAPES, ProfileShape
@@ -54,7 +53,7 @@ def _compiled(kernels: Kernels) -> Callable[..., tuple[float, float]]:
 
 
 def jkr_validity(
-    shape: str, spread: float, columns: tuple[Floats, Floats, Floats], effective_modulus: float, adhesion: Adhesion
+    shape: str, spread: float, columns: Columns, effective_modulus: float, adhesion: Adhesion
 ) -> JkrValidity:
     """Return how far JKR is off; its Tabor number is 0 where a contact is not representable in JKR.
 
@@ -62,8 +61,8 @@ def jkr_validity(
     """
     if not adhesion.tabor_known:
         return JkrValidity()
-    kernels = choose(shape, Adhesion(adhesion.work), columns[2])
-    radius, depth = _compiled(kernels)(Columns(*columns), Material(effective_modulus, adhesion.work, math.inf))
+    kernels = choose(shape, Adhesion(adhesion.work), columns.params)
+    radius, depth = _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, math.inf))
     if not 0.0 < radius < math.inf:
         return JkrValidity(0.0, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)

@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
+from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import shown
@@ -55,13 +56,13 @@ class Ensemble:
         places = {name: np.ascontiguousarray(column[order]) for name, column in (positions or {}).items()}
         return cls(shape, np.ascontiguousarray(height[order]), pick, nominal_area, places, attrs or {}, fixed)
 
-    def columns(self) -> tuple[Floats, Floats, Floats]:
-        """Width [m], rise [m] and form [1] of each asperity; of a fixed profile the one form in a row."""
+    def columns(self) -> Columns:
+        """Return width, rise and params of each asperity; of a fixed profile its params in one row."""
         if self.fixed is None:
             with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
-                return SHAPES[self.shape].nondimensionalise(self.parameters)
+                return Columns(*SHAPES[self.shape].nondimensionalise(self.parameters))
         width, rise, params = self.fixed.nondimensional()
-        return np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(params)[None]
+        return Columns(np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(params)[None])
 
     def extremes(self, radius: Floats) -> ValidityLimits:
         """The most that contacts of these radii [m], 0 for none, come to."""

@@ -17,6 +17,7 @@ import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.shapes import SHAPES as EVERY_SHAPE
 from roughmdr.shapes.base import Shape
@@ -78,7 +79,7 @@ def test_blocks_are_added_without_loss() -> None:
     count = 512_000
     rng = np.random.default_rng(29)
     z = np.sort(rng.uniform(0.0, 1e-6, count))[::-1].copy()
-    columns = tuple(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0))
+    columns = Columns(*(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0)))
     h = np.array([0.0])
     total, _, _ = loop.add_asperities(
         choose("paraboloid", Adhesion(), columns[2]), z, columns, E, Adhesion(), h, no_memory(h), {totals.FORCE}
@@ -186,7 +187,7 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
         indentation = float(oracle.indentation(a))
         if not abs(indentation) < 1e290:
             continue
-        columns = tuple(np.array([number]) for number in (1e-6, 1e-8, exponent))
+        columns = Columns(*(np.array([number]) for number in (1e-6, 1e-8, exponent)))
         h = np.array([-indentation]) if indentation > 0.0 else np.array([0.0, -indentation])
         total, _, _ = loop.add_asperities(
             choose("power_law", Adhesion(1e-3), columns[2]), np.zeros(1), columns, 1e9, Adhesion(1e-3), h,

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from scenes import ensemble
 
 import roughmdr as rm
-from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.load_separation import Route, compute
+from roughmdr.aggregate import LoadingPath, compute, loop, totals
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -152,7 +151,7 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
     data = ensemble(rng.normal(0.0, 1e-6, 5000), radius=5e-5)
     fold = -float(rm.pull_off(rm.Paraboloid(5e-5), effective_modulus=E, work=work).indentation)
     way_in = np.linspace(4e-6, 0.0, 50)
-    route = Route.along(way_in, unload=True, adhesive=work > 0.0)
+    route = LoadingPath.along(way_in, unload=True, adhesive=work > 0.0)
     asperities = Ensemble.from_dataset(data)
     result = compute(
         asperities, route, effective_modulus=E, adhesion=Adhesion(work), variables=["force", "contact_count"]
@@ -166,7 +165,7 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
 
 def test_only_the_asked_totals_are_computed() -> None:
     asperities = Ensemble.from_dataset(ensemble([1e-6, 2e-6], radius=5e-5))
-    route = Route.along(np.array([0.0]), unload=False, adhesive=True)
+    route = LoadingPath.along(np.array([0.0]), unload=False, adhesive=True)
     columns = asperities.columns()
     law = choose("paraboloid", Adhesion(W), columns[2])
     total, _, _ = loop.add_asperities(law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS})
