@@ -21,9 +21,8 @@ from dugdale_cases import CASES, Case, few
 from oracles.dugdale import FIELDS, Cohesion, State
 from oracles.dugdale_curve import CONTROLS, WORKING, Curve, Place
 from oracles.dugdale_punch import Punch
-from oracles.multiprecision import Number, bracket, digits, mp, root
-from oracles.profiles import ENERGY_WORKING, profile_of
-from oracles.quadrature_rules import tanh_sinh
+from oracles.multiprecision import Number, bracket, digits, mp, root, tanh_sinh
+from oracles.profiles import profile_of
 from references import text
 
 MAUGIS_WRITTEN = 30
@@ -141,8 +140,7 @@ def radii(case: Case, size: float) -> list[float]:
 
 def energy(curve: Curve, state: State) -> Number:
     """U [J], once the state is what the definitions say."""
-    with mp.workdps(ENERGY_WORKING):
-        found = spring_sums(curve.exact, state)
+    found = spring_sums(curve.exact, state)
     agree(found.force, state.force, SLOPPY)
     agree(found.gap, curve.exact.range, SLOPPY)
     return found.energy

@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from oracles.multiprecision import Number, mp
+from oracles.multiprecision import Number, mp, tanh_sinh
 from oracles.profiles import Piece, Profile
-from oracles.quadrature_rules import tanh_sinh
 
 Array = NDArray[Any]
 """Of doubles, or of numbers of any precision."""

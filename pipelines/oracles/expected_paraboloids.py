@@ -1,8 +1,8 @@
-"""Expected force and area of paraboloids, slow and plain: double integrals with many digits, by nothing of the package.
+"""Expected force and area of paraboloids: double integrals with many digits, by nothing of the package.
 
-Over the heights by the contact radius a, in which both Hertz's law and JKR's are closed forms and the fold is smooth;
-over the radius of the tip by the trapezoidal rule in its normal score, which converges as fast as Gauss's, and where
-some tips have let go of their lowest summits and others not by a rule for either.
+The variable of integration over the heights is the contact radius a, in which both Hertz's law and JKR's are closed
+forms and the fold is smooth. The integral over the radius of the tip is by the trapezoidal rule in its normal score,
+which converges as fast as Gauss's; by two rules where some tips have detached from their lowest summits.
 """
 
 import math
@@ -12,31 +12,31 @@ from typing import NamedTuple
 from mpmath import mp, mpf
 
 Quantity = Callable[[mpf, mpf], mpf]
-"""Of a contact of radius a [m] of a tip of radius R [m]."""
+"""A quantity of a contact of radius a [m] of a tip of radius R [m]."""
 
 
 class Rough(NamedTuple):
-    """Paraboloids whose heights are "normal" about 0 or "exponential" from 0 upwards; all in SI."""
+    """Paraboloids whose heights are "normal" about 0 or "exponential" from 0 upwards; all in SI units."""
 
     heights: str
     std: float
-    """Of the heights [m]."""
+    """Standard deviation of the heights [m]."""
     radius: float
     """Mean radius of the tips [m]."""
     radius_std: float
-    """Of the lognormal law of the radius [m]; 0 for equal tips."""
+    """Standard deviation of the lognormal radius [m]; 0 for equal tips."""
     effective_modulus: float
     work: float = 0.0
 
     def force(self, separation: float, closest: float | None = None, digits: int = 25) -> float:
-        """Expected force [N] of one asperity at a separation [m], on the way in.
+        """Return the expected force [N] of one asperity at a separation [m].
 
-        On the way back the flat has been as near as ``closest`` [m].
+        In loading; in unloading, where the flat has been as near as ``closest`` [m].
         """
         return self._mean(self._force, separation, closest, digits)
 
     def area(self, separation: float, closest: float | None = None, digits: int = 25) -> float:
-        """Expected contact area [m2], likewise."""
+        """Return the expected contact area [m2] likewise."""
         return self._mean(lambda a, R: mp.pi * a * a, separation, closest, digits)
 
     def _force(self, a: mpf, R: mpf) -> mpf:
@@ -44,7 +44,7 @@ class Rough(NamedTuple):
         return 4 * E * a**3 / (3 * R) - 2 * E * a * mp.sqrt(2 * mp.pi * a * w / E)
 
     def _mean(self, quantity: Quantity, separation: float, closest: float | None, digits: int) -> float:
-        """Of a quantity, over the radii of the tips."""
+        """Return the mean of a quantity over the radii of the tips."""
         with mp.workdps(digits + 5):
             h = mpf(separation)
             nearest = h if closest is None else mpf(closest)
@@ -53,19 +53,19 @@ class Rough(NamedTuple):
             spread = mp.sqrt(mp.log1p((mpf(self.radius_std) / self.radius) ** 2))
             median = self.radius * mp.exp(-spread * spread / 2)
 
-            def share(score: mpf) -> mpf:
+            def integrand(score: mpf) -> mpf:
                 return mp.npdf(score) * self._tip(quantity, median * mp.exp(spread * score), h, nearest, digits)
 
             step, end = _trapezoid(digits)
-            if self.work and h > nearest:  # tips of this radius are about to let go of their lowest summits
+            if self.work and h > nearest:  # where tips of a radius detach from their lowest summits
                 last = (4 * (h - nearest) / 3) ** 3 * (self.effective_modulus / (mp.pi * self.work)) ** 2
                 kink = mp.log(last / median) / spread
                 if abs(kink) < step * end:
-                    return float(mp.quad(share, [-step * end, kink, step * end]))
-            return float(step * mp.fsum(share(number * step) for number in range(-end, end + 1)))
+                    return float(mp.quad(integrand, [-step * end, kink, step * end]))
+            return float(step * mp.fsum(integrand(number * step) for number in range(-end, end + 1)))
 
     def _tip(self, quantity: Quantity, R: mpf, h: mpf, nearest: mpf, digits: int) -> mpf:
-        """Of tips of radius R."""
+        """Return the mean of a quantity of tips of radius R."""
         E, w = mpf(self.effective_modulus), mpf(self.work)
         floor = nearest if self.heights == "normal" else max(nearest, 0)
         fold = mp.cbrt(mp.pi * w * R * R / (8 * E))
@@ -73,14 +73,14 @@ class Rough(NamedTuple):
         if not begin < end:
             return mpf(0)
 
-        def share(a: mpf) -> mpf:
+        def integrand(a: mpf) -> mpf:
             stretch = mp.sqrt(2 * mp.pi * a * w / E)
             return quantity(a, R) * self._density(h + a * a / R - stretch) * (2 * a / R - stretch / (2 * a))
 
-        return mp.quad(share, mp.linspace(begin, end, 7), method="gauss-legendre")
+        return mp.quad(integrand, mp.linspace(begin, end, 7), method="gauss-legendre")
 
     def _top(self, digits: int) -> mpf:
-        """A height that one of 10^(digits + 4) summits reaches: the force grows while they get fewer."""
+        """Return a height that one of 10^(digits + 4) summits reaches: the force grows as they become fewer."""
         decades = (digits + 4) * mp.log(10)
         return self.std * (decades if self.heights == "exponential" else mp.sqrt(2 * decades))
 
@@ -91,20 +91,20 @@ class Rough(NamedTuple):
 
 
 def _trapezoid(digits: int) -> tuple[mpf, int]:
-    """Step and number of steps to each side: exp(-2 pi^2/step^2) and exp(-end^2/2) are both 10^-(digits + 4)."""
+    """Return step and steps to each side, so that exp(-2 pi^2/step^2) and exp(-end^2/2) are 10^-(digits + 4)."""
     decades = (digits + 4) * math.log(10.0)
     step = mp.pi * mp.sqrt(2 / mpf(decades))
     return step, math.ceil(math.sqrt(2.0 * decades) / step)
 
 
 def _contact_radius(indentation: mpf, R: mpf, stretch: mpf, fold: mpf) -> mpf:
-    """a with a^2/R - stretch sqrt(a) = indentation, or the fold: by Newton's rule from above, where all is convex."""
+    """Return a with a^2/R - stretch sqrt(a) = indentation, or the fold; by Newton's method from above (convex)."""
     if indentation <= fold * fold / R - stretch * mp.sqrt(fold):
         return fold
     a = 2 * fold + 2 * mp.sqrt(R * max(indentation, 0)) + mp.cbrt((stretch * R) ** 2)
     while True:
         root = mp.sqrt(a)
         change = (a * a / R - stretch * root - indentation) / (2 * a / R - stretch / (2 * root))
-        if change <= mp.eps * 1000 * a:  # below 0 it is a rounding: near the fold there are such
+        if change <= mp.eps * 1000 * a:  # below 0 it is a rounding, as happens near the fold
             return a
         a -= change

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from oracles.multiprecision import Number, bracket, mp, root
+from oracles.multiprecision import Number, bracket, mp, root, tanh_sinh
 from oracles.profiles import Profile
-from oracles.quadrature_rules import tanh_sinh
 
 WRITTEN = 40
 ENERGY_WRITTEN = 25

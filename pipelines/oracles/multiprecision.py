@@ -1,6 +1,8 @@
-"""Arithmetic of 60 digits, unless ``mp.workdps`` says otherwise, and root finding in it."""
+"""Arithmetic of 60 digits, unless ``mp.workdps`` says otherwise; root finding and quadrature in it."""
 
+import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeAlias
 
 import mpmath
@@ -54,3 +56,16 @@ def bracket(function: Callable[[Number], Number]) -> tuple[Number, Number]:
 def digits(number: Number, count: int) -> str:
     """Return ``number`` written with so many digits."""
     return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))
+
+
+@cache
+def tanh_sinh(digits: int, steps: int) -> list[tuple[Number, Number]]:
+    """Return double-exponential nodes and weights on (0, 1), for integrands that are singular at the ends."""
+    rule = []
+    with mp.workdps(digits + 10):
+        edge = math.asinh((digits + 5) * math.log(10.0) / math.pi)
+        for i in range(-math.ceil(edge * steps), math.ceil(edge * steps) + 1):
+            t = mp.mpf(i) / steps
+            grow = mp.exp(mp.pi * mp.sinh(t))
+            rule.append((grow / (1 + grow), mp.pi * mp.cosh(t) * grow / (1 + grow) ** 2 / steps))
+    return rule

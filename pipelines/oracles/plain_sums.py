@@ -1,4 +1,4 @@
-"""What most would write instead of the package's sum: vectors, or a root finder for each contact. And a clock."""
+"""Plain alternatives to the sum over asperities: NumPy vectors, or a root finder for each contact; and their cost."""
 
 import math
 import time
@@ -18,7 +18,7 @@ from roughmdr.shapes.kappa import kappa
 
 
 class Cost(NamedTuple):
-    """What some visits cost."""
+    """The run time of some visits."""
 
     seconds: float
     visits: int
@@ -30,7 +30,7 @@ class Cost(NamedTuple):
 
 
 def cost_of(action: Callable[[], int], repeats: int) -> Cost:
-    """The shortest wall time of ``action``, which returns its visits."""
+    """Return the shortest wall time of ``action``, which returns its visits."""
     times, visits = [], 1
     for _ in range(repeats):
         started = time.perf_counter()
@@ -40,7 +40,7 @@ def cost_of(action: Callable[[], int], repeats: int) -> Cost:
 
 
 class Sums(NamedTuple):
-    """What a plain loop over the path comes to."""
+    """The results of a plain loop over the path."""
 
     force: Floats
     """[N], at each separation."""
@@ -49,27 +49,27 @@ class Sums(NamedTuple):
     visits: int
 
 
-def held(height: Floats, fold: Floats, h: float, closest: float) -> NDArray[np.bool_]:
-    """Which asperities are in contact at h, where the flat has been at ``closest``; ``fold`` is |delta_c| of each."""
+def in_contact(height: Floats, fold: Floats, h: float, closest: float) -> NDArray[np.bool_]:
+    """Return which asperities are in contact at h after the flat was at ``closest``; ``fold`` is |delta_c| of each."""
     return (height > closest) & (height - h > (-fold if h > closest else 0.0))
 
 
 def with_numpy(height: Floats, radius: Floats, path: Floats, effective_modulus: float, work: float) -> Sums:
-    """Paraboloids with vectors, as most would write it: JKR by six Newton steps on t^4 - t = delta/d0."""
+    """Sum paraboloids with vectors: JKR by six steps of Newton's method on t^4 - t = delta/d0."""
     a0 = np.cbrt(2.0 * np.pi * work * radius * radius / effective_modulus)
     force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
     for step, h in enumerate(path):
         closest = min(closest, h)
-        touching = held(height, 0.75 * 4.0 ** (-1.0 / 3.0) * a0 * a0 / radius, h, closest)
+        touching = in_contact(height, 0.75 * 4.0 ** (-1.0 / 3.0) * a0 * a0 / radius, h, closest)
         delta, R = height[touching] - h, radius[touching]
         visits += delta.size
         if work:
-            own = a0[touching]
-            d0 = own * own / R
+            scale = a0[touching]
+            d0 = scale * scale / R
             t = 1.0 + np.sqrt(np.sqrt(np.maximum(delta / d0, 0.0)))
             for _ in range(6):
                 t -= (t**4 - t - delta / d0) / (4.0 * t**3 - 1.0)
-            a, force[step] = own * t * t, np.sum(2.0 * effective_modulus * own * d0 * (2.0 / 3.0 * t**6 - t**3))
+            a, force[step] = scale * t * t, np.sum(2.0 * effective_modulus * scale * d0 * (2.0 / 3.0 * t**6 - t**3))
         else:
             a = np.sqrt(R * delta)
             force[step] = np.sum(4.0 / 3.0 * effective_modulus * a * delta)
@@ -78,7 +78,7 @@ def with_numpy(height: Floats, radius: Floats, path: Floats, effective_modulus: 
 
 
 def with_brentq(height: Floats, radius: Floats, path: Floats, effective_modulus: float, work: float) -> Sums:
-    """The same with a root finder for each contact."""
+    """Sum paraboloids with a root finder for each contact."""
     folds = np.cbrt(np.pi * work * radius * radius / (8.0 * effective_modulus))
     depths = np.sqrt(2.0 * np.pi * folds * work / effective_modulus) - folds * folds / radius
     force, area, visits, closest = np.zeros(path.size), np.zeros(path.size), 0, math.inf
@@ -88,7 +88,7 @@ def with_brentq(height: Floats, radius: Floats, path: Floats, effective_modulus:
 
     for step, h in enumerate(path.tolist()):
         closest = min(closest, h)
-        touching = held(height, depths, h, closest)
+        touching = in_contact(height, depths, h, closest)
         for z, R, fold in zip(height[touching], radius[touching], folds[touching], strict=True):
             top = fold + 2.0 * np.sqrt(R * max(z - h, 0.0)) + 8.0 * fold
             a = brentq(indentation, fold, top, args=(R, z - h), xtol=1e-12 * top)
@@ -101,31 +101,31 @@ def with_brentq(height: Floats, radius: Floats, path: Floats, effective_modulus:
 
 
 def by_numpy(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
-    """What ``with_numpy`` costs."""
+    """Return the cost of ``with_numpy``."""
     columns = ensemble.height, ensemble.parameters["radius"]
     return cost_of(lambda: with_numpy(*columns, path, effective_modulus, work).visits, 1)
 
 
 def by_brentq(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
-    """What ``with_brentq`` costs, by a few hundred asperities."""
+    """Return the cost of ``with_brentq``, from a few hundred asperities."""
     columns = ensemble.height[:300], ensemble.parameters["radius"][:300]
     return cost_of(lambda: with_brentq(*columns, path, effective_modulus, work).visits, 1)
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
-    """g(a) of one shape, floats in, floats out: what a root finder calls fastest."""
+    """Return g(a) of one shape as a function of floats, the fastest for a root finder."""
     width, rise, params = shape.nondimensional()
     if isinstance(shape, PowerLaw):
         factor, n = kappa(params) * rise, params
         return lambda a: factor * (a / width) ** n
     assert isinstance(shape, ProfileShape)
-    curve, place = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
+    mdr_profile, t_of_radius = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
     numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
-    return lambda a: rise * curve(place(a, width, numbers), numbers)[2]
+    return lambda a: rise * mdr_profile(t_of_radius(a, width, numbers), numbers)[2]
 
 
 def by_brentq_on(ensemble: Ensemble, effective_modulus: float, work: float) -> Cost:
-    """A root finder on delta = g(a) - dl(a), for a few hundred contacts of the first asperity."""
+    """Return the cost of a root finder on delta = g(a) - dl(a), for 200 contacts of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
     shape: Shape = ensemble.fixed or SHAPES[ensemble.shape](**first)
     fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)

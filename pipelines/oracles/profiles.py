@@ -1,4 +1,4 @@
-"""Profiles given by their slope f' alone: g and G from it by quadrature with any number of digits (H 17), or closed."""
+"""Profiles given by their slope f' alone: g and G are its integrals, with any number of digits (H 17)."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from oracles.multiprecision import Number, mp
-from oracles.quadrature_rules import gauss, tanh_sinh, whole_moments
 from roughmdr.shapes import Shape, Tabulated
 
 Floats: TypeAlias = NDArray[np.float64]
 Parameters: TypeAlias = dict[str, Any]
-ENERGY_WORKING = 45
-"""Digits carried in the energy, of which 25 are written: an integral over an integral costs too much otherwise."""
+Terms: TypeAlias = tuple[tuple[Number, float], ...]
+"""Coefficients and powers."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,7 @@ class Piece:
 
     lo: Number
     hi: Number | None
-    terms: tuple[tuple[Number, float], ...]
+    terms: Terms
 
     @property
     def whole(self) -> bool:
@@ -37,8 +36,27 @@ def angle(r: Number, a: Number) -> Number:
     return mp.atan2(mp.sqrt((a - r) * (a + r)), r) if r < a else mp.mpf(0)
 
 
+@cache
+def whole_moments(power: float, digits: int) -> tuple[Number, Number]:
+    """Return ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over 0 < psi < pi/2; ``digits`` are those of ``mp``."""
+    n = mp.mpf(power)
+    plain = mp.sqrt(mp.pi) / 2 * mp.gamma((n + 1) / 2) / mp.gamma(n / 2 + 1)
+    return plain, plain / (n + 2)
+
+
+def antiderivatives(psi: Number) -> list[tuple[Number, Number]]:
+    """Return ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 from 0 to psi, for the powers 0, 1, 2."""
+    cos, sin = mp.cos_sin(psi)
+    product = sin * cos
+    return [
+        (psi, (psi - product) / 2),
+        (sin, sin**3 / 3),
+        ((psi + product) / 2, (psi - product * (1 - 2 * sin * sin)) / 8),
+    ]
+
+
 class Profile:
-    """A profile given by f' alone, which is piecewise a sum of powers; g and G are found by quadrature."""
+    """A profile given by f' alone, piecewise a sum of powers: any powers, or 0, 1, 2 where there are several pieces."""
 
     end: Number | None = None
     """Radius at which the profile becomes vertical [m], or None."""
@@ -74,20 +92,14 @@ class Profile:
                 slope += jump * b / mp.sqrt((a - b) * (a + b))
         return g * a, slope, G * a * a
 
-    def _moments(self, piece: Piece, a: Number) -> list[tuple[Number, Number]]:
+    @staticmethod
+    def _moments(piece: Piece, a: Number) -> list[tuple[Number, Number]]:
         """Return, for each term, ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over the piece, r = a cos(psi)."""
         if piece.whole:
             return [whole_moments(power, mp.dps) for _, power in piece.terms]
-        begin = mp.mpf(0) if piece.hi is None else angle(piece.hi, a)
-        length = angle(piece.lo, a) - begin
-        sums = [[mp.mpf(0), mp.mpf(0)] for _ in piece.terms]
-        for x, weight in gauss(mp.dps):
-            cos, sin = mp.cos_sin(begin + length * x)
-            for total, (_, power) in zip(sums, piece.terms, strict=True):
-                plain = weight * length * cos ** int(power)
-                total[0] += plain
-                total[1] += plain * sin * sin
-        return [(total[0], total[1]) for total in sums]
+        end = antiderivatives(angle(piece.lo, a))
+        begin = antiderivatives(mp.mpf(0) if piece.hi is None else angle(piece.hi, a))
+        return [(end[int(n)][0] - begin[int(n)][0], end[int(n)][1] - begin[int(n)][1]) for _, n in piece.terms]
 
     def rough_slope(self, base: float, above: Floats) -> Floats:
         """Return g' [1] at a = base + above [m] in double precision, to search for folds; ``base`` is 0 or a kink."""
@@ -121,82 +133,23 @@ class SphereProfile(Profile):
     def mdr(self, a: Number) -> tuple[Number, Number, Number]:
         """Return g(a) [m], g'(a) [1] and G(a) [m2]."""
         R: Number = self.end
-        gap = (R - a) * (R + a)
-        g, slope, G = mp.mpf(0), mp.mpf(0), mp.mpf(0)
-        # The closer a comes to R, the closer the integrand's poles come to psi = 0: hence the many nodes.
-        for cos, square, weight in _sphere_rule(mp.dps):
-            depth = gap + a * a * square  # R^2 - r^2
-            plain = weight * a * cos / mp.sqrt(depth)
-            g += plain
-            slope += plain * (1 + R * R / depth)
-            G += plain * square
-        return g * a, slope, G * a * a
-
-
-class ClosedProfile(Profile):
-    """A profile with the integrals over f' in closed form, for any power where there is one piece, else for 0, 1, 2."""
-
-    def _moments(self, piece: Piece, a: Number) -> list[tuple[Number, Number]]:
-        if piece.whole:
-            return [_closed_moments(power, mp.dps) for _, power in piece.terms]
-        ends = [mp.mpf(0) if piece.hi is None else angle(piece.hi, a), angle(piece.lo, a)]
-        (begin, end) = (self._antiderivatives(psi) for psi in ends)
-        return [
-            (end[int(power)][0] - begin[int(power)][0], end[int(power)][1] - begin[int(power)][1])
-            for _, power in piece.terms
-        ]
-
-    @staticmethod
-    def _antiderivatives(psi: Number) -> list[tuple[Number, Number]]:
-        cos, sin = mp.cos_sin(psi)
-        quarter = psi - sin * cos * (1 - 2 * sin * sin)
-        return [
-            (psi, (psi - sin * cos) / 2), (sin, sin**3 / 3), ((psi + sin * cos) / 2, quarter / 8)
-        ]  # fmt: skip
-
-
-@cache
-def _closed_moments(power: float, digits: int) -> tuple[Number, Number]:
-    """Return the moments of a piece that is the whole profile; ``digits`` are those of ``mp``."""
-    n = mp.mpf(power)
-    plain = mp.sqrt(mp.pi) / 2 * mp.gamma((n + 1) / 2) / mp.gamma(n / 2 + 1)
-    return plain, plain / (n + 2)
-
-
-class ClosedSphereProfile(SphereProfile):
-    """A sphere in closed form; its quadrature is slow next to the equator."""
-
-    def mdr(self, a: Number) -> tuple[Number, Number, Number]:
-        """Return g(a) [m], g'(a) [1] and G(a) [m2]."""
-        R: Number = self.end
         angle, gap = mp.atanh(a / R), (R - a) * (R + a)
         return a * angle, angle + a * R / gap, (R * a - gap * angle) / 2
 
 
-@cache
-def _sphere_rule(digits: int) -> list[tuple[Number, Number, Number]]:
-    rule = []
-    for x, weight in tanh_sinh(digits, 160 if digits > ENERGY_WORKING else 64):
-        cos, sin = mp.cos_sin(mp.pi / 2 * x)
-        rule.append((cos, sin * sin, weight * mp.pi / 2))
-    return rule
-
-
 def closed_profile(shape: Shape) -> Profile:
-    """Return the profile of a shape that is not a flat punch, in closed form."""
+    """Return the profile of a shape that is not a flat punch."""
     if isinstance(shape, Tabulated):
         columns = {name: column.tolist() for name, column in shape.parameters.items()}
-        return profile_of(shape.name, columns, shape.knot_slopes.tolist(), closed=True)
-    return profile_of(shape.name, dict(shape.parameters), closed=True)
+        return profile_of(shape.name, columns, shape.knot_slopes.tolist())
+    return profile_of(shape.name, dict(shape.parameters))
 
 
-def profile_of(
-    shape: str, parameters: Parameters, slopes: list[float] | None = None, *, closed: bool = False
-) -> Profile:
-    """Return the profile of ``shape`` from its parameters (doubles, taken as exact), by quadrature or closed."""
+def profile_of(shape: str, parameters: Parameters, slopes: list[float] | None = None) -> Profile:
+    """Return the profile of ``shape`` from its parameters (doubles, taken as exact)."""
     p = {name: mp.mpf(value) for name, value in parameters.items() if isinstance(value, float)}
     if shape == "sphere":
-        return (ClosedSphereProfile if closed else SphereProfile)(p["radius"])
+        return SphereProfile(p["radius"])
     corners: list[tuple[Number, Number]] = []
     if shape == "tabulated":
         pieces = _tabulated_pieces(parameters["r"], parameters["f"], slopes or [])
@@ -207,10 +160,7 @@ def profile_of(
         corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
     else:
         pieces = [Piece(mp.mpf(0), None, _whole_terms(shape, parameters, p))]
-    return (ClosedProfile if closed else Profile)(pieces, corners)
-
-
-Terms: TypeAlias = tuple[tuple[Number, float], ...]
+    return Profile(pieces, corners)
 
 
 def _whole_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> Terms:

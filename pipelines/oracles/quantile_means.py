@@ -1,8 +1,8 @@
-"""Expected force of Hertzian paraboloids by quadrature in the probability: of the inverses of scipy.stats alone.
+"""Expected force of Hertzian paraboloids by quadrature in the probability: from the inverses of scipy.stats alone.
 
 The normal score t of the probability is the variable: z(t) is where a fraction Phi(t) of the heights lies below, by
 ``ppf`` on the lower half and by ``isf`` on the upper. No density is evaluated, so that poles do no harm, and tails are
-integrated as far as doubles can tell a probability from 0.
+integrated as far as doubles distinguish a probability from 0.
 """
 
 import math
@@ -16,53 +16,90 @@ from scipy.stats import rv_continuous
 from roughmdr.numerics.arguments import Floats
 
 _END = 37.0  # normal score beyond which no double holds the probability
-_END_NUMERICAL = 8.0  # where scipy finds the inverse by numbers: from 1 - p, which has no digits beyond
-_HALVINGS, _AGREE = 40, 1e-14  # of a panel; of the mean
-_MOST_PANELS = 1_000  # that are halved at once: more of them part by roundings
-_MOST_NUMERICAL = 100  # where inverses are found by numbers, slowly and with noise
-_END_OF_SCORES = 8.5  # of two quantities that go together
-_FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(20)
+_END_NUMERICAL = 8.0  # where scipy finds the inverse numerically: from 1 - p, which has no digits beyond
+_HALVINGS, _RTOL = 40, 1e-14  # of a panel; of the mean
+_MAX_PANELS = 1_000  # halved at once: more of them disagree by roundings
+_MAX_NUMERICAL = 100  # where inverses are found numerically, slowly and with noise
+_END_OF_SCORES = 8.5  # of two correlated quantities
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-
-
-def quantiles(frozen: Any, scores: Floats) -> Floats:
-    """The values that lie as high in a distribution of scipy.stats as normal scores do, by the nearer tail."""
-    with np.errstate(all="ignore"):
-        lower, upper = frozen.ppf(ndtr(np.minimum(scores, 0.0))), frozen.isf(ndtr(-np.maximum(scores, 0.0)))
-    return np.asarray(np.where(scores < 0.0, lower, upper))
-
-
-def _is_numerical(frozen: Any) -> bool:
-    """Whether scipy finds an inverse of a distribution by numbers."""
-    return type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
-
-
-def _end(frozen: Any) -> float:
-    """The normal score as far as which the inverses of a distribution lead where they should."""
-    end, before = 4.0, -math.inf
-    for score in np.arange(4.5, (_END_NUMERICAL if _is_numerical(frozen) else _END) + 0.5, 0.5).tolist():
-        try:
-            low, high = quantiles(frozen, np.array([-score, score]))
-            share, beyond = float(ndtr(-score)), float(frozen.sf(high))
-        except ArithmeticError:  # of Boost
-            break
-        if not (math.isfinite(low) and math.isfinite(high) and high >= before):
-            break
-        if score > _END_NUMERICAL and not 0.5 * share < beyond < 2.0 * share:
-            break
-        end, before = score, high
-    return end
+_FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 class Mean(NamedTuple):
-    """A mean and how far it may be off."""
+    """A mean and a bound on its error."""
 
     value: float
     doubt: float
 
 
+def mean_of_heights(frozen: Any, separation: float, exponent: float) -> Mean:
+    """Return the mean of max(z - separation, 0)^exponent over heights z [m]."""
+    begin = _score(frozen, separation)
+    return _mean(frozen, begin, lambda z: np.maximum(z - separation, 0.0) ** exponent)
+
+
+def mean_of_radii(frozen: Any, exponent: float) -> Mean:
+    """Return the mean of R^exponent over radii R [m]."""
+    return _mean(frozen, -math.inf, lambda R: np.maximum(R, 0.0) ** exponent)
+
+
+def mean_of_correlated(
+    frozen: Any, separation: float, exponent: float, factor: Callable[[Floats], Floats], correlation: float
+) -> float:
+    """Return the mean of factor(t) max(z - separation, 0)^exponent over heights z [m] correlated with normal scores t.
+
+    By Gauss's rule in t and in the part of the score of z that is independent of t: right to some 1e-12.
+    """
+    begin = _score(frozen, separation)
+    spread = math.sqrt((1.0 - correlation) * (1.0 + correlation))
+    scores, weights = _panels(np.linspace(-_END_OF_SCORES, _END_OF_SCORES, 15))
+    total = 0.0
+    for score, weight in zip(scores, weights * factor(scores), strict=True):
+        first = max((begin - correlation * score) / spread, -_END_OF_SCORES)
+        if first < _END_OF_SCORES:
+            independent, density = _panels(first + (_END_OF_SCORES - first) * np.linspace(0.0, 1.0, 9) ** 4)
+            heights = quantiles(frozen, correlation * score + spread * independent)
+            total += weight * float(density @ np.maximum(heights - separation, 0.0) ** exponent)
+    return total
+
+
+def quantiles(frozen: Any, scores: Floats) -> Floats:
+    """Return the values of a distribution of scipy.stats at normal scores, from the nearer tail."""
+    with np.errstate(all="ignore"):
+        lower, upper = frozen.ppf(ndtr(np.minimum(scores, 0.0))), frozen.isf(ndtr(-np.maximum(scores, 0.0)))
+    return np.asarray(np.where(scores < 0.0, lower, upper))
+
+
+def _score(frozen: Any, value: float) -> float:
+    """Return the normal score of a value, from the nearer tail."""
+    below, above = float(frozen.cdf(value)), float(frozen.sf(value))
+    return float(ndtri(below)) if below < above else -float(ndtri(above))
+
+
+def _is_numerical(frozen: Any) -> bool:
+    """Return whether scipy finds an inverse of a distribution numerically."""
+    return type(frozen.dist)._ppf is rv_continuous._ppf or type(frozen.dist)._isf is rv_continuous._isf
+
+
+def _end(frozen: Any) -> float:
+    """Return the normal score up to which the inverses of a distribution are right."""
+    end, before = 4.0, -math.inf
+    for score in np.arange(4.5, (_END_NUMERICAL if _is_numerical(frozen) else _END) + 0.5, 0.5).tolist():
+        try:
+            low, high = quantiles(frozen, np.array([-score, score]))
+            tail, beyond = float(ndtr(-score)), float(frozen.sf(high))
+        except ArithmeticError:  # from Boost
+            break
+        if not (math.isfinite(low) and math.isfinite(high) and high >= before):
+            break
+        if score > _END_NUMERICAL and not 0.5 * tail < beyond < 2.0 * tail:
+            break
+        end, before = score, high
+    return end
+
+
 def _mean(frozen: Any, begin: float, quantity: Callable[[Floats], Floats]) -> Mean:
-    """The mean of a quantity that begins at a score; panels are halved until their halves agree with them."""
+    """Return the mean of a quantity that begins at a score; panels are halved until their halves agree with them."""
     end = _end(frozen)
     if not begin < end:
         return Mean(0.0, 0.0)
@@ -80,54 +117,21 @@ def _mean(frozen: Any, begin: float, quantity: Callable[[Floats], Floats]) -> Me
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         halves = np.array([integral(low, middle), integral(middle, high)])
-        apart = np.abs(halves.sum(axis=0) - rough)
-        right = ~(apart > _AGREE * (abs(value) + np.abs(halves).sum()))
-        value, doubt = value + float(halves[:, right].sum()), doubt + float(apart[right].sum())
+        error = np.abs(halves.sum(axis=0) - rough)
+        right = ~(error > _RTOL * (abs(value) + np.abs(halves).sum()))
+        value, doubt = value + float(halves[:, right].sum()), doubt + float(error[right].sum())
         low, middle, high = low[~right], middle[~right], high[~right]
         rough = halves[:, ~right].ravel()
-        if low.size > (_MOST_NUMERICAL if _is_numerical(frozen) else _MOST_PANELS):
-            return Mean(value + float(rough.sum()), doubt + float(apart[~right].sum()) + last)
+        if low.size > (_MAX_NUMERICAL if _is_numerical(frozen) else _MAX_PANELS):
+            return Mean(value + float(rough.sum()), doubt + float(error[~right].sum()) + last)
         if low.size == 0:
             break
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     return Mean(value + float(rough.sum()), doubt + float(np.abs(rough).sum() if low.size else 0.0) + last)
 
 
-def mean_of_heights(frozen: Any, separation: float, exponent: float) -> Mean:
-    """The mean of max(z - separation, 0)^exponent over heights z [m]."""
-    below, above = float(frozen.cdf(separation)), float(frozen.sf(separation))
-    begin = float(ndtri(below)) if below < above else -float(ndtri(above))
-    return _mean(frozen, begin, lambda z: np.maximum(z - separation, 0.0) ** exponent)
-
-
-def mean_of_radii(frozen: Any, exponent: float) -> Mean:
-    """The mean of R^exponent over radii R [m]."""
-    return _mean(frozen, -math.inf, lambda R: np.maximum(R, 0.0) ** exponent)
-
-
-def mean_of_correlated(
-    frozen: Any, separation: float, exponent: float, factor: Callable[[Floats], Floats], correlation: float
-) -> float:
-    """The mean of factor(t) max(z - separation, 0)^exponent over heights z [m] that go with normal scores t.
-
-    Gauss's rule in the score, and in the part of the score of z that does not go with it: right to some 1e-12.
-    """
-    below, above = float(frozen.cdf(separation)), float(frozen.sf(separation))
-    begin = float(ndtri(below)) if below < above else -float(ndtri(above))
-    spread = math.sqrt((1.0 - correlation) * (1.0 + correlation))
-    scores, weights = _panels(np.linspace(-_END_OF_SCORES, _END_OF_SCORES, 15))
-    total = 0.0
-    for score, weight, times in zip(scores, weights, factor(scores), strict=True):
-        first = max((begin - correlation * score) / spread, -_END_OF_SCORES)
-        if first < _END_OF_SCORES:
-            own, share = _panels(first + (_END_OF_SCORES - first) * np.linspace(0.0, 1.0, 9) ** 4)
-            heights = quantiles(frozen, correlation * score + spread * own)
-            total += weight * times * float(share @ np.maximum(heights - separation, 0.0) ** exponent)
-    return total
-
-
 def _panels(edges: Floats) -> tuple[Floats, Floats]:
-    """Scores and weights of Gauss's rule on panels, for the normal density."""
+    """Return scores and weights of Gauss's rule on panels, for the normal density."""
     low, high = edges[:-1, None], edges[1:, None]
     scores = (0.5 * (low + high) + 0.5 * (high - low) * _FINE_NODES).ravel()
     weights = (0.5 * (high - low) * _FINE_WEIGHTS).ravel() * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi)

@@ -1,4 +1,4 @@
-"""Changes of a question whose answer must not change, or must change in a known way, whatever the answer is."""
+"""Changes of a problem that must leave the result as it is, or change it in a known way, whatever the result is."""
 
 import math
 import warnings
@@ -24,30 +24,32 @@ KINDS: dict[str, dict[str, float]] = {
     "rounded_cone": {"slope": 0.13, "blend_radius": 2.9e-6},
     "truncated_cone": {"slope": 0.07, "flat_radius": 1.7e-6},
 }
-"""About what the parameters of the asperities are."""
+"""Typical parameters of the asperities."""
 COHESIVE = ("paraboloid", "flat_punch", "power_law", "rounded_cone")
-"""Those that are looked at with adhesion of finite range."""
+"""Kinds that are computed with adhesion of finite range too."""
 QUICK = ("paraboloid", "cone", "power_law")
-SAME_BITS = {("elastic", kind) for kind in ("paraboloid", "cone", "flat_punch")} | {
+SAME_BITS = {
+    ("elastic", "paraboloid"),
+    ("elastic", "cone"),
+    ("elastic", "flat_punch"),
     ("jkr", "cone"),
     ("jkr", "flat_punch"),
 }
-"""Laws that only add, multiply, divide and take square roots of what has no unit."""
+"""Models that only add, multiply, divide and take square roots of what has no unit."""
 COUNT, LOW = 300, 200  # more than a block of the sum
 HEIGHT = 1.1e-6  # standard deviation of the heights [m]
 VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
-POWERS = {"force": (0, 1), "contact_area": (2, 0), "contact_count": (0, 0), "stiffness": (-1, 1)} | dict.fromkeys(
-    ("energy", "dissipated_energy"), (1, 1)
-)
-"""Of the units of length and force in each."""
+POWERS = {"force": (0, 1), "contact_area": (2, 0), "contact_count": (0, 0), "stiffness": (-1, 1),
+          "energy": (1, 1), "dissipated_energy": (1, 1)}  # fmt: skip
+"""Powers of the units of length and force in each variable."""
 UNITS = ((20, -13), (-7, 9), (3, 1))
-"""Powers of two that lengths and forces are counted in."""
+"""Powers of two in which lengths and forces are counted."""
 _WORKS = 4.0 ** -np.arange(40.0)
-_SMALL, _LARGE = 1e-9, 1e-3  # of the answer: between them a difference has one power of w
+_SMALL, _LARGE = 1e-9, 1e-3  # relative: between them a difference has a single power of w
 
 
 class Check(NamedTuple):
-    """One change, of one law and shape."""
+    """One change, for one adhesion model and shape."""
 
     name: str
     law: str
@@ -56,106 +58,107 @@ class Check(NamedTuple):
     allowed: float
 
 
-def law_of(law: str, kind: str) -> dict[str, Any]:
-    """The material."""
-    asked: dict[str, Any] = {"effective_modulus": MODULUS, "work": 0.0 if law == "elastic" else WORK}
-    if law == "dugdale":
-        strength = TABOR / rm.tabor(SHAPES[kind](**KINDS[kind]), effective_modulus=MODULUS, work=WORK, strength=1.0)
-        asked |= {"adhesion": "dugdale", "strength": strength}
-    return asked
+def material(model: str, kind: str) -> dict[str, Any]:
+    """Return the arguments of an adhesion model."""
+    given: dict[str, Any] = {"effective_modulus": MODULUS, "work": 0.0 if model == "elastic" else WORK}
+    if model == "dugdale":
+        given["strength"] = TABOR / rm.tabor(SHAPES[kind](**KINDS[kind]), **given, strength=1.0)
+        given["adhesion"] = "dugdale"
+    return given
 
 
 def ensemble(kind: str, seed: int = 3) -> xr.Dataset:
-    """Asperities of all sizes about those of ``KINDS``; steep powers less."""
+    """Return asperities with parameters about those of ``KINDS``."""
     rng = np.random.default_rng(seed)
     height = rng.normal(0.0, HEIGHT, COUNT)
-    columns = {name: about * np.exp(rng.normal(0.0, 0.1, COUNT)) for name, about in KINDS[kind].items()}
+    columns = {name: typical * np.exp(rng.normal(0.0, 0.1, COUNT)) for name, typical in KINDS[kind].items()}
     data = {name: ("asperity", column) for name, column in {"height": height, **columns}.items()}
     return xr.Dataset(data, attrs={"shape": kind})
 
 
-def path(asked: dict[str, Any]) -> Floats:
-    """Steps [m] from out of contact to half-way in."""
-    reach = asked["work"] / asked["strength"] if "strength" in asked else 0.0
-    return np.linspace(3.0 * HEIGHT + reach, -0.3 * HEIGHT, 9)
+def adhesion_range(given: dict[str, Any]) -> float:
+    """Return the range of the adhesion [m], 0 without one."""
+    return float(given["work"] / given["strength"]) if "strength" in given else 0.0
 
 
-def answered(data: xr.Dataset, separation: Floats, asked: dict[str, Any]) -> dict[str, Floats]:
-    """The law in and out."""
-    found = rm.load_separation(data, separation=separation, unload=True, variables=VARIABLES, **asked)
+def path(given: dict[str, Any]) -> Floats:
+    """Return separations [m] from out of contact to half of the asperities in contact."""
+    return np.linspace(3.0 * HEIGHT + adhesion_range(given), -0.3 * HEIGHT, 9)
+
+
+def curves(data: xr.Dataset, separation: Floats, given: dict[str, Any]) -> dict[str, Floats]:
+    """Return the variables in loading and unloading."""
+    found = rm.load_separation(data, separation=separation, unload=True, variables=VARIABLES, **given)
     return {name: found[name].to_numpy() for name in VARIABLES}
 
 
-def apart(one: dict[str, Floats], other: dict[str, Floats]) -> float:
-    """The largest difference of any variable over its largest magnitude."""
-    return max(
-        float(np.abs(one[name] - other[name]).max() / max(np.abs(other[name]).max(), np.finfo(float).tiny))
-        for name in VARIABLES
-    )
+def difference(one: dict[str, Floats], other: dict[str, Floats]) -> float:
+    """Return the largest difference of any variable over its largest magnitude."""
+    tiny = np.finfo(float).tiny
+    return max(float(np.abs(one[name] - other[name]).max() / max(np.abs(other[name]).max(), tiny))
+               for name in VARIABLES)  # fmt: skip
 
 
-def in_other_units(data: xr.Dataset, asked: dict[str, Any], length: int, force: int) -> dict[str, Floats]:
-    """The law where lengths and forces are counted in 2^-length m and 2^-force N, back in SI."""
+def in_other_units(data: xr.Dataset, given: dict[str, Any], length: int, force: int) -> dict[str, Floats]:
+    """Return the curves with lengths and forces counted in 2^-length m and 2^-force N, back in SI."""
     units = {"height": "m", **SHAPES[data.attrs["shape"]].units}
     scaled = data.assign(
         {name: np.ldexp(data[name], length * (units[name] == "m")) for name in map(str, data.data_vars)}
     )
     powers = {"effective_modulus": force - 2 * length, "strength": force - 2 * length, "work": force - length}
-    there = {name: math.ldexp(value, powers[name]) if name in powers else value for name, value in asked.items()}
-    found = answered(scaled, np.ldexp(path(asked), length), there)
+    other = {name: math.ldexp(value, powers[name]) if name in powers else value for name, value in given.items()}
+    found = curves(scaled, np.ldexp(path(given), length), other)
     return {name: np.ldexp(found[name], -length * POWERS[name][0] - force * POWERS[name][1]) for name in VARIABLES}
 
 
-def visits(data: xr.Dataset, asked: dict[str, Any]) -> int:
-    """How often an asperity is visited."""
-    adhesion = Adhesion.checked(asked.get("adhesion", "jkr"), asked["work"], asked.get("strength"))
-    route = LoadingPath.along(path(asked), unload=True, adhesive=adhesion.work > 0.0)
-    own = Ensemble.from_dataset(data)
-    return compute(
-        own, route, effective_modulus=asked["effective_modulus"], adhesion=adhesion, variables=["force"]
-    ).visits
+def visits(data: xr.Dataset, given: dict[str, Any]) -> int:
+    """Return how often an asperity is visited."""
+    adhesion = Adhesion.checked(given.get("adhesion", "jkr"), given["work"], given.get("strength"))
+    route = LoadingPath.along(path(given), unload=True, adhesive=adhesion.work > 0.0)
+    modulus, asperities = given["effective_modulus"], Ensemble.from_dataset(data)
+    return compute(asperities, route, effective_modulus=modulus, adhesion=adhesion, variables=["force"]).visits
 
 
-def without_adhesion(shape: Shape, asked: dict[str, Any]) -> tuple[float, float]:
-    """How far the powers of w that radius and force come to Hertz with are from 1/2 and 1, and what is left at last."""
+def without_adhesion(shape: Shape, given: dict[str, Any]) -> tuple[float, float]:
+    """Return how far the powers of w with which radius and force approach Hertz are from 1/2 and 1, and the rest."""
     hertz = rm.indent(shape, effective_modulus=MODULUS, indentation=HEIGHT)
-    found = [rm.indent(shape, **{**asked, "work": WORK * part}, indentation=HEIGHT) for part in _WORKS]
-    wrong, left = 0.0, 0.0
+    found = [rm.indent(shape, **{**given, "work": WORK * part}, indentation=HEIGHT) for part in _WORKS]
+    wrong, rest = 0.0, 0.0
     for name, power in (("contact_radius", 0.5), ("force", 1.0)):
-        away = np.abs(np.array([float(each[name]) for each in found]) / float(hertz[name]) - 1.0)
-        chosen = (away > _SMALL) & (away < _LARGE)
-        slope = np.polynomial.polynomial.polyfit(np.log(_WORKS[chosen]), np.log(away[chosen]), 1)[1]
-        wrong, left = max(wrong, abs(float(slope) - power)), max(left, float(away[-1]))
-    return wrong, left
+        relative = np.abs(np.array([float(each[name]) for each in found]) / float(hertz[name]) - 1.0)
+        chosen = (relative > _SMALL) & (relative < _LARGE)
+        slope = np.polynomial.polynomial.polyfit(np.log(_WORKS[chosen]), np.log(relative[chosen]), 1)[1]
+        wrong, rest = max(wrong, abs(float(slope) - power)), max(rest, float(relative[-1]))
+    return wrong, rest
 
 
 def checks(quick: bool) -> list[Check]:
-    """All of them; roughly, of three shapes."""
+    """Return all checks; of three shapes where ``quick``."""
     kinds = [kind for kind in KINDS if not quick or kind in QUICK]
-    pairs = [(law, kind) for law in ("elastic", "jkr") for kind in kinds]
+    pairs = [(model, kind) for model in ("elastic", "jkr") for kind in kinds]
     pairs += [("dugdale", kind) for kind in kinds if kind in COHESIVE]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
         return [Check(name, *pair, error, allowed) for pair in pairs for name, error, allowed in _checks(*pair)]
 
 
-def _checks(law: str, kind: str) -> Iterator[tuple[str, float, float]]:
-    data, asked, rng = ensemble(kind), law_of(law, kind), np.random.default_rng(7)
-    way = path(asked)
-    whole = answered(data, way, asked)
-    other = max(apart(in_other_units(data, asked, *units), whole) for units in UNITS)
-    same = (law, kind) in SAME_BITS
-    yield "units, only + x / sqrt" if same else "units", other, 0.0 if same else 1e-13
-    yield "order", apart(answered(data.isel(asperity=rng.permutation(COUNT)), way, asked), whole), 0.0
-    parts = [answered(data.isel(asperity=part), way, asked) for part in (slice(0, 117), slice(117, None))]
-    yield "two parts", apart({name: parts[0][name] + parts[1][name] for name in VARIABLES}, whole), 1e-14
-    beyond = asked["work"] / asked["strength"] if law == "dugdale" else 0.0
+def _checks(model: str, kind: str) -> Iterator[tuple[str, float, float]]:
+    data, given, rng = ensemble(kind), material(model, kind), np.random.default_rng(7)
+    separation = path(given)
+    whole = curves(data, separation, given)
+    worst = max(difference(in_other_units(data, given, *units), whole) for units in UNITS)
+    same = (model, kind) in SAME_BITS
+    yield "units, only + x / sqrt" if same else "units", worst, 0.0 if same else 1e-13
+    shuffled = data.isel(asperity=rng.permutation(COUNT))
+    yield "order", difference(curves(shuffled, separation, given), whole), 0.0
+    parts = [curves(data.isel(asperity=part), separation, given) for part in (slice(0, 117), slice(117, None))]
+    yield "two parts", difference({name: parts[0][name] + parts[1][name] for name in VARIABLES}, whole), 1e-14
     low = ensemble(kind, seed=5).isel(asperity=slice(0, LOW))
-    low = low.assign(height=("asperity", way.min() - beyond - rng.uniform(0.01, 5.0, LOW) * HEIGHT))
-    more = xr.concat([data, low], "asperity", combine_attrs="override")
-    yield "asperities out of reach", apart(answered(more, way, asked), whole), 0.0
-    yield "visits of asperities out of reach", float(abs(visits(more, asked) - visits(data, asked))), 0.0
-    if law != "elastic" and kind != "flat_punch":  # whose contact is the same without adhesion
-        wrong, left = without_adhesion(SHAPES[kind](**KINDS[kind]), asked)
-        yield "power of w on the way to Hertz", wrong, 0.01
-        yield "Hertz at w/4^39", left, 1e-11
+    below = separation.min() - adhesion_range(given) - rng.uniform(0.01, 5.0, LOW) * HEIGHT
+    more = xr.concat([data, low.assign(height=("asperity", below))], "asperity", combine_attrs="override")
+    yield "asperities out of reach", difference(curves(more, separation, given), whole), 0.0
+    yield "visits of asperities out of reach", float(abs(visits(more, given) - visits(data, given))), 0.0
+    if model != "elastic" and kind != "flat_punch":  # whose contact is the same without adhesion
+        wrong, rest = without_adhesion(SHAPES[kind](**KINDS[kind]), given)
+        yield "power of w in the approach to Hertz", wrong, 0.01
+        yield "Hertz at w/4^39", rest, 1e-11
