@@ -14,17 +14,14 @@ from oracles.plain_sums import Cost, by_brentq, by_brentq_on, by_numpy, cost_of
 from studies.study import named, table
 
 import roughmdr as rm
-from benchmarks.batch import by_cell
+from benchmarks.batch import by_cell, by_workers
 from benchmarks.child import load_separation
 from benchmarks.process import in_new_process
 from roughmdr.aggregate import loop, totals
-from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
-from roughmdr.runner.run import execute
-from roughmdr.scene import read
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -142,27 +139,6 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
     return xr.Dataset(variables, {"shape": list(SHAPES)})
 
 
-def over_workers(count: int, realizations: int, repeats: int) -> list[float]:
-    """Measure the seconds of a batch with one worker and with two, taken in turn; the median of the repeats."""
-    path = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 200}, "unload": True}
-    scene = {
-        "material": {"effective_modulus": MODULUS},
-        "adhesion": {"model": "jkr", "work": WORK},
-        "asperities": section(count),
-        "path": path,
-        "batch": {"realizations": realizations},
-    }
-    plan = make_plan(read(scene))
-    execute(plan, None, workers=1, quiet=True)
-    times: dict[int, list[float]] = {1: [], 2: []}
-    for _ in range(repeats):
-        for workers, seconds in times.items():
-            started = time.perf_counter()
-            execute(plan, None, workers=workers, quiet=True)
-            seconds.append(time.perf_counter() - started)
-    return [float(np.median(seconds)) for seconds in times.values()]
-
-
 def measure(quick: bool) -> xr.Dataset:
     """Return all figures; ``quick`` of small ensembles."""
     count, repeats = (20_000, 1) if quick else (1_000_000, 3)
@@ -183,15 +159,14 @@ def measure(quick: bool) -> xr.Dataset:
     own = xr.Dataset(
         {
             "cost": (("contact", "method"), cost, named("time per visited asperity and step", "ns")),
-            "batch_time": ("workers", over_workers(count // 10, 16, repeats), named("time of a batch", "s")),
             "large_time": ((), seconds, named("one ensemble, 200 steps each way, JKR", "s")),
             "large_memory": ((), size, named("peak memory above the ensemble", "byte")),
         },
-        {"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"], "workers": [1, 2]},
+        {"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"]},
         {"asperities": count},
     )
-    cells = by_cell(200 if quick else 10_000, repeats)
-    parts = [own, by_shape(count // 50, repeats), by_range(count // 10, repeats), cells]
+    parts = [own, by_shape(count // 50, repeats), by_range(count // 10, repeats)]
+    parts += [by_cell(200 if quick else 10_000, repeats), by_workers(count // 10, 24, repeats)]
     return xr.merge(parts, combine_attrs="no_conflicts")
 
 
@@ -228,7 +203,7 @@ def report(result: xr.Dataset) -> str:
         columns = [result[over].to_numpy(), *(result[name].to_numpy() for name in names)]
         return table(head, [[f"{key}", *(f"{each:.4g}" for each in row)] for key, *row in zip(*columns, strict=True)])
 
-    one, two = result.batch_time.to_numpy()
+    ups = zip(result.pool.to_numpy(), result.speed_up.median("repeat").to_numpy(), strict=True)
     costs = [[f"{each:.3g}" for each in row] for row in result.cost.to_numpy()]
     names = zip(result.contact.to_numpy(), costs, strict=True)
     return "\n\n".join(
@@ -237,7 +212,7 @@ def report(result: xr.Dataset) -> str:
             rows("shape", ["state_time", "asperity_time", "path_time", "state_time_brentq", "profile_time"]),
             rows("tabor", ["dugdale_state_time", "dugdale_asperity_time", "dugdale_time"])
             + f"\n\nThese are {result.attrs['dugdale_asperities']} paraboloids, 200 steps each way.",
-            f"A batch takes {one:.2f} s with one worker, {two:.2f} s with two: {one / two:.2f} times. A sweep of "
+            f"Two workers are {', '.join(f'{each:.2f} times as fast on {pool}' for pool, each in ups)}. A sweep of "
             f"{result.attrs['cells']} small cells takes {1e3 * float(result.cell_overhead.sum()):.2f} ms a cell beside "
             f"its realisation. {result.attrs['asperities']} asperities take {float(result.large_time):.2f} s and "
             f"{float(result.large_memory) / 2**20:.0f} MB above them.",
