@@ -12,11 +12,11 @@ import numpy as np
 import xarray as xr
 from studies.study import named, table
 
+import roughmdr
 from benchmarks.child import run_command
 from benchmarks.process import in_new_process
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
-from roughmdr.cli import main
 from roughmdr.scene import read
 
 if TYPE_CHECKING:
@@ -33,18 +33,17 @@ SCENES = {
     "80000 steps": ["batch.realizations=64", "asperities.count=200", "path.separation.steps=40000"],
 }
 """Changes of the starter scene."""
+_STARTER = Path(roughmdr.__file__).with_name("starter.toml")
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return time and memory of each scene, planned and run; ``quick`` the first alone."""
     names, rows = list(SCENES)[: 1 if quick else None], []
     with tempfile.TemporaryDirectory() as folder:
-        scene = Path(folder, "scene.toml")
-        main(["new", str(scene)], standalone_mode=False)
         for name in names:
-            planned = estimate(make_plan(read(scene, SCENES[name])), 2)
+            planned = estimate(make_plan(read(_STARTER, SCENES[name])), 2)
             changes = [part for change in SCENES[name] for part in ("--set", change)]
-            command = ["run", str(scene), "-o", f"{scene}.nc", "--quiet", "--fresh", *changes]
+            command = ["run", str(_STARTER), "-o", f"{folder}/result.nc", "--quiet", "--fresh", *changes]
             started = time.perf_counter()
             size = in_new_process(run_command, command)
             rows.append([[planned.seconds, time.perf_counter() - started], [planned.memory, float(size)]])
