@@ -7,7 +7,7 @@ JKR is from Dugdale's, from which the choice of model "auto" comes.
 import math
 import time
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -28,7 +28,8 @@ ROUGH_NUMBERS = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)  # std of the heights over the depth of the JKR pull-off
 STOPS = (2.0, 0.0, -1.0)  # of the flat, in std
 STEPS = 200
-MODELS, CONTROLS = ("jkr", "dugdale"), ("force", "displacement")
+MODELS = ("jkr", "dugdale")
+CONTROLS: tuple[Literal["force"], Literal["displacement"]] = ("force", "displacement")
 _TINY = 1e-300  # in place of no force at all
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
 

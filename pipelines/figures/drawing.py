@@ -34,7 +34,9 @@ def draw_body(ax: "Axes", x: Floats, profile: Floats, top: float) -> None:
     ax.axhline(0.0, color="0.45", lw=0.9, ls=(0, (6, 4)), zorder=0)
 
 
-def draw_length(ax: "Axes", start: tuple[float, float], end: tuple[float, float], text: str, at: Any) -> None:
+def draw_length(
+    ax: "Axes", start: tuple[float, float], end: tuple[float, float], text: str, at: tuple[float, float]
+) -> None:
     """Draw a double arrow between two points and its name at a third."""
     ax.annotate("", end, start, arrowprops={"arrowstyle": "<->", "lw": 1.2, "shrinkA": 0, "shrinkB": 0})
     ax.text(*at, text, ha="center", va="center", fontsize=12)

@@ -150,6 +150,6 @@ def judge(scene: Scene) -> Verdict:
     if not doubt.max() <= _RTOL_REFERENCE * largest:
         return Verdict(scene, "no reference", float(doubt.max()) / largest, np.nan)
     stated = float(curve.numerical_error[0])
-    error = np.abs(curve.force.to_numpy()[0] - force)
-    right = bool((error <= stated * largest + doubt).all())
-    return Verdict(scene, "right" if right else "wrong", float(error.max()) / largest, stated)
+    deviation = np.abs(curve.force.to_numpy()[0] - force)
+    right = bool((deviation <= stated * largest + doubt).all())
+    return Verdict(scene, "right" if right else "wrong", float(deviation.max()) / largest, stated)

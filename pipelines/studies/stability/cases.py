@@ -78,4 +78,7 @@ def design(count: int) -> list[Case]:
     fractions = np.clip((fractions - _MARGIN) / (1.0 - 2.0 * _MARGIN), 0.0, 1.0)
     axes = [*AXES.values(), _ASPECT, *[AXES["distance"]] * (ASPERITIES - 1)]
     rows = [[axis.at(float(fraction)) for axis, fraction in zip(axes, row, strict=True)] for row in fractions]
-    return [Case(*row[: len(AXES) + 1], other_distances=tuple(row[len(AXES) + 1 :])) for row in rows]
+    first = len(AXES) + 1
+    return [
+        Case(**dict(zip(Case._fields, row[:first], strict=False)), other_distances=tuple(row[first:])) for row in rows
+    ]

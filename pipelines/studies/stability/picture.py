@@ -47,8 +47,8 @@ def draw(result: xr.Dataset) -> "Figure":
     names = list(AXES)
     figure = Figure(figsize=(15, 13.5), layout="constrained")
     panels = figure.subplots(len(names), len(names))
-    excess = ScalarMappable(LogNorm(1e-2, 1.0), "YlOrBr")
-    evaluated = ScalarMappable(LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0)))), "viridis")
+    excess = LogNorm(1e-2, 1.0)
+    evaluated = LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0))))
     counted = result.isel(case=slice(0, result.sizes["counted_case"]))
     for i, other in enumerate(names):
         for j, one in enumerate(names):
@@ -60,10 +60,10 @@ def draw(result: xr.Dataset) -> "Figure":
                 _errors(panel, result, one, other, excess)
             else:
                 most = worst_in(counted, one, other, counted.tried.max("counted_law").to_numpy())
-                panel.imshow(most, cmap=evaluated.cmap, norm=evaluated.norm, **_CELLS)
+                panel.imshow(most, cmap="viridis", norm=evaluated, **_CELLS)
     below, above = "below: worst error over what is allowed", "above: most equilibria evaluated for a contact"
-    figure.colorbar(excess, ax=panels, location="bottom", shrink=0.4, label=below)
-    figure.colorbar(evaluated, ax=panels, location="right", shrink=0.4, label=above)
+    figure.colorbar(ScalarMappable(excess, "YlOrBr"), ax=panels, location="bottom", shrink=0.4, label=below)
+    figure.colorbar(ScalarMappable(evaluated, "viridis"), ax=panels, location="right", shrink=0.4, label=above)
     handles = [Patch(color=color, label=outcome) for outcome, color in _COLORS.items()]
     figure.legend(handles=handles, loc="outside upper right", ncols=3, title="refused: no float holds it; white: none")
     figure.suptitle("Results over seven axes, without adhesion, with JKR and with Dugdale", x=0.02, ha="left")
@@ -87,7 +87,7 @@ def _errors(panel: "Axes", result: xr.Dataset, one: str, other: str, excess: Any
 
     mark("refused")
     worst = worst_in(chosen, one, other, chosen.excess.max("law").to_numpy())
-    panel.imshow(np.maximum(worst, excess.norm.vmin), cmap=excess.cmap, norm=excess.norm, **_CELLS)
+    panel.imshow(np.maximum(worst, excess.vmin), cmap="YlOrBr", norm=excess, **_CELLS)
     mark("wrong")
 
 
