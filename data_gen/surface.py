@@ -17,7 +17,8 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
 from oracles.gaussian_maps import gaussian_map, rms_slope
@@ -77,7 +78,7 @@ def main(
             },
         )
         output.parent.mkdir(parents=True, exist_ok=True)
-        write(Labelled.of(dataset), output)
+        write_netcdf(Labelled.of(dataset), output)
     except RoughmdrError as error:
         raise click.UsageError(str(error)) from None
     click.echo(f"{output}: {points} x {points} points")

@@ -1,6 +1,6 @@
 """The command line, thin over the library.
 
-Exit status: 0 done, 2 wrong input, 130 interrupted; 1 anything else: runs failed, or what was begun could not go on.
+Exit status: 0 done, 1 runs failed or a batch had to stop, 2 wrong input, 130 interrupted.
 """
 
 import gc
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.report.terminal import NOT_ALL, Group, say
+from roughmdr.report.terminal import INCOMPLETE, Group, print_text
 
 if TYPE_CHECKING:
     from roughmdr.runner.cluster import Tls
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def _loading() -> Iterator[None]:
-    """No search for garbage while packages are loaded: they make many objects to keep, and a tenth of the time goes."""
+def _without_garbage_collection() -> Iterator[None]:
+    """Suspend garbage collection during imports: it would take a tenth of their time and find nothing."""
     gc.disable()
     try:
         yield
@@ -33,23 +33,26 @@ def _loading() -> Iterator[None]:
         gc.enable()
 
 
-def _command() -> str:
-    """What goes into a file's history."""
+def _command_line() -> str:
+    """Return the command as it is recorded in a file's history."""
     return f"roughmdr {shlex.join(sys.argv[1:])}".encode("utf-8", "replace").decode()
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="roughmdr")
 def main() -> None:
-    """Rough, multi-asperity contact, with and without adhesion: a scene in, a load-separation law out."""
+    """Simulate the contact of rough surfaces, with and without adhesion.
+
+    A scene file says what to compute; the result is a load-separation law. "roughmdr new" writes a scene to begin with.
+    """
 
 
 _FILE = click.Path(path_type=Path)
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 _changes = click.option(
-    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change one key of the scene; repeatable."
+    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Set a key of the scene; repeatable."
 )
-_fresh = click.option("--fresh", is_flag=True, help="Replace what is at the output, whatever it is.")
+_fresh = click.option("--fresh", is_flag=True, help="Replace an existing output of any kind.")
 _workers = click.option(
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads or processes."
 )
@@ -57,7 +60,7 @@ _workers = click.option(
 
 @main.command()
 @click.argument("scene", type=_FILE)
-@click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
+@click.option("-o", "--output", type=_OUTPUT, required=True, help="netCDF file to write.")
 @_changes
 @_workers
 @click.option(
@@ -65,45 +68,44 @@ _workers = click.option(
     default="threads",
     show_default=True,
     metavar="threads|processes|tcp://HOST:PORT|tls://HOST:PORT",
-    help="What computes: this machine, or the dask cluster whose scheduler is there.",
+    help="Compute on this machine, or on the dask cluster with its scheduler at this address.",
 )
-@click.option("--tls-ca", type=_FILE, help="For tls://: the certificate of the authority (PEM).")
-@click.option("--tls-cert", type=_FILE, help="For tls://: the certificate of this client (PEM).")
-@click.option("--tls-key", type=_FILE, help="For tls://: its key (PEM).")
+@click.option("--tls-ca", type=_FILE, help="For tls://: certificate of the authority (PEM).")
+@click.option("--tls-cert", type=_FILE, help="For tls://: certificate of this client (PEM).")
+@click.option("--tls-key", type=_FILE, help="For tls://: key of this client (PEM).")
 @click.option(
     "--resume/--fresh",
     default=True,
     show_default=True,
-    help="Use again what the output holds already or an interrupted run kept, or start anew.",
+    help="Reuse what the output or an interrupted run already contains, or start anew.",
 )
-@click.option("--quiet", is_flag=True, help="Say nothing but errors.")
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 def run(
     scene: Path,
     output: Path,
     changes: tuple[str, ...],
     workers: int,
     scheduler: str,
-    tls_ca: Path | None,
-    tls_cert: Path | None,
-    tls_key: Path | None,
     resume: bool,
     quiet: bool,
+    **tls_files: Path | None,
 ) -> None:
-    """Compute SCENE, a TOML file or a result that holds one, and write its load-separation law.
+    """Compute the load-separation law of SCENE.
 
-    Finished runs are kept beside the output until all are done: interrupted, killed or out of room, the same command
-    goes on from there. Ctrl-C finishes what is under way; twice, it does not.
+    SCENE is a TOML file, or a result, which contains its scene. Finished runs are kept beside the output until all are
+    done. If the command is interrupted or killed, or the disk is full, the same command continues from there. Ctrl-C
+    waits for the current runs; a second Ctrl-C does not.
     """
     started = time.perf_counter()
-    with _loading():
-        from roughmdr.report.words import describe_failed, describe_result
+    with _without_garbage_collection():
+        from roughmdr.report.summary import describe_failed, describe_result
         from roughmdr.scene import read
 
-        asked = read(scene, changes)  # before anything heavy is loaded
+        validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.plan import make_plan
         from roughmdr.runner.run import execute
 
-        planned = make_plan(asked)
+        planned = make_plan(validated)
     result = execute(
         planned,
         output,
@@ -111,27 +113,27 @@ def run(
         scheduler=scheduler,
         resume=resume,
         quiet=quiet,
-        command=_command(),
-        tls=_tls(tls_ca, tls_cert, tls_key),
+        command=_command_line(),
+        tls=_tls(**tls_files),
     )
     if not quiet:
-        say(describe_result(result, time.perf_counter() - started))
-        say(f"result       {click.format_filename(output)}")
+        print_text(describe_result(result, time.perf_counter() - started))
+        print_text(f"result       {click.format_filename(output)}")
     if failed := describe_failed(result):
         if quiet:
-            say(f"roughmdr: {failed}", err=True)
-        sys.exit(NOT_ALL)
+            print_text(f"roughmdr: {failed}", err=True)
+        sys.exit(INCOMPLETE)
 
 
-def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":
-    """What --tls-ca, --tls-cert and --tls-key say; None where they say nothing."""
-    if ca is None and cert is None and key is None:
+def _tls(tls_ca: Path | None, tls_cert: Path | None, tls_key: Path | None) -> "Tls | None":
+    """Return the TLS files, None if none is given; RoughmdrError if only some are."""
+    if tls_ca is None and tls_cert is None and tls_key is None:
         return None
-    if ca is None or cert is None or key is None:
-        raise RoughmdrError("--tls-ca, --tls-cert and --tls-key go together")
+    if tls_ca is None or tls_cert is None or tls_key is None:
+        raise RoughmdrError("--tls-ca, --tls-cert and --tls-key must be given together")
     from roughmdr.runner.cluster import Tls
 
-    return Tls(str(ca), str(cert), str(key))
+    return Tls(str(tls_ca), str(tls_cert), str(tls_key))
 
 
 @main.command()
@@ -139,126 +141,145 @@ def _tls(ca: Path | None, cert: Path | None, key: Path | None) -> "Tls | None":
 @_changes
 @_workers
 def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
-    """Say what a run of SCENE will do: tasks, time, memory, and what is left out and why. Nothing is written."""
-    from roughmdr.report.words import describe_plan
+    """Tell what a run of SCENE will do.
+
+    Prints the number of runs and tasks, time and memory, and what is left out and why. Nothing is computed.
+    """
+    from roughmdr.report.summary import describe_plan
     from roughmdr.scene import read
 
-    asked = read(scene, changes)
+    validated = read(scene, changes)
     from roughmdr.batch.estimate import estimate
     from roughmdr.batch.plan import make_plan
 
-    planned = make_plan(asked)
-    say(describe_plan(planned, estimate(planned, workers), workers))
+    planned = make_plan(validated)
+    print_text(describe_plan(planned, estimate(planned, workers), workers))
 
 
 @main.command()
 @click.argument("result", type=_FILE)
-@click.option("-o", "--output", type=_OUTPUT, required=True, help="The picture to write: .png, .pdf or .svg.")
-@click.option("--variable", "variables", multiple=True, help="Draw this one; repeatable. Default: all.")
-@click.option("--with-expected", is_flag=True, help="Draw the expected law of the scene as well.")
-@click.option("--with-theory", is_flag=True, help="Draw the named laws as well that apply to the scene.")
+@click.option("-o", "--output", type=_OUTPUT, required=True, help="Picture to write: .png, .pdf or .svg.")
+@click.option("--variable", "variables", multiple=True, help="Variable to draw; repeatable. Default: all.")
+@click.option("--with-expected", is_flag=True, help="Also draw the expected law of the scene.")
+@click.option("--with-theory", is_flag=True, help="Also draw the theory curves that apply to the scene.")
 @_fresh
 def plot(
     result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool, fresh: bool
 ) -> None:
-    """Draw the load-separation law in RESULT. A picture of the same kind is replaced."""
+    """Draw the load-separation law in RESULT.
+
+    An existing picture of the same format is replaced.
+    """
     from roughmdr.report.plots import format_of, plot
     from roughmdr.result.layout import asked_variables
-    from roughmdr.storage.kinds import check_kind
-    from roughmdr.storage.store import check_writable, read
+    from roughmdr.storage.file_checks import check_writable
+    from roughmdr.storage.result_file import check_same_kind, read_result
 
     check_writable(output, [result])
     if not fresh:
-        check_kind(output, format_of(output))
-    data = read(result)
-    _warn_of(result, data)
-    names, lines = asked_variables(data, variables), []
+        check_same_kind(output, format_of(output))
+    data = read_result(result)
+    _warn_if_changed(result, data)
+    names = asked_variables(data, variables)
+    lines = []
     if with_expected or with_theory:
-        from roughmdr.report.comparison import expected_law, named_laws, plan_of
+        from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
 
-        planned = plan_of(result, data)
-        for wanted, title, compared in (
-            (with_expected, "expected", expected_law),
-            (with_theory, "theory", named_laws),
+        planned = plan_of_result(result, data)
+        for wanted, title, overlay in (
+            (with_expected, "expected", overlay_expected),
+            (with_theory, "theory", overlay_theory),
         ):
             if wanted:
-                found = compared(planned, names)
-                lines += found.lines
-                for line in found.remarks:
-                    say(f"{title:<12} {line}")
+                drawn = overlay(planned, names)
+                lines += drawn.lines
+                for remark in drawn.remarks:
+                    print_text(f"{title:<12} {remark}")
     plot(data, output, names, lines)
-    say(f"picture      {click.format_filename(output)}")
+    print_text(f"picture      {click.format_filename(output)}")
 
 
 @main.command()
 @click.argument("result", type=_FILE)
-@click.option("--cells", is_flag=True, help="List the cells: what became of each, time, errors, remarks.")
+@click.option("--cells", is_flag=True, help="List the cells of the sweep: status, time, errors, remarks.")
 def info(result: Path, cells: bool) -> None:
-    """Say what RESULT holds: sizes, pull-off force with its error, seed, versions, time, and the scene."""
-    from roughmdr.storage.store import read
+    """Tell what RESULT contains.
 
-    data = read(result)
-    _warn_of(result, data)
+    Prints sizes, the pull-off force with its error, run time, seed, versions and the scene.
+    """
+    from roughmdr.storage.result_file import read_result
+
+    data = read_result(result)
+    _warn_if_changed(result, data)
     if cells:
-        from roughmdr.report.cells import describe_cells
+        from roughmdr.report.cell_table import describe_cells
 
-        say(describe_cells(data))
+        print_text(describe_cells(data))
         return
-    from roughmdr.report.words import describe_origin, describe_result
+    from roughmdr.report.summary import describe_origin, describe_result
 
-    say(describe_result(data))
-    say(describe_origin(data, result.stat().st_size))
+    print_text(describe_result(data))
+    print_text(describe_origin(data, result.stat().st_size))
 
 
-def _warn_of(file: Path, result: "Labelled") -> None:
-    """Say so where the numbers in a file are not to be believed."""
-    if fault := result.what_was_changed():
-        say(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
+def _warn_if_changed(file: Path, result: "Labelled") -> None:
+    """Print a warning if the numbers in a file cannot be trusted."""
+    if fault := result.integrity_fault():
+        print_text(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
 
 
 @main.command()
 @click.argument("scene", type=_OUTPUT)
 def new(scene: Path) -> None:
-    """Write a starter scene to SCENE: it runs as it is, and its comments list units and choices."""
+    """Write a starter scene to SCENE. It runs as it is; its comments list units and choices."""
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.storage.store import check_writable, replacing
+    from roughmdr.storage.atomic import replace_atomically
+    from roughmdr.storage.file_checks import check_writable
 
     check_writable(scene)
     if scene.exists():
-        raise StoreError(f"{scene}: is there already; give a new name")
-    with replacing(scene) as temporary:
+        raise StoreError(f"{scene}: exists already; give a new name")
+    with replace_atomically(scene) as temporary:
         temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
-    say(f"scene        {click.format_filename(scene)}")
+    print_text(f"scene        {click.format_filename(scene)}")
 
 
 @main.command()
 @click.argument("scene", type=_FILE)
-@click.option("-o", "--output", type=_OUTPUT, required=True, help="The netCDF file to write.")
+@click.option("-o", "--output", type=_OUTPUT, required=True, help="netCDF file to write.")
 @click.option(
-    "--realization", type=click.IntRange(0, 999_999_999), default=0, show_default=True, help="Which of the ensembles."
+    "--realization",
+    type=click.IntRange(0, 999_999_999),
+    default=0,
+    show_default=True,
+    help="Which realisation.",
 )
 @_fresh
 @_changes
 def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: tuple[str, ...]) -> None:
-    """Write the asperities that a run of SCENE presses on. Other asperities are replaced."""
-    from roughmdr.ensemble import make
-    from roughmdr.report.words import describe_ensemble
-    from roughmdr.scene import read
-    from roughmdr.storage.kinds import check_kind
-    from roughmdr.storage.store import check_writable, provenance, write
+    """Write the asperities of one realisation of SCENE.
 
-    asked = read(scene, changes)
-    for axis in asked.sweep.axes:
+    An existing file of asperities is replaced.
+    """
+    from roughmdr.ensemble import make
+    from roughmdr.report.summary import describe_ensemble
+    from roughmdr.scene import read
+    from roughmdr.storage.file_checks import check_writable
+    from roughmdr.storage.netcdf_writing import write_netcdf
+    from roughmdr.storage.result_file import check_same_kind, provenance
+
+    validated = read(scene, changes)
+    for axis in validated.sweep.axes:
         if axis.key.startswith("asperities."):
-            raise SceneError(f"sweep: changes {axis.key} from cell to cell; say which with --set {axis.key}=VALUE")
-    if realization > 0 and not asked.asperities.drawn:
-        raise SceneError(f"--realization {realization}: there is only one, 0; nothing here is drawn")
-    check_writable(output, asked.inputs)
+            raise SceneError(f"sweep: changes {axis.key} from cell to cell; choose one with --set {axis.key}=VALUE")
+    if realization > 0 and not validated.asperities.is_random:
+        raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
+    check_writable(output, validated.inputs)
     if not fresh:
-        check_kind(output, "ensemble")
-    made = make(asked.asperities, asked.seed, realization).labelled()
-    write(made._replace(attrs={**provenance(asked.title, _command()), **made.attrs}), output)
-    say(describe_ensemble(made))
-    say(f"ensemble     {click.format_filename(output)}")
+        check_same_kind(output, "ensemble")
+    ensemble = make(validated.asperities, validated.seed, realization).labelled()
+    write_netcdf(ensemble._replace(attrs={**provenance(validated.title, _command_line()), **ensemble.attrs}), output)
+    print_text(describe_ensemble(ensemble))
+    print_text(f"ensemble     {click.format_filename(output)}")

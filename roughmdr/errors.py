@@ -1,62 +1,67 @@
-"""The errors that roughmdr raises on purpose. Each message names the argument, its value and what is allowed."""
+"""Errors and warnings that roughmdr raises on purpose. Messages name the argument, its value and what is allowed."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 
 class Fault(NamedTuple):
-    """One thing that is wrong with a scene."""
+    """One thing that is wrong with a scene; printed as "location: key = value: message"."""
 
     key: str
-    """Dotted; empty where no key is at fault."""
+    """Dotted key; empty if no single key is at fault."""
     value: str
-    """As in the scene; empty where there is none to show."""
+    """Value as it stands in the scene; empty if there is none to show."""
     message: str
-    place: str = ""
-    """File and line; empty where there is none."""
+    """What is wrong with it, and what is allowed."""
+    location: str = ""
+    """File and line, or "--set"; empty if there is none."""
 
     def __str__(self) -> str:
-        shown = f"{self.key} = {self.value}" if self.value else self.key
-        return ": ".join(part for part in (self.place, shown, self.message) if part)
+        subject = f"{self.key} = {self.value}" if self.value else self.key
+        return ": ".join(part for part in (self.location, subject, self.message) if part)
 
 
 class RoughmdrError(ValueError):
-    """Base of all errors that roughmdr raises on purpose."""
+    """Base class of all errors that roughmdr raises on purpose; catching it catches them all."""
 
 
 class SceneError(RoughmdrError):
-    """What was asked for, in a scene or an ensemble, cannot be computed as it stands."""
+    """A scene or an ensemble cannot be computed as it was given.
+
+    It is raised before anything is computed. The message of a scene has one line for each fault.
+    """
 
     faults: tuple[Fault, ...] = ()
-    """What is wrong, one by one; empty where the message says it."""
+    """Faults of the scene one by one; empty if the message is not about single keys."""
 
     @classmethod
     def of(cls, faults: Sequence[Fault]) -> "SceneError":
-        """The error that names all of ``faults``, each once."""
-        error = cls("\n".join(dict.fromkeys(map(str, faults))))
-        error.faults = tuple(dict.fromkeys(faults))
+        """Return the error that lists ``faults``, each once."""
+        unique = tuple(dict.fromkeys(faults))
+        error = cls("\n".join(dict.fromkeys(map(str, unique))))
+        error.faults = unique
         return error
 
 
 class ShapeError(RoughmdrError):
-    """A shape parameter, or the use of a shape, makes no sense."""
+    """A shape parameter is not allowed, or a shape cannot be used in the way it was asked to be."""
 
 
 class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contract
-    """A number lies outside the range in which there is a right answer."""
-
-
-class LimitWarning(UserWarning):
-    """A result lies where its theory is doubtful."""
+    """A number lies outside the range in which there is a right answer, or the answer is not representable."""
 
 
 class StoreError(RoughmdrError):
-    """A file cannot be read or written."""
+    """A file cannot be read or written, is of the wrong kind, or must not be replaced."""
 
 
-class Unfinished(StoreError):  # noqa: N818 - it is no error of whoever asked
-    """A batch could not go on; what it finished is kept."""
+class Unfinished(StoreError):  # noqa: N818 - not an error of the caller
+    """A batch had to stop; the finished runs are kept, and the same call continues from there."""
+
+
+class LimitWarning(UserWarning):
+    """A result lies where the theory behind it is doubtful, for example beyond small slopes."""
 
 
 class FailedRuns(UserWarning):
-    """Some runs of a batch could not be computed."""
+    """Some runs of a batch could not be computed; ``status`` and ``remark`` of the result tell which and why."""

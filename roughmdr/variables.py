@@ -1,10 +1,10 @@
-"""Every variable that roughmdr hands out, declared once: its name, unit and description."""
+"""All variables of datasets and files, declared once: name, unit and description."""
 
 from typing import NamedTuple
 
 
 class Variable(NamedTuple):
-    """A named quantity in SI units."""
+    """A variable of a dataset or a file, in SI units."""
 
     name: str
     units: str
@@ -12,15 +12,15 @@ class Variable(NamedTuple):
 
     @property
     def attrs(self) -> dict[str, str]:
-        """The attributes that an xarray variable of it carries."""
+        """Its attributes in xarray and netCDF."""
         return {"units": self.units, "long_name": self.long_name}
 
 
-def _table(*rows: tuple[str, str, str]) -> dict[str, Variable]:
-    return {row[0]: Variable(*row) for row in rows}
+def _declare(*declarations: tuple[str, str, str]) -> dict[str, Variable]:
+    return {declaration[0]: Variable(*declaration) for declaration in declarations}
 
 
-CURVE_VARIABLES = _table(
+CURVE_VARIABLES = _declare(
     ("force", "N", "normal force of all asperities, compression positive"),
     ("contact_area", "m2", "sum of the contact areas"),
     ("contact_count", "1", "number of asperities in contact"),
@@ -31,11 +31,11 @@ CURVE_VARIABLES = _table(
     ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
     ("dissipated_energy", "J", "energy lost in the jumps of contacts since the start of the path"),
 )
-"""Variables of a load-separation law that can be asked for."""
+"""Variables of a load-separation law that [output] can name."""
 
 DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
 
-ASPERITY = _table(
+ASPERITY = _declare(
     ("indentation", "m", "approach past first touch, positive pressed in"),
     ("force", "N", "normal force, compression positive"),
     ("contact_radius", "m", "radius of the contact"),
@@ -45,7 +45,7 @@ ASPERITY = _table(
 )
 """Variables of a single asperity."""
 
-FIELDS = _table(
+FIELDS = _declare(
     ("r", "m", "distance from the axis of the asperity"),
     ("z", "m", "depth below the surface of the half-space"),
     ("pressure", "Pa", "normal pressure on the surface, compression positive"),
@@ -56,38 +56,38 @@ FIELDS = _table(
     ("largest_shear", "Pa", "largest shear stress on the axis"),
     ("largest_shear_depth", "m", "depth at which the shear stress on the axis is largest"),
 )
-"""Variables of the half-space under a single asperity."""
+"""Fields in the half-space under a single asperity."""
 
-COORDINATES = _table(
+COORDINATES = _declare(
     ("separation", "m", "rigid flat above the datum plane"),
     ("branch", "", "direction in which the flat moved"),
     ("height", "m", "summit height above the datum plane"),
-    ("x", "m", "position of the summit"),
-    ("y", "m", "position of the summit"),
+    ("x", "m", "x of the summit"),
+    ("y", "m", "y of the summit"),
 )
 
-RUN_VARIABLES = _table(
-    ("run_time", "s", "time spent on the realization, or on all that a statistic is of"),
-    ("realization_count", "1", "number of realizations that the statistics are of"),
+RUN_VARIABLES = _declare(
+    ("run_time", "s", "time spent on the realization, or on all realizations of a statistic"),
+    ("realization_count", "1", "number of realizations of the statistics"),
     ("numerical_error", "1", "estimated numerical error of the force over its largest magnitude"),
-    ("status", "1", "what became of the realization"),
-    ("tabor_number", "1", "least Tabor number of the asperities"),
-    ("adhesion_law", "1", "law of adhesion that was taken"),
+    ("status", "1", "outcome of the realization"),
+    ("tabor_number", "1", "smallest Tabor number of the asperities"),
+    ("adhesion_law", "1", "adhesion model that was used"),
     ("edge_slope", "1", "largest slope of a profile at the edge of its contact"),
     ("profile_extent", "1", "largest contact radius over the radius where its profile ends"),
-    ("remark", "", "why it failed, or what makes it doubtful"),
-    ("cell_key", "", "hash of all that decides the numbers of a cell, and of the versions"),
-    ("accuracy_reached", "1", "standard error of the mean force over its largest value; of an expected law its error"),
+    ("remark", "", "why the realization failed, or why it is doubtful"),
+    ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
+    ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
     ("accuracy_method", "1", "how the cell was computed"),
 )
-"""Variables that stand in every result."""
+"""Variables about the runs of a result."""
 
 DONE, FAILED, NOT_RUN = range(3)
 """Codes of ``status``."""
 STATUSES = ("done", "failed", "not_run")
-"""Meanings of the codes of ``status``."""
+"""Meaning of each code of ``status``."""
 ADHESION_CODES = ("none", "jkr", "dugdale")
-"""Adhesion models, each at its code in ``adhesion_law``."""
+"""Adhesion models; the index is the code in ``adhesion_law``."""
 
 AUXILIARY_COORDINATES = ("separation", "branch", "cell_key", "remark")
-"""Those of them that are coordinates of a result, beside its swept keys."""
+"""Coordinates of a result besides its swept keys."""

@@ -25,7 +25,7 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.runner import local
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.store import destination
+from roughmdr.storage.file_checks import destination
 
 _CLI = "from roughmdr.cli import main; main()"
 _IN_CHUNKS = """

@@ -17,7 +17,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
-from roughmdr.storage.netcdf import load
+from roughmdr.storage.netcdf_reading import read_netcdf
 
 FEW = {**ASPERITIES, "count": 5}
 SCENE = scene(
@@ -99,7 +99,7 @@ def put(content: Content, *, believed: bool) -> bool:
         return False
     if believed:
         try:
-            checksum = load(Path("changed.nc")).checksum()
+            checksum = read_netcdf(Path("changed.nc")).checksum()
         except ValueError:  # it cannot even be read, or holds what no text is
             return True
         with netCDF4.Dataset("changed.nc", "a") as file:

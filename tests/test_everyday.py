@@ -18,7 +18,7 @@ from scenes import ASPERITIES, scene
 from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
-from roughmdr.scene.sections import Scene
+from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.units import _BASES
 from roughmdr.variables import CURVE_VARIABLES
@@ -54,7 +54,7 @@ def test_the_starter_scene_runs_and_shows_every_choice(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     again = roughmdr("new", "mine.toml", cwd=tmp_path)
     assert (again.returncode, (tmp_path / "mine.toml").read_text()) == (2, text)
-    assert "is there already" in again.stderr
+    assert "exists already" in again.stderr
 
 
 def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
@@ -92,8 +92,8 @@ def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
     done = roughmdr("plan", "small.toml", *large, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["small.toml"]
-    assert "6 realisations x 80 steps: 6 in all" in done.stdout
-    assert re.search(r"^time +about [\d.]+ s, of them [\d.]+ s to start$", done.stdout, re.MULTILINE)
+    assert "6 realisations x 80 steps: 6 in total" in done.stdout
+    assert re.search(r"^time +about [\d.]+ s, of which [\d.]+ s to start$", done.stdout, re.MULTILINE)
     size, unit = re.search(r"^memory +about ([\d.]+) (\w+),", done.stdout, re.MULTILINE).groups()  # type: ignore[union-attr]
     command = ["run", "small.toml", "-o", "out.nc", *large]
     taken = subprocess.run(
@@ -137,7 +137,7 @@ def test_generate_writes_the_asperities_of_a_run(folder: Path) -> None:
         assert float(law.force[0]) > 0.0
     swept = roughmdr("generate", "small.toml", "-o", "x.nc", "--set", "sweep.asperities.count=[1,2]", cwd=folder)
     assert swept.returncode == 2
-    assert "say which with --set asperities.count=VALUE" in swept.stderr
+    assert "choose one with --set asperities.count=VALUE" in swept.stderr
 
 
 def test_a_result_is_run_again_from_itself_alone(folder: Path) -> None:
@@ -150,7 +150,7 @@ def test_a_result_is_run_again_from_itself_alone(folder: Path) -> None:
         assert first.attrs["scene"] == again.attrs["scene"]
     over = roughmdr("run", "out.nc", "-o", "out.nc", cwd=folder)
     assert over.returncode == 2
-    assert "is read from" in over.stderr
+    assert "is an input" in over.stderr
 
 
 def on_a_terminal(*arguments: str, cwd: Path, **environment: str) -> str:

@@ -22,7 +22,7 @@ from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
 from roughmdr.result.pull_off import pull_off_force
 from roughmdr.scene import read
-from roughmdr.storage.store import read as read_result
+from roughmdr.storage.result_file import read_result
 
 SMALL = {**ASPERITIES, "count": 20}
 
@@ -55,7 +55,7 @@ def test_no_input_is_overwritten(folder: Path) -> None:
         ["new", "small.toml"],
     ):
         assert roughmdr(*arguments, cwd=folder).returncode == 2, arguments
-    with pytest.raises(rm.StoreError, match="is read from"):
+    with pytest.raises(rm.StoreError, match="is an input"):
         rm.run(read(folder / "small.toml"), folder / "small.toml")
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
@@ -108,7 +108,7 @@ def test_files_in_a_change_are_found_again(folder: Path, change: str, monkeypatc
 @pytest.mark.parametrize("change", ["sweep.adhesion={work=[0.01,0.02]}", "sweep={adhesion={work=[0.01,0.02]}}"])
 def test_a_change_may_spell_a_sweep_in_any_way(change: str) -> None:
     assert read(scene(), [change]).sweep.sizes == {"adhesion_work": 2}
-    with pytest.raises(rm.SceneError, match="sweep is no table"):
+    with pytest.raises(rm.SceneError, match="sweep is not a table"):
         read(scene(), ["sweep=5", "sweep.adhesion.work=[1]"])
 
 

@@ -77,7 +77,7 @@ def by_the_sum(
     ensemble: Ensemble, path: np.ndarray, adhesion: Adhesion, repeats: int, rows: frozenset[int] = TOTALS
 ) -> Cost:
     """Measure the package's sum, all included."""
-    columns = ensemble.columns()
+    columns = ensemble.nondimensional()
     kernels = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 
@@ -124,7 +124,7 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
     for shape, parameters in SHAPES.items():
         ensemble = ensemble_of(count, shape, **parameters)
         started = time.perf_counter()
-        ensemble.columns()  # for a table: its pieces
+        ensemble.nondimensional()  # for a table: its pieces
         profile = time.perf_counter() - started
         each, before, short = split_cost(ensemble, Adhesion(WORK), repeats)
         rows.append((1e9 * each, 1e9 * before, short.each, by_brentq_on(ensemble, MODULUS, WORK).each, profile))

@@ -17,7 +17,7 @@ from studies.study import named
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.ensemble.streams import independent
+from roughmdr.ensemble.streams import make_streams
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
 
@@ -83,7 +83,7 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
     The sample that is drawn has no area: its density is that of the distribution.
     """
     distribution, area = distribution_of_maps(), SIZE * SIZE
-    streams = independent(1, 0)
+    streams = make_streams(1, 0)
     sample = distribution.draw(*(streams(number, drawn) for number in range(3)))
     sampled = statistics(sums(sample), drawn / distribution.density)
     found, by_fit = [], []

@@ -127,7 +127,7 @@ def scalar_g(shape: Shape) -> Callable[[float], float]:
 def by_brentq_on(ensemble: Ensemble, effective_modulus: float, work: float) -> Cost:
     """Return the cost of a root finder on delta = g(a) - dl(a), for 200 contacts of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
-    shape: Shape = ensemble.fixed or SHAPES[ensemble.shape](**first)
+    shape: Shape = ensemble.shared_profile or SHAPES[ensemble.shape](**first)
     fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)
     g = scalar_g(shape)
     g(fold)  # compiled before the clock runs

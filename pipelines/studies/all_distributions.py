@@ -15,7 +15,7 @@ from scipy.stats import rv_continuous
 from scipy.stats._distn_infrastructure import rv_generic
 
 import roughmdr as rm
-from roughmdr.ensemble.random.families import known_families
+from roughmdr.ensemble.random.distribution_families import known_families
 from roughmdr.numerics.arguments import Floats
 
 SLOW = ("gausshyper", "levy_stable", "rel_breitwigner", "studentized_range")

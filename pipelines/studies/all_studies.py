@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.storage.store import replacing
+from roughmdr.storage.atomic import replace_atomically
 from studies.study import OUTPUT, QUICK
 
 NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes")
@@ -35,7 +35,7 @@ def main(output: Path, quick: bool) -> None:
         if part is None:
             failed.append(name)
         parts.append(part or f"## {name}\n\nfailed\n")
-        with replacing(output / "report.md") as temporary:
+        with replace_atomically(output / "report.md") as temporary:
             temporary.write_text("\n".join(parts))
     click.echo(output / "report.md")
     if failed:

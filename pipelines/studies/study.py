@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import click
 import xarray as xr
 
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import provenance, replacing, write
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,9 +41,9 @@ class Study(NamedTuple):
         output.mkdir(parents=True, exist_ok=True)
         result = self.measure(quick)
         result = result.assign_attrs(provenance(self.title, f"{self.name}.py"))
-        write(Labelled.of(result), output / f"{self.name}.nc")
+        write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
         for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
-            with replacing(output / f"{name}.png") as temporary:
+            with replace_atomically(output / f"{name}.png") as temporary:
                 draw(result).savefig(temporary, dpi=160, format="png")
         return f"## {self.title}\n\n{self.report(result).strip()}\n"
 

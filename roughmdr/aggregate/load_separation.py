@@ -82,7 +82,7 @@ def compute(
     names = list(variables)
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
         raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
-    columns = ensemble.columns()
+    columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
     reach = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
@@ -98,7 +98,7 @@ def compute(
         route.memory,
         {totals.ERROR, totals.FORCE, *(totals.TOTAL_INDEX[name] for name in names)},
     )
-    extremes = ensemble.extremes(reached)
+    extremes = ensemble.validity_limits(reached)
     found = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
     return found._replace(doubts=ensemble.warnings)
 

@@ -10,7 +10,7 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material, law
 from roughmdr.numerics.jit import specialise
 from roughmdr.numerics.summation import BLOCK
-from roughmdr.shapes import SHAPES, ProfileShape
+from roughmdr.shapes import SHAPES
 
 SHIFT, _AT_A_CORNER = 5.0, 2.0
 """The difference between JKR's force and Dugdale's for many asperities, over the largest force, times the Tabor number:
@@ -66,7 +66,6 @@ def jkr_validity(
     if not 0.0 < radius < math.inf:
         return JkrValidity(0.0, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
-    kind = SHAPES[shape]
-    sharp = issubclass(kind, ProfileShape) and kind.profile.flat and kind.profile.corner
+    sharp = SHAPES[shape].flat and SHAPES[shape].corner
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
     return JkrValidity(tabor, (shift + (_AT_A_CORNER if sharp else 0.0)) / tabor)

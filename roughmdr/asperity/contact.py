@@ -13,7 +13,7 @@ from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.numerics.arguments import Floats, check_number
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape
+from roughmdr.shapes import ProfileShape, Shape
 
 Results = dict[str, Floats]
 
@@ -43,12 +43,12 @@ class Contact(NamedTuple):
         law = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
             params = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
-            if isinstance(shape, ProfileShape) and shape.profile.end * width < adhesion.range and params[COUNT] == 0.0:
+            if not shape.pinned and shape.limit < adhesion.range and params[COUNT] == 0.0:
                 raise OutOfRange(
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, reaches beyond the end of "
                     f"{shape}; it must be larger"
                 )
-            if isinstance(shape, FlatPunch) and adhesion.cohesive and params[COUNT] == 0.0:
+            if shape.pinned and adhesion.cohesive and params[COUNT] == 0.0:
                 raise OutOfRange(
                     f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m, is so long that a contact "
                     f"of {shape} is lost in its roundings; it must be larger"
@@ -147,9 +147,9 @@ class Contact(NamedTuple):
         law, shape = self.law, self.shape
         if (radius < 0.0).any():
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
-        if isinstance(shape, FlatPunch):
-            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {shape.radius:g} m")
-        if isinstance(shape, ProfileShape) and shape.profile.flat:
+        if shape.pinned:
+            raise ShapeError(f"contact_radius does not tell the state of a flat punch: it is always {self.radius:g} m")
+        if shape.flat:
             on_the_flat = (radius > 0.0) & (radius < self.radius)
             if on_the_flat.any():
                 raise ShapeError(

@@ -12,7 +12,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.numerics.arguments import Floats, check_values
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape
+from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 
 if TYPE_CHECKING:
@@ -86,11 +86,7 @@ def _unstable(contact: Contact, delta: float) -> Iterator[tuple[float, float, fl
     if not contact.law.adhesive:
         return
     shape, effective_modulus = contact.shape, contact.effective_modulus
-    edge = (
-        contact.radius
-        if isinstance(shape, FlatPunch) or (isinstance(shape, ProfileShape) and shape.profile.flat)
-        else 0.0
-    )
+    edge = contact.radius if shape.flat else 0.0
 
     def stretch(a: float) -> float:
         return release_stretch(a, effective_modulus, contact.adhesion.work)

@@ -22,7 +22,7 @@ from roughmdr.batch.sizes import file_bytes, held_bytes
 from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
 from roughmdr.errors import RoughmdrError
 from roughmdr.shapes import SHAPES
-from roughmdr.storage.memory import room
+from roughmdr.storage.memory import available_memory
 
 _SAMPLE = 10_000  # asperities; beyond, time and memory grow in proportion
 _STEPS = 500
@@ -87,7 +87,7 @@ def estimate(plan: Plan, workers: int) -> Estimate:
         start_up=start_up,
         memory=resident + held + busy * max(cost.memory for cost in costs),
         resident=resident,
-        room=room()[0],
+        room=available_memory()[0],
         file=file,
         failures=tuple(failures),
     )
@@ -109,7 +109,7 @@ def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[list[_Cost], l
 def _cost(plan: Plan, cell: Cell, estimator: str) -> _Cost:
     """Of one run of a cell, by running it; a large ensemble or a long path by a part of it."""
     scene, path = cell.scene, cell.path
-    section = scene.asperities.sampled(_SAMPLE)
+    section = scene.asperities.limited_to(_SAMPLE)
     steps = path.separation.size
     if steps > _STEPS:
         some = np.linspace(0, steps - 1, _STEPS).astype(int)

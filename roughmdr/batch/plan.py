@@ -11,8 +11,8 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.errors import SceneError
 from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
-from roughmdr.scene.sweep import in_words
-from roughmdr.schema.wording import in_cells
+from roughmdr.scene.sweep import describe_cell
+from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES
 
@@ -40,14 +40,14 @@ class Plan(NamedTuple):
         return self.scene.sweep.sizes
 
     @property
-    def doubts(self) -> list[str]:
+    def warnings(self) -> list[str]:
         """Warn of asperities that may not be as they were meant; in how many cells, where not in all."""
-        return in_cells((text for cell in self.cells for text in cell.scene.asperities.doubts), len(self.cells))
+        return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
 
     def name_of(self, cell: int, realization: int) -> str:
         """A run in words."""
         values = next(islice(self.scene.sweep.cells(), cell, None))
-        return ", ".join([*([in_words(values)] if values else []), f"realisation {realization}"])
+        return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
 
     def coordinates(self) -> dict[str, Array]:
         """The swept values, the separation over those of them that change it, and the branch."""
@@ -93,7 +93,7 @@ def _cells(scene: Scene) -> Iterator[Cell]:
             found = branches(known[key].separation)
             first = found if first is None else first
             if not np.array_equal(found, first):
-                other = f"sweep: with {in_words(values)} the flat goes another way, in or out,"
+                other = f"sweep: with {describe_cell(values)} the flat goes another way, in or out,"
                 raise SceneError(f"{other} than in the first cell")
         yield Cell(cell, known[key])
 
@@ -115,7 +115,7 @@ def simulate_realization(
 
 def left_out(scene: Scene) -> list[str]:
     """What the scene does not need, and why, as lines "part: reason"; in which cells, where not in all."""
-    return in_cells((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
+    return count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
 
 
 def _left_out(scene: Scene) -> Iterator[str]:
@@ -133,7 +133,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.drawn:
+    if scene.asperities.is_random:
         yield "positions: asperities are independent; nothing depends on where they stand"
     yield "interaction: asperities are independent; the scene has no [interaction]"
     unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]

@@ -30,7 +30,7 @@ class Rare:
         section = cell.scene.asperities
         self._count, self._steps = section.expected_count, cell.path.separation.size
         try:
-            found = [_squares(cell, stream) for stream in section.far_reaching]
+            found = [_squares(cell, stream) for stream in section.heavy_tailed_streams]
         except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverse leads nowhere so far out:
             found = []  # a run that meets such an asperity fails, and says so
         self._squares = found
@@ -53,7 +53,7 @@ def _squares(cell: Cell, stream: int) -> tuple[float, Floats]:
     """
     from scipy.special import ndtr
 
-    made = cell.scene.asperities.at_levels(stream, ndtr(_SCORES), _EACH)
+    made = cell.scene.asperities.ensembles_at_levels(stream, ndtr(_SCORES), _EACH)
     force = np.array([[_force(cell, ensemble, number) for number in range(_EACH)] for ensemble in made])
     largest = float(np.abs(force).max())
     force = force / (largest or 1.0)  # so that no square leaves the range of a float

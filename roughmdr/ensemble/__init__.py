@@ -1,4 +1,8 @@
-"""Where asperities come from: one file a source, each with the section of the scene that asks for it."""
+"""Ensembles of asperities, and the sources that [asperities] in a scene chooses among.
+
+Sources: ``random`` (distributions), ``gaussian`` (summits of a Gaussian surface), ``maps`` (summits of a height map)
+and ``from_file`` (a saved ensemble). ``source`` declares what each of them answers.
+"""
 
 import operator
 import warnings
@@ -8,11 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 from pydantic import Field, TypeAdapter, ValidationError
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.from_file import FileAsperities
 from roughmdr.ensemble.gaussian.section import NayakAsperities
 from roughmdr.ensemble.maps.section import SurfaceAsperities
 from roughmdr.ensemble.random.section import RandomAsperities
-from roughmdr.ensemble.random.shapes import AnyRandomAsperities
-from roughmdr.ensemble.saved import FileAsperities
+from roughmdr.ensemble.random.sections_by_shape import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import LimitWarning, SceneError
 from roughmdr.schema.faults import find_faults
@@ -37,27 +41,81 @@ __all__ = [
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
-    """The ensemble that a run with this seed presses on, as a Dataset over ``asperity``, highest summit first.
+    """Draw or read an ensemble of asperities, the same that a run with this seed loads.
 
-    asperities is the section of a scene or a dictionary with its keys, quantities as numbers in SI or as strings with
-    a unit. The result holds ``height`` [m] and each shape parameter under its argument's name; attrs ``shape``,
-    ``nominal_area`` [m2], ``patch`` [m] and ``seed``; ``warnings``, issued as LimitWarning too, where the asperities
-    are doubtful. SceneError, with all faults at once, where the section is wrong.
+    A LimitWarning says where the asperities are doubtful, such as those of a height map with few points per summit.
+
+    Parameters
+    ----------
+    asperities : dict or section of a scene
+        The table ``[asperities]`` of a scene, as a dictionary with its keys or as ``scene.asperities``. Quantities are
+        numbers in SI or strings with a unit, such as ``"50 um"``.
+    seed : int
+        Seed of the random numbers, at least 0; ``seed`` of a scene.
+    realization : int, optional
+        Number of the realisation, from 0.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the dimension ``asperity``, from the highest summit to the lowest:
+
+        - ``height`` [m], above the datum plane z = 0;
+        - each parameter of the shape under its own name and in its own unit, such as ``radius`` [m]; the parameters of
+          a profile that all asperities share (power_series, tabulated) lie over a dimension of their own;
+        - ``x`` and ``y`` [m], where ``placement`` is given or the asperities come with positions.
+
+        Attributes: ``shape``, ``seed``, ``nominal_area`` [m2] where it is known, ``patch`` (the side of the square
+        nominal area) or ``patch_x`` and ``patch_y`` [m], ``warnings`` if there are any, and statistics of the source.
+
+    Raises
+    ------
+    SceneError
+        Where the section is wrong, with all faults at once; where seed or realization is not a whole number of at least
+        0; where a file cannot be read.
+    OutOfRange
+        Where the asperities do not fit on the patch at the distance asked for.
+
+    References
+    ----------
+    .. [1] P. R. Nayak, J. Lubr. Technol. 93 (1971) 398: summits of Gaussian surfaces, source "nayak".
+    .. [2] J. A. Greenwood, Wear 261 (2006) 191: the radius 1/sqrt(k1 k2) of a summit, sources "nayak" and "surface".
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> ensemble = rm.generate(
+    ...     {
+    ...         "source": "random",
+    ...         "shape": "paraboloid",
+    ...         "count": 2000,
+    ...         "patch": "1 mm",
+    ...         "height": {"distribution": "normal", "std": "1 um"},
+    ...         "radius": {"distribution": "lognormal", "mean": "50 um", "std": "5 um"},
+    ...     },
+    ...     seed=1,
+    ... )
+    >>> dict(ensemble.sizes), list(ensemble.data_vars)
+    ({'asperity': 2000}, ['height', 'radius'])
+    >>> bool(ensemble.height[0] == ensemble.height.max())
+    True
+    >>> ensemble.attrs["shape"], float(ensemble.attrs["nominal_area"])
+    ('paraboloid', 1e-06)
     """
     section = asperities if isinstance(asperities, Source) else _validated(asperities)
-    made = make(section, _whole("seed", seed), _whole("realization", realization))
-    for text in made.warnings:
+    ensemble = make(section, _whole_number("seed", seed), _whole_number("realization", realization))
+    for text in ensemble.warnings:
         warnings.warn(text, LimitWarning, stacklevel=2)
-    return made.labelled().to_xarray()
+    return ensemble.labelled().to_xarray()
 
 
 def make(section: Source, seed: int, realization: int) -> Ensemble:
-    """The ensemble of a section for a user to keep: with positions where it says how to place them."""
-    made = section.ensemble(seed, realization, placed="placement" in section.model_fields_set)
-    return replace(made, warnings=(*section.doubts, *made.warnings))
+    """Return an ensemble for a user to keep: with positions where the section says how to place the asperities."""
+    ensemble = section.ensemble(seed, realization, with_positions="placement" in section.model_fields_set)
+    return replace(ensemble, warnings=(*section.warnings, *ensemble.warnings))
 
 
-def _whole(name: str, value: object) -> int:
+def _whole_number(name: str, value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, SupportsIndex) or operator.index(value) < 0:
         raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
     return operator.index(value)
@@ -69,7 +127,7 @@ def _validated(table: dict[str, Any]) -> Source:
     except ValidationError as error:
         if not isinstance(table, dict):
             raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
-        found = find_faults(error, table, Asperities)
+        faults = find_faults(error, table, Asperities)
         raise SceneError.of(
-            [fault._replace(key=".".join(filter(None, ("asperities", fault.key)))) for fault in found]
+            [fault._replace(key=".".join(filter(None, ("asperities", fault.key)))) for fault in faults]
         ) from None

@@ -10,7 +10,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats, check_number
 from roughmdr.schema.units import unit_factor
-from roughmdr.schema.wording import shown
+from roughmdr.schema.wording import short_repr
 from roughmdr.shapes import SHAPES, Shape, SharedProfile
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
@@ -23,7 +23,7 @@ _SIDES = ("patch", "patch_x", "patch_y")
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Asperities of one shape, from the highest to the lowest summit; all arrays are equally long, in SI units."""
+    """Asperities of one shape as equally long arrays in SI units; sums need them ``sorted``."""
 
     shape: str
     height: Floats
@@ -31,103 +31,95 @@ class Ensemble:
     nominal_area: float | None = None
     positions: dict[str, Floats] = field(default_factory=dict)
     attrs: dict[str, float | int | str] = field(default_factory=dict)
-    fixed: SharedProfile | None = None
-    """The one profile of all asperities, of a shape that has no plain numbers for parameters."""
+    shared_profile: SharedProfile | None = None
+    """The profile of all asperities, for a shape whose parameters are not plain numbers."""
     warnings: tuple[str, ...] = ()
-    """What makes the asperities themselves doubtful, for the user."""
+    """Warnings for the user about the asperities themselves."""
 
-    @classmethod
-    def sorted(
-        cls,
-        shape: str,
-        height: Floats,
-        parameters: dict[str, Floats],
-        nominal_area: float | None = None,
-        positions: dict[str, Floats] | None = None,
-        attrs: dict[str, float | int | str] | None = None,
-        fixed: SharedProfile | None = None,
-    ) -> "Ensemble":
-        """The ensemble in its one order: descending height, equal heights by their parameters."""
-        order = np.argsort(-height, kind="stable")
-        descending = height[order]
+    def sorted(self) -> "Ensemble":
+        """Return the asperities from the highest summit to the lowest, equal heights by their parameters."""
+        order = np.argsort(-self.height, kind="stable")
+        descending = self.height[order]
         if (descending[1:] == descending[:-1]).any():
-            order = np.lexsort((*parameters.values(), -height))
-        pick = {name: np.ascontiguousarray(column[order]) for name, column in parameters.items()}
-        places = {name: np.ascontiguousarray(column[order]) for name, column in (positions or {}).items()}
-        return cls(shape, np.ascontiguousarray(height[order]), pick, nominal_area, places, attrs or {}, fixed)
+            order = np.lexsort((*self.parameters.values(), -self.height))
 
-    def columns(self) -> Columns:
-        """Return width, rise and params of each asperity; of a fixed profile its params in one row."""
-        if self.fixed is None:
+        def pick(columns: dict[str, Floats]) -> dict[str, Floats]:
+            return {name: np.ascontiguousarray(column[order]) for name, column in columns.items()}
+
+        height = np.ascontiguousarray(self.height[order])
+        return replace(self, height=height, parameters=pick(self.parameters), positions=pick(self.positions))
+
+    def nondimensional(self) -> Columns:
+        """Return width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""
+        if self.shared_profile is None:
             with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
                 return Columns(*SHAPES[self.shape].nondimensionalise(self.parameters))
-        width, rise, params = self.fixed.nondimensional()
+        width, rise, params = self.shared_profile.nondimensional()
         return Columns(np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(params)[None])
 
-    def extremes(self, radius: Floats) -> ValidityLimits:
-        """The most that contacts of these radii [m], 0 for none, come to."""
-        if self.fixed is None:
-            kind = SHAPES[self.shape]
-            with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
-                slopes = kind.slopes(self.parameters, radius)
-            return ValidityLimits.of(radius, slopes, kind.ends(self.parameters))
-        return ValidityLimits.of(radius, self.fixed.df(radius), np.array(self.fixed.end))
+    def validity_limits(self, radius: Floats) -> ValidityLimits:
+        """Return the validity limits of contacts with these radii [m], 0 for none."""
+        if self.shared_profile is not None:
+            return ValidityLimits.of(radius, self.shared_profile.df(radius), np.array(self.shared_profile.end))
+        shape = SHAPES[self.shape]
+        with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
+            slopes = shape.slopes(self.nondimensional(), radius)
+        return ValidityLimits.of(radius, slopes, shape.ends(self.parameters))
 
     def labelled(self) -> Labelled:
-        """The arrays over ``asperity``, with their units."""
+        """Return the arrays over ``asperity``, with their units."""
         units = SHAPES[self.shape].units
         variables = {"height": Array(("asperity",), self.height, COORDINATES["height"].attrs)}
         for name, column in self.parameters.items():
             attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}"}
             variables[name] = Array(("asperity",), column, attrs)
-        if self.fixed is not None:
-            for name, column in self.fixed.columns.items():
+        if self.shared_profile is not None:
+            for name, column in self.shared_profile.columns.items():
                 attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}, the same for all"}
-                variables[name] = Array((self.fixed.along,), column, attrs)
+                variables[name] = Array((self.shared_profile.dimension,), column, attrs)
         for name, column in self.positions.items():
             variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
         area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
-        doubts = {"warnings": "\n".join(self.warnings)} if self.warnings else {}
-        return Labelled(variables, {}, {"shape": self.shape, **self.attrs, **area, **doubts})
+        warnings = {"warnings": "\n".join(self.warnings)} if self.warnings else {}
+        return Labelled(variables, {}, {"shape": self.shape, **self.attrs, **area, **warnings})
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
-        """An ensemble from a dataset over ``asperity`` in any order; missing units mean SI.
+        """Return the ensemble of a dataset over ``asperity`` in any order; missing units mean SI.
 
         SceneError, naming the variable or attribute, where something is missing, not finite or out of range.
         """
         shape = dataset.attrs.get("shape")
         if not isinstance(shape, str) or shape not in SHAPES:
-            raise SceneError(f"ensemble: attribute shape is {shown(shape)}; it must be one of {', '.join(SHAPES)}")
-        kind = SHAPES[shape]
+            raise SceneError(f"ensemble: attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
         height = _column(dataset, "height", "m")
         positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
         try:
-            parameters, fixed = _parameters(dataset, kind)
+            parameters, shared_profile = _parameters(dataset, SHAPES[shape])
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
         sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
-        doubts = dataset.attrs.get("warnings", "")
-        if not isinstance(doubts, str):
-            raise SceneError(f"ensemble: attribute warnings is {shown(doubts)}; it must be a text")
+        warnings = dataset.attrs.get("warnings", "")
+        if not isinstance(warnings, str):
+            raise SceneError(f"ensemble: attribute warnings is {short_repr(warnings)}; it must be a text")
         area = _nominal_area(dataset.attrs, sides)
-        found = cls.sorted(shape, height, parameters, area, positions, dict(sides), fixed)
-        return replace(found, warnings=tuple(doubts.splitlines()))
+        texts = tuple(warnings.splitlines())
+        return cls(shape, height, parameters, area, positions, dict(sides), shared_profile, texts).sorted()
 
 
-def _parameters(dataset: "xr.Dataset", kind: type[Shape]) -> tuple[dict[str, Floats], SharedProfile | None]:
-    """The parameters of each asperity, or the one profile of all."""
-    if issubclass(kind, SharedProfile):
-        columns = {name: _column(dataset, name, unit, kind.along) for name, unit in kind.units.items()}
-        return {}, kind.of_columns(columns)
-    spelling = kind.spelling({name for name in kind.units if name in dataset})
-    parameters = {name: _column(dataset, name, kind.units[name]) for name in spelling}
-    kind.check(parameters)
+def _parameters(dataset: "xr.Dataset", shape: type[Shape]) -> tuple[dict[str, Floats], SharedProfile | None]:
+    """Return the parameters of each asperity, or the profile that all share."""
+    if issubclass(shape, SharedProfile):
+        columns = {name: _column(dataset, name, unit, shape.dimension) for name, unit in shape.units.items()}
+        return {}, shape.from_columns(columns)
+    names = shape.parameter_set({name for name in shape.units if name in dataset})
+    parameters = {name: _column(dataset, name, shape.units[name]) for name in names}
+    shape.check(parameters)
     return parameters, None
 
 
 def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | None:
-    """The nominal area [m2], or else what the sides of the patch make of it."""
+    """Return the nominal area [m2], given or from the sides of the patch."""
     if "nominal_area" in attrs:
         return _size("nominal_area", attrs["nominal_area"])
     if "patch" in sides:
@@ -138,7 +130,7 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _size(name: str, value: Any) -> float:
-    """A length or an area of a patch, in SI."""
+    """Return a length [m] or an area [m2] of a patch."""
     try:
         return check_number(f"ensemble: attribute {name}", value, "in SI")
     except OutOfRange as error:
@@ -156,8 +148,8 @@ def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity"
     if variable.dtype.kind not in "iuf":
         raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
     try:
-        given = str(variable.attrs.get("units", ""))
-        factor = 1.0 if given == unit else float(unit_factor(given, unit))
+        units = str(variable.attrs.get("units", ""))
+        factor = 1.0 if units == unit else float(unit_factor(units, unit))
     except RoughmdrError as error:
         raise SceneError(f"ensemble: units of {name}: {error}") from None
     with np.errstate(over="ignore"):  # refused below

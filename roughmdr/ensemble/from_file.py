@@ -1,44 +1,63 @@
-"""What the sources that read their asperities from a file have in common."""
+"""Sources that read their asperities from a file; among them source = "file", an ensemble saved before."""
 
 import hashlib
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import AfterValidator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
-from roughmdr.errors import SceneError
-from roughmdr.storage.files import check_ordinary
+from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.storage.file_checks import check_regular_file
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
-def _is_file(value: str) -> str:
-    """The name of a file that is there; RoughmdrError where it is not, or is no ordinary one."""
-    check_ordinary(Path(value))
-    return value
+@contextmanager
+def open_dataset(path: Path) -> "Iterator[xr.Dataset]":
+    """Open a netCDF file as xarray reads it, its arrays only when used; RoughmdrError where that fails."""
+    import xarray as xr
+
+    try:
+        with warnings.catch_warnings(action="ignore"), xr.open_dataset(path, decode_times=False) as dataset:
+            yield dataset
+    except RoughmdrError:
+        raise
+    except Exception as error:  # xarray and its backends raise anything on files of other origin
+        raise RoughmdrError(f"not a netCDF file that can be read ({type(error).__name__})") from error
+
+
+def _check_file(name: str) -> str:
+    check_regular_file(Path(name))
+    return name
 
 
 class FromFile(Source):
-    """A source whose asperities are those of a ``file``: always the same ones."""
+    """A source with the asperities of ``file``, the same in every realisation."""
 
-    drawn: ClassVar[bool] = False
+    is_random: ClassVar[bool] = False
 
-    file: Annotated[str, AfterValidator(_is_file)]
+    file: Annotated[str, AfterValidator(_check_file)]
 
     def read(self) -> Ensemble:
-        """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
+        """Read the asperities of the file; SceneError where it cannot be read or describes no valid asperities."""
         raise NotImplementedError
 
     @cached_property
-    def _read_once(self) -> tuple[str, Ensemble]:
+    def _hash_and_asperities(self) -> tuple[str, Ensemble]:
         before = self._hash()
-        found = self.read()
+        asperities = self.read()
         if self._hash() != before:
             raise SceneError(f"{self.file}: changed while it was read")
-        return before, found
+        return before, asperities
 
     def _hash(self) -> str:
         try:
@@ -48,40 +67,50 @@ class FromFile(Source):
             raise SceneError(f"{self.file}: cannot be read: {error.strerror}") from None
 
     @property
-    def held(self) -> Ensemble:
-        """The asperities of the file; SceneError where it cannot be read or holds none that are right."""
-        return self._read_once[1]
+    def content_hash(self) -> str:
+        """A hash of the file as it was when the asperities were read."""
+        return self._hash_and_asperities[0]
 
     @property
-    def content(self) -> str:
-        """A hash of the file as it was when the asperities were read."""
-        return self._read_once[0]
+    def asperities(self) -> Ensemble:
+        """The asperities of the file, read once."""
+        return self._hash_and_asperities[1]
 
     @property
     def shape_name(self) -> str:
-        """The shape of the asperities."""
-        return self.held.shape
+        return self.asperities.shape
 
     @property
     def expected_count(self) -> float:
-        """How many asperities there are."""
-        return float(self.held.height.size)
+        return float(self.asperities.height.size)
 
     @property
     def nominal_area(self) -> float | None:
-        """[m2]; None where the file does not tell."""
-        return self.held.nominal_area
+        return self.asperities.nominal_area
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The files that the asperities are read from."""
         return (Path(self.file),)
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the heights [m]."""
-        return float(np.std(self.held.height))
+        return float(np.std(self.asperities.height))
 
-    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
-        """The asperities of the file."""
-        return replace(self.held, attrs={**self.held.attrs, "seed": seed})
+    def ensemble(
+        self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
+    ) -> Ensemble:
+        return replace(self.asperities, attrs={**self.asperities.attrs, "seed": seed})
+
+
+class FileAsperities(FromFile):
+    """[asperities] with source = "file": a netCDF dataset over ``asperity``, saved by ``generate`` or by the user."""
+
+    source: Literal["file"]
+
+    def read(self) -> Ensemble:
+        try:
+            with open_dataset(Path(self.file)) as dataset:
+                dataset.load()
+            return Ensemble.from_dataset(dataset)
+        except RoughmdrError as error:
+            raise SceneError(f"{self.file}: {error}") from None

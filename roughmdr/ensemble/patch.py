@@ -1,4 +1,4 @@
-"""Asperities on a square patch: how large it is, and where they stand."""
+"""Sources whose asperities lie on a square patch, and the keys that place them there."""
 
 from typing import Annotated, Literal
 
@@ -10,12 +10,15 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Length, Quantity
 
+MAX_COUNT = 1_000_000_000
+"""Asperities that a patch may hold."""
+
 
 class PatchSource(Source):
     """A source whose asperities lie on a square of side ``patch``."""
 
     shape: str
-    patch: Annotated[float, BeforeValidator(Quantity("m", least=1e-150, most=1e150))]  # its square is a float
+    patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]  # its square is a float
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
     min_distance: Length | None = None
 
@@ -34,22 +37,20 @@ class PatchSource(Source):
 
     @property
     def shape_name(self) -> str:
-        """The shape of the asperities."""
         return self.shape
 
     @property
     def nominal_area(self) -> float:
-        """Of the patch [m2]."""
         return self.patch * self.patch
 
-    def positions(self, draws: Streams, count: int) -> dict[str, Floats]:
-        """x and y [m] of ``count`` asperities; OutOfRange where they cannot stand as far apart as asked."""
+    def positions(self, streams: Streams, count: int) -> dict[str, Floats]:
+        """Return x and y [m] of ``count`` asperities; OutOfRange where they do not fit at the distance asked for."""
         from roughmdr.ensemble import placement
 
         if self.min_distance is not None:
-            x, y = placement.hard_core(draws, count, self.patch, self.min_distance)
+            x, y = placement.hard_core_positions(streams, count, self.patch, self.min_distance)
         elif self.placement == "hexagonal":
-            x, y = placement.hexagonal(count, self.patch)
+            x, y = placement.hexagonal_positions(count, self.patch)
         else:
-            x, y = placement.at_random(draws, count, self.patch)
+            x, y = placement.random_positions(streams, count, self.patch)
         return {"x": x, "y": y}

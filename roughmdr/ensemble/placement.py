@@ -1,4 +1,4 @@
-"""Where asperities stand on a square patch that repeats itself."""
+"""Positions of asperities on a square patch that repeats periodically."""
 
 import math
 
@@ -10,23 +10,22 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
-_JAMMED = 0.547
-"""The part of the plane that discs cover when at random no place is found for one more (J. Feder, J. Theor. Biol. 87
-(1980) 237)."""
-_TRIES = 2**10  # places tried for one point, on average, before the patch counts as full
+_JAMMING_COVERAGE = 0.547
+"""Fraction of the plane that random discs cover when no more fit (J. Feder, J. Theor. Biol. 87 (1980) 237)."""
+_MAX_TRIES = 2**10  # candidates for one point, on average, before the patch counts as full
 
 
-def at_random(draws: Streams, count: int, patch: float) -> tuple[Floats, Floats]:
-    """x and y [m] of ``count`` points anywhere on a patch of side ``patch`` [m]."""
-    x, y = draws(POSITION, 2 * count).reshape(count, 2).T * patch
+def random_positions(streams: Streams, count: int, patch: float) -> tuple[Floats, Floats]:
+    """Return x and y [m] of ``count`` points, uniform on a patch of side ``patch`` [m]."""
+    x, y = streams(POSITION, 2 * count).reshape(count, 2).T * patch
     return x, y
 
 
-def hexagonal(count: int, patch: float) -> tuple[Floats, Floats]:
-    """x and y [m] of ``count`` points in rows, as near to a hexagonal lattice as a square patch [m] allows.
+def hexagonal_positions(count: int, patch: float) -> tuple[Floats, Floats]:
+    """Return x and y [m] of ``count`` points in rows, as near to a hexagonal lattice as a square patch [m] allows.
 
-    Every second row is shifted by half a place, and their number is even, so that the patch repeats itself. Where the
-    rows have more places than there are points, those left free are spread evenly.
+    Every second row is shifted by half a site, and the number of rows is even, so that the patch is periodic. Where the
+    rows have more sites than there are points, the empty ones are spread evenly.
     """
     rows = 2 * max(round(math.sqrt(count / (2.0 * math.sqrt(3.0)))), 1)
     columns = -(-count // rows)
@@ -34,48 +33,52 @@ def hexagonal(count: int, patch: float) -> tuple[Floats, Floats]:
     return (column + 0.25 + 0.5 * (row % 2)) * (patch / max(columns, 1)), (row + 0.5) * (patch / rows)
 
 
-def hard_core(draws: Streams, count: int, patch: float, distance: float) -> tuple[Floats, Floats]:
-    """x and y [m] of ``count`` points at least ``distance`` [m] apart, also across the edges of the patch [m].
+def hard_core_positions(streams: Streams, count: int, patch: float, min_distance: float) -> tuple[Floats, Floats]:
+    """Return x and y [m] of ``count`` points at least ``min_distance`` [m] apart, also across the edges of the patch.
 
-    Placed one after the other at random, each where there is room. OutOfRange where they do not fit.
+    Points are placed one after the other (random sequential addition). OutOfRange where they do not fit.
     """
-    most = _JAMMED * (patch / distance) ** 2 / (0.25 * math.pi)
+    max_count = _JAMMING_COVERAGE * (patch / min_distance) ** 2 / (0.25 * math.pi)
     tries = 4
-    while count <= most and tries <= _TRIES:
-        places = draws(POSITION, 2 * tries * count).reshape(tries * count, 2)
-        chosen = _apart(places, count, (distance / patch) ** 2, max(min(int(patch / distance), int(count**0.5)), 1))
+    while count <= max_count and tries <= _MAX_TRIES:
+        candidates = streams(POSITION, 2 * tries * count).reshape(tries * count, 2)
+        cells = max(min(int(patch / min_distance), int(count**0.5)), 1)
+        chosen = _select_apart(candidates, count, (min_distance / patch) ** 2, cells)
         if chosen.size == count:
-            x, y = places[chosen].T * patch
+            x, y = candidates[chosen].T * patch
             return x, y
         tries *= 4
     raise OutOfRange(
-        f"min_distance is {distance:g} m: {count} asperities do not fit so far apart on a patch of {patch:g} m; at "
-        f"random about {int(0.95 * most)} do"
+        f"min_distance is {min_distance:g} m: {count} asperities do not fit so far apart on a patch of {patch:g} m; at "
+        f"random about {int(0.95 * max_count)} do"
     )
 
 
 @njit
-def _apart(places: Floats, count: int, square: float, cells: int) -> NDArray[np.int64]:
-    """The numbers of the first ``count`` places, on a unit patch, that are not within sqrt(square) of a chosen one."""
-    head, following = np.full((cells, cells), -1), np.full(places.shape[0], -1)
+def _select_apart(candidates: Floats, count: int, min_square: float, cells: int) -> NDArray[np.int64]:
+    """Return the indices of the first ``count`` candidates whose squared distance to each earlier one suffices.
+
+    Candidates lie on the unit square; each of cells x cells has a linked list of the points chosen in it.
+    """
+    head, following = np.full((cells, cells), -1), np.full(candidates.shape[0], -1)
     chosen = np.empty(count, dtype=np.int64)
-    found = 0
-    for i in range(places.shape[0]):
-        if found == count:
+    size = 0
+    for i in range(candidates.shape[0]):
+        if size == count:
             break
-        column, row = int(places[i, 0] * cells), int(places[i, 1] * cells)
+        column, row = int(candidates[i, 0] * cells), int(candidates[i, 1] * cells)
         free = True
         for across in range(-1, 2):
             for along in range(-1, 2):
                 j = head[(column + across) % cells, (row + along) % cells]
                 while j >= 0 and free:
-                    dx, dy = abs(places[i, 0] - places[j, 0]), abs(places[i, 1] - places[j, 1])
+                    dx, dy = abs(candidates[i, 0] - candidates[j, 0]), abs(candidates[i, 1] - candidates[j, 1])
                     dx, dy = min(dx, 1.0 - dx), min(dy, 1.0 - dy)
-                    free = dx * dx + dy * dy >= square
+                    free = dx * dx + dy * dy >= min_square
                     j = following[j]
         if free:
-            chosen[found] = i
-            found += 1
+            chosen[size] = i
+            size += 1
             following[i] = head[column, row]
             head[column, row] = i
-    return chosen[:found]
+    return chosen[:size]

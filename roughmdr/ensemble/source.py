@@ -1,4 +1,4 @@
-"""What every source of asperities has in common: what a scene, a plan and a run ask of it."""
+"""The interface of all sources of asperities: what a scene, a plan and a run ask of them."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -13,9 +13,9 @@ from roughmdr.shapes import SharedProfile
 
 
 class Source(Section):
-    """[asperities]; each source declares its keys and answers what stands here."""
+    """[asperities]: each source declares its keys and overrides what follows."""
 
-    drawn: ClassVar[bool] = True
+    is_random: ClassVar[bool] = True
     """Whether realisations differ."""
 
     source: str
@@ -26,13 +26,13 @@ class Source(Section):
         raise NotImplementedError
 
     @property
-    def fixed(self) -> SharedProfile | None:
-        """The one profile of all asperities, where the shape's parameters are no plain numbers."""
+    def shared_profile(self) -> SharedProfile | None:
+        """The profile of all asperities, for a shape whose parameters are not plain numbers."""
         return None
 
     @property
-    def least_exponent(self) -> float:
-        """The least exponent among the tips."""
+    def min_exponent(self) -> float:
+        """The smallest exponent of the profiles at their tips."""
         return math.inf
 
     @property
@@ -41,68 +41,67 @@ class Source(Section):
         return ()
 
     @property
-    def content(self) -> str:
+    def content_hash(self) -> str:
         """A hash of what is in those files; empty where there are none."""
         return ""
 
     @property
-    def doubts(self) -> tuple[str, ...]:
-        """Warn, in words, of the parts of the section that may not be as they were meant."""
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings of entries that may not mean what the user thinks."""
         return ()
 
     @property
     def expected_count(self) -> float:
-        """How many asperities there are, on average."""
+        """The mean number of asperities."""
         raise NotImplementedError
 
     @property
     def nominal_area(self) -> float | None:
-        """[m2]; None where it is not known."""
+        """[m2]; None where it is unknown."""
         raise NotImplementedError
-
-    def unfit_for(self, estimator: str) -> str:
-        """Why the asperities cannot be "stratified" or their "expected" law be taken; empty where they can."""
-        return "" if self.drawn else f"nothing of source {self.source!r} is drawn"
-
-    @property
-    def one_parameter(self) -> bool:
-        """Whether just one shape parameter is drawn, and from one distribution."""
-        return False
-
-    @property
-    def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
-        """The shape parameters that are drawn, of each population: normal scores -> values [SI]."""
-        return []
-
-    def node_count(self, order: int) -> int:
-        """How many ``nodes`` a rule of this order has."""
-        raise NotImplementedError
-
-    def nodes(self, rule: Rule) -> Nodes:
-        """Asperities with weights that stand for all: at the scores of a rule for each parameter that is drawn."""
-        raise NotImplementedError
-
-    @property
-    def far_reaching(self) -> tuple[int, ...]:
-        """The streams of quantities that are, though seldom, many times larger or smaller than mostly."""
-        return ()
-
-    def at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
-        """For each level in (0, 1) ``count`` asperities at it in one of the streams, evenly spread in the others."""
-        raise NotImplementedError
-
-    def sampled(self, count: int) -> "Source":
-        """The same with about ``count`` asperities at most, where that can be."""
-        return self
 
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]."""
         raise NotImplementedError
 
-    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
-        """The asperities of one realization.
+    def ensemble(
+        self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
+    ) -> Ensemble:
+        """Return the asperities of one realisation; ``stratified`` ones cover their distributions evenly."""
+        raise NotImplementedError
 
-        ``stratified`` draws them evenly spread over their distribution, ``placed`` gives them positions.
-        """
+    def limited_to(self, count: int) -> "Source":
+        """Return a source like this one with about ``count`` asperities at most, or itself where that cannot be."""
+        return self
+
+    def reason_against(self, estimator: str) -> str:
+        """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
+        return "" if self.is_random else f"nothing of source {self.source!r} is drawn"
+
+    @property
+    def one_parameter(self) -> bool:
+        """Whether just one shape parameter is random, in one population."""
+        return False
+
+    @property
+    def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
+        """Each random shape parameter of each population as a function: normal scores -> values [SI]."""
+        return []
+
+    def node_count(self, order: int) -> int:
+        """Return the number of ``nodes`` of a rule with so many scores."""
+        raise NotImplementedError
+
+    def nodes(self, rule: Rule) -> Nodes:
+        """Return quadrature nodes that stand for all asperities, at the scores of a rule for each random parameter."""
+        raise NotImplementedError
+
+    @property
+    def heavy_tailed_streams(self) -> tuple[int, ...]:
+        """The streams of quantities with rare values many times larger, or smaller, than the usual ones."""
+        return ()
+
+    def ensembles_at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
+        """Yield, for each level in (0, 1) of one stream, ``count`` asperities stratified in the other streams."""
         raise NotImplementedError

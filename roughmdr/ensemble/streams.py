@@ -1,6 +1,7 @@
-"""The random numbers that an ensemble is drawn with, a stream for each quantity: independent, or evenly spread.
+"""Random numbers of an ensemble: a numbered stream of uniform numbers for each quantity that is drawn.
 
-Streams are never renumbered: the results of old seeds hang on them.
+Seed, realisation and number determine a stream, so that one quantity never changes what another draws. Streams are
+never renumbered: the numbers below decide the results of every seed.
 """
 
 from collections.abc import Callable
@@ -10,20 +11,20 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 
 HEIGHT, POSITION, PARAMETER = 0, 1, 2
-"""Streams of the heights, the positions, and the first of the shape parameters; more of them follow."""
+"""Streams of the heights, the positions, and the first shape parameter; those of further parameters follow."""
 COUNT, POPULATION = 100, 101
-"""Streams of the number of asperities, and of which population each belongs to."""
-_SPREAD = 1000  # the stream of what scrambles the evenly spread numbers
+"""Streams of the number of asperities, and of the population that each belongs to."""
+_SCRAMBLE = 1000  # stream of the scrambling of stratified numbers
 
 _BITS = 52
 SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
 
 Streams = Callable[[int, int], Floats]
-"""(stream, count) -> ``count`` numbers in (0, 1), never 0 or 1."""
+"""(stream, count) -> the first ``count`` numbers of the stream, in (0, 1), never 0 or 1."""
 
 
 def uniforms(seed: int, realization: int, stream: int, count: int) -> Floats:
-    """``count`` numbers in (0, 1), never 0 or 1, from one stream of one realization.
+    """Return the first ``count`` numbers, in (0, 1), never 0 or 1, of one stream of one realisation.
 
     The raw bits of Philox are the same in every version of numpy; a longer draw begins with the shorter one.
     """
@@ -31,32 +32,37 @@ def uniforms(seed: int, realization: int, stream: int, count: int) -> Floats:
     return (leading + 0.5) * 2.0**-_BITS
 
 
-def independent(seed: int, realization: int) -> Streams:
-    """Streams of independent numbers."""
-    return lambda stream, count: uniforms(seed, realization, stream, count)
+def make_streams(seed: int, realization: int, stratified: tuple[int, ...] = ()) -> Streams:
+    """Return streams of independent numbers, but for those in ``stratified``, which cover the unit cube evenly.
 
-
-def spread(seed: int, realization: int, streams: tuple[int, ...]) -> Streams:
-    """The given streams as the coordinates of points that fill the cube evenly; all other streams are independent.
-
-    A Sobol sequence, scrambled anew in each realization (A. B. Owen, J. Complexity 14 (1998) 466).
+    These are the coordinates of a Sobol sequence, scrambled anew in each realisation (A. B. Owen, J. Complexity 14
+    (1998) 466).
     """
     points: dict[int, Floats] = {}
 
     def draw(stream: int, count: int) -> Floats:
-        if stream not in streams:
+        if stream not in stratified:
             return uniforms(seed, realization, stream, count)
         if count not in points:
             from scipy.stats.qmc import Sobol
 
-            scramble = np.random.Generator(_philox(seed, realization, _SPREAD))
-            sequence = Sobol(len(streams), bits=_BITS, rng=scramble)
-            whole = sequence.random_base2((count - 1).bit_length())[:count]  # of any other number scipy warns
-            points[count] = np.ascontiguousarray(whole.T) + SMALLEST_UNIFORM
-        coordinate: Floats = points[count][streams.index(stream)]
+            scramble = np.random.Generator(_philox(seed, realization, _SCRAMBLE))
+            sequence = Sobol(len(stratified), bits=_BITS, rng=scramble)
+            sobol = sequence.random_base2((count - 1).bit_length())[:count]  # scipy warns of any count but powers of 2
+            points[count] = np.ascontiguousarray(sobol.T) + SMALLEST_UNIFORM
+        coordinate: Floats = points[count][stratified.index(stream)]
         return coordinate
 
     return draw
+
+
+def poisson(streams: Streams, mean: float) -> int:
+    """Draw the number of asperities of a realisation, where they are independent and ``mean`` on average."""
+    from scipy.special import pdtr, pdtrik
+
+    uniform = float(streams(COUNT, 1)[0])
+    count = max(int(np.ceil(pdtrik(uniform, mean))), 0)
+    return count - 1 if count > 0 and pdtr(count - 1, mean) >= uniform else count
 
 
 def _philox(seed: int, realization: int, stream: int) -> np.random.Philox:

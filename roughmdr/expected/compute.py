@@ -38,7 +38,7 @@ def compute(
     names, steps = list(variables), path.separation.size
     rows, dissipating = _rows(names), any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = _stand_ins(source, source.nodes(Rule.smooth(FIRST_ORDER)))
-    reach = jkr_validity(source.shape_name, source.sigma, coarse.columns(), effective_modulus, adhesion)
+    reach = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
     asked = Problem(source, path, effective_modulus, adhesion.resolved(reach.jkr_error), rows)
     parted = Parted.of(asked)
     rule, nodes, doubt, doubt_of_others = converge(asked, parted, dissipating=dissipating)
@@ -66,7 +66,7 @@ def compute(
             f"effective modulus {effective_modulus:g} Pa, "
             f"{asked.adhesion}, separation down to {closest:g} m"
         )
-    extremes = _stand_ins(source, source.nodes(rule)).extremes(_reached(nodes, closest, count))
+    extremes = _stand_ins(source, source.nodes(rule)).validity_limits(_reached(nodes, closest, count))
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, reach.tabor, asked.adhesion.model)
     return law._replace(doubts=_doubts(law.numerical_error, doubt_of_others))
 
@@ -116,7 +116,9 @@ def _doubts(error: float, error_of_others: float) -> tuple[str, ...]:
 
 def _stand_ins(source: Source, nodes: Nodes) -> Ensemble:
     """The nodes as if they were asperities."""
-    return Ensemble(source.shape_name, np.zeros(nodes.share.size), nodes.parameters, fixed=source.fixed)
+    return Ensemble(
+        source.shape_name, np.zeros(nodes.weights.size), nodes.parameters, shared_profile=source.shared_profile
+    )
 
 
 def _reached(nodes: list[Node], closest: float, count: float) -> Floats:

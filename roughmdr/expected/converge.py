@@ -94,7 +94,7 @@ def _smooth(asked: Problem, curves: Curves) -> Converged:
     before = doubts = np.full(len(found), math.inf)
     for order in _ORDERS:
         finer_rule = Rule.smooth(order)
-        count = asked.source.nodes(finer_rule).share.size
+        count = asked.source.nodes(finer_rule).weights.size
         if count == len(nodes):  # no parameter is drawn
             return Converged(rule, nodes, 0.0, 0.0)
         if count > _MOST_NODES:

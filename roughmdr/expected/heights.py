@@ -76,7 +76,7 @@ class HeightTable(NamedTuple):
             slack = np.where(vague, 0.0, slack)
             missing = abs(1.0 - float(parts.sum())) - float(unknown.sum())
             unknown[-1] += missing if missing > _MISSING else 0.0
-        unknown[-1] += heights.tail.share
+        unknown[-1] += heights.tail.fraction
         doubt = np.column_stack([slack, loose, unknown])
         if not (np.isfinite(coefficients).all() and np.isfinite(doubt).all()):
             raise OutOfRange(

@@ -11,7 +11,7 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.ensemble import Source
-from roughmdr.ensemble.nodes import LAST, Rule
+from roughmdr.ensemble.nodes import PARAMETER_END, Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Problem, contacts_of, dissipated_of, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
@@ -71,7 +71,7 @@ class Parted(NamedTuple):
 def _far(source: Source) -> bool:
     """Whether parameters beyond the scores of a parted rule may be felt."""
     for parameter in source.drawn_parameters:
-        low, middle, high = parameter(np.array([-LAST, 0.0, LAST]))
+        low, middle, high = parameter(np.array([-PARAMETER_END, 0.0, PARAMETER_END]))
         if not max(high / middle, middle / low) < _FAR:
             return True
     return False

@@ -58,8 +58,8 @@ def contacts_of(asked: Problem, nodes: Nodes) -> list[Contact]:
     shape = SHAPES[asked.source.shape_name]
     columns = {name: column.tolist() for name, column in nodes.parameters.items()}
     shapes = [
-        asked.source.fixed or shape(**{name: column[number] for name, column in columns.items()})
-        for number in range(nodes.share.size)
+        asked.source.shared_profile or shape(**{name: column[number] for name, column in columns.items()})
+        for number in range(nodes.weights.size)
     ]
     return [Contact.of(one, asked.effective_modulus, asked.adhesion) for one in shapes]
 
@@ -72,7 +72,7 @@ def set_up(asked: Problem, rule: Rule) -> list[Node]:
     curves = curves_of(contacts, nodes.heights, float(asked.path.separation.min()), asked.rows)
     return [
         Node(float(share), contact, curve, tables[heights], *remember(contact, asked.path.seen_from(heights.origin)))
-        for share, contact, curve, heights in zip(nodes.share, contacts, curves, nodes.heights, strict=True)
+        for share, contact, curve, heights in zip(nodes.weights, contacts, curves, nodes.heights, strict=True)
     ]
 
 

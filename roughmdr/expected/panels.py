@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.nodes import Rule, mean_over_edge, share_above
+from roughmdr.ensemble.nodes import Rule, fraction_above, mean_over_edge
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.node import Node
 from roughmdr.numerics.arguments import Floats
@@ -89,7 +89,7 @@ class _End(NamedTuple):
 
 def _end(side: float, set_up: SetUp, curves: Curves) -> _End:
     """The end of the rule on one side: where next to nothing is left, or no contact is representable beyond."""
-    share_before, before = share_above(0.0), curves(set_up(_point(0.0)))
+    share_before, before = fraction_above(0.0), curves(set_up(_point(0.0)))
     bulk = np.abs(before).max(axis=1, keepdims=True)
     score, lost = 0.0, np.full_like(before, math.inf)
     for end in _ENDS:
@@ -97,7 +97,7 @@ def _end(side: float, set_up: SetUp, curves: Curves) -> _End:
             own = curves(set_up(_point(side * end)))
         except (RoughmdrError, ArithmeticError):
             break
-        share = share_above(end)
+        share = fraction_above(end)
         lost = share * np.abs(own) * mean_over_edge(_index(np.abs(own), np.abs(before), share_before / share))
         score, share_before, before = end, share, own
         bulk = np.maximum(bulk, share * np.abs(own).max(axis=1, keepdims=True))

@@ -12,7 +12,7 @@ from roughmdr.fields.half_space import HalfSpace, one_number
 from roughmdr.fields.quadrature import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.numerics.arguments import Floats, check_values
 from roughmdr.shapes import Shape
-from roughmdr.shapes.base import radii
+from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def pressure(
     flat punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
     """
     state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
-    values = radii("r", check_values("r", r))
+    values = check_radii("r", check_values("r", r))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
     found = np.zeros_like(at)
@@ -64,7 +64,7 @@ def surface_displacement(
     u = delta - f(r), outside (2/pi) ∫_0^a (delta - g(x))/sqrt(r^2 - x^2) dx, far away P/(pi E* r).
     """
     state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
-    values = radii("r", check_values("r", r))
+    values = check_radii("r", check_values("r", r))
     at = np.atleast_1d(values)
     found = np.zeros_like(at)
     if state.radius > 0.0:
@@ -98,7 +98,7 @@ def axis_stress(
     state = HalfSpace.of(shape, effective_modulus, work, contact_radius, indentation)
     if not -1.0 < one_number("poisson", poisson) <= 0.5:
         raise OutOfRange(f"poisson is {poisson:g}; it must be above -1 and at most 0.5")
-    values = radii("z", check_values("z", z))
+    values = check_radii("z", check_values("z", z))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)
     stress = state.effective_modulus / math.pi

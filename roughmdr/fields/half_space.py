@@ -14,7 +14,7 @@ from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, 
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats, check_values
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape
+from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
 
 _ROUNDING = 1e-12  # of the slope at the edge: a slope of the tip, or a jump, that is rounding
@@ -81,18 +81,18 @@ class HalfSpace(NamedTuple):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
         width, rise, params = shape.nondimensional()
         params = np.concatenate([np.atleast_1d(np.asarray(params, dtype=np.float64)), [0.0]])
-        if isinstance(shape, FlatPunch):
+        if shape.pinned:
             stretch = delta
         else:
             profile_of(type(shape)).precompute(params)
             stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
-        state = float(t[0]) if isinstance(shape, ProfileShape) else a / width
+        state = float(t[0]) if shape.uses_profile else a / width
         return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, params)
 
     @property
     def sharp(self) -> bool:
         """Whether the pressure is infinite at r = 0."""
-        if self.radius == 0.0 or isinstance(self.shape, FlatPunch):
+        if self.radius == 0.0 or self.shape.pinned:
             return False
         height = profile_of(type(self.shape)).f_and_slope
         return bool(height(0.0, self.params)[1] > _ROUNDING * height(self.radius / self.width, self.params)[1])
@@ -104,7 +104,7 @@ class HalfSpace(NamedTuple):
             return found
         if self.sharp:
             found[0.0] = "the sharp tip of the profile"
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).corner:
+        if not self.shape.pinned and (profile := profile_of(type(self.shape))).corner:
             for index in range(profile.breakpoint_count(self.params)):
                 edge = profile.breakpoint(index, self.params)[0]
                 before, after = (
@@ -127,7 +127,7 @@ class HalfSpace(NamedTuple):
     def total(self, kind: int, at: Floats) -> Floats:
         """The integral of a weight with d(g - delta) to the edge of the contact, its own stretch included."""
         body = np.zeros_like(at)
-        if not isinstance(self.shape, FlatPunch):
+        if not self.shape.pinned:
             kernel = integrals.build(type(self.shape))
             body = apply(kernel, at, kind, self.radius, self.t, self.width, self.params)
             if np.isnan(body).any():
@@ -164,9 +164,7 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
-        if not isinstance(self.shape, FlatPunch) and (profile := profile_of(type(self.shape))).breakpoint_count(
-            self.params
-        ):
+        if not self.shape.pinned and (profile := profile_of(type(self.shape))).breakpoint_count(self.params):
             smallest = min(smallest, profile.breakpoint(0, self.params)[0] * self.width)
         decades = math.log10(_DEEP / _SHALLOW) + math.log10(self.radius / smallest)
         depths = np.geomspace(_SHALLOW * smallest, _DEEP * self.radius, int(_STEPS_A_DECADE * decades))

@@ -1,4 +1,4 @@
-"""How the surfaces attract each other: what is asked for, checked, and the number that tells which law is right."""
+"""Adhesion between the surfaces: the model that is asked for, and the Tabor number, which tells which model holds."""
 
 import math
 from typing import Literal, NamedTuple, get_args
@@ -10,15 +10,15 @@ Model = Literal["jkr", "dugdale"]
 
 
 class Adhesion(NamedTuple):
-    """A law of adhesion."""
+    """An adhesion model with its parameters."""
 
     work: float = 0.0
     """w [J/m2]; 0 for none."""
     model: Literal["jkr", "dugdale", "auto"] = "jkr"
     strength: float = math.inf
-    """sigma0 [Pa], the stress of the attraction (Dugdale); inf where it is not known."""
+    """sigma0 [Pa], the stress of the attraction (Dugdale); inf where it is not given."""
     error: float = 0.0
-    """By how much "auto" may be off, over the largest force."""
+    """The error that "auto" may make, over the largest force."""
 
     def __str__(self) -> str:
         strength = f", strength {self.strength:g} Pa" if self.strength < math.inf else ""
@@ -31,28 +31,28 @@ class Adhesion(NamedTuple):
 
     @property
     def range(self) -> float:
-        """From how far away the surfaces attract each other, w/sigma0 [m]; 0 where the law has no range."""
+        """The adhesion range w/sigma0 [m]; 0 where the model has none."""
         return self.work / self.strength if self.cohesive else 0.0
 
     @property
     def tabor_known(self) -> bool:
-        """Whether the Tabor number can be told."""
+        """Whether the Tabor number is known."""
         return self.work > 0.0 and self.strength < math.inf
 
     @property
     def candidates(self) -> tuple[Model, ...]:
-        """The laws that may be taken."""
+        """The models that may be taken."""
         return ("jkr", "dugdale") if self.model == "auto" else (self.model,)
 
     def resolved(self, jkr_error: float) -> "Adhesion":
-        """The law itself: of "auto" the cheapest that is right enough where JKR is off by ``jkr_error``."""
+        """Return the model itself: for "auto" the cheapest that is right enough where JKR is off by ``jkr_error``."""
         if self.model != "auto":
             return self
         return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")
 
     @classmethod
     def checked(cls, model: Model, work: float, strength: float | None) -> "Adhesion":
-        """What is asked for; w [J/m2], sigma0 [Pa] or None where it is not known.
+        """Return the model asked for; w [J/m2], sigma0 [Pa] or None where it is not given.
 
         RoughmdrError for an unknown model or a missing strength, OutOfRange for a number.
         """
@@ -65,10 +65,10 @@ class Adhesion(NamedTuple):
 
 
 def release_stretch(radius: float, effective_modulus: float, work: float) -> float:
-    """dl [m]: how far the edge of a contact of this radius [m] is stretched in JKR, sqrt(2 pi a w/E*) (H 44)."""
+    """dl [m], the stretch of the edge of a JKR contact of this radius [m]: sqrt(2 pi a w/E*) (H 44)."""
     return math.sqrt(2.0 * math.pi * radius) * math.sqrt(work) / math.sqrt(effective_modulus)
 
 
 def tabor_number(radius: float, effective_modulus: float, work: float, strength: float) -> float:
-    """The Tabor number [1] of a contact that lets go at this radius [m] in JKR: dl(radius) strength/(pi^(2/3) work)."""
+    """The Tabor number [1] of a JKR contact that detaches at this radius [m]: dl(radius) strength/(pi^(2/3) work)."""
     return float(release_stretch(radius, effective_modulus, work) / work * strength / math.pi ** (2.0 / 3.0))

@@ -77,6 +77,6 @@ def choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:
             raise OutOfRange(f"exponent is {lowest:g}; with adhesion (work > 0) it must be above 1/2")
     if adhesion.cohesive:
         return _dugdale(kind)
-    if issubclass(kind, ProfileShape):
+    if kind.uses_profile:
         return _of_profile(kind, adhesion.work > 0.0)
     return _closed(shape, adhesion.work > 0.0)

@@ -1,1 +1,1 @@
-"""Words, tables and pictures of plans and results."""
+"""What users see of plans and results: summaries, tables, pictures, and messages on the terminal."""

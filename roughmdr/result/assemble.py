@@ -15,7 +15,7 @@ from roughmdr.batch.rounds import CellMethod
 from roughmdr.result.statistics import summarise
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.storage.store import provenance
+from roughmdr.storage.result_file import provenance
 from roughmdr.variables import ADHESION_CODES, CURVE_VARIABLES, DONE, FAILED, RUN_VARIABLES, STATUSES
 
 _REFERENCES = (
@@ -99,7 +99,10 @@ def _warnings(plan: Plan, found: CollectedResults) -> list[str]:
     """Warn of numbers that are doubtful: for the scene, for the ensembles, or for the most that contacts come to."""
     beside = found.beside
     done = beside["status"] == DONE
-    said = [*plan.doubts, *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line)]
+    said = [
+        *plan.warnings,
+        *dict.fromkeys(line for text in beside["remark"][done] for line in text.split("\n") if line),
+    ]
     if not done.any():
         return said
     jkr = done & (beside["law"] == ADHESION_CODES.index("jkr"))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.schema.toml_text import table_of
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE
 
@@ -26,7 +26,7 @@ def estimator_of(result: Labelled) -> str:
         method = result.variables["accuracy_method"]
         taken = {str(method.attrs["flag_meanings"]).split()[number] for number in np.unique(method.values)}
         return taken.pop() if len(taken) == 1 else "sampled"
-    return str(table_of(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled"))
+    return str(parse_toml(result.attrs["scene"]).get("batch", {}).get("estimator", "sampled"))
 
 
 def method_of(result: Labelled, cell: tuple[int, ...]) -> str:

@@ -27,9 +27,9 @@ from roughmdr.runner.local import Pool, Processes, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
+from roughmdr.storage.file_checks import check_writable, destination
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.memory import check_room, left_in_words
-from roughmdr.storage.store import check_writable, destination
+from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def execute(
                     keeper.clear()
                 return _Batch(plan, rounds, keeper, held, pool, quiet=quiet).run(command, old)
         except (StoreError, MemoryError) as error:
-            what = str(error) or f"out of memory, with {left_in_words()}"
+            what = str(error) or f"out of memory, with {describe_available_memory()}"
             if keeper is not None and keeper.said:
                 raise Unfinished(f"{what}; {keeper.said}") from None
             if isinstance(error, MemoryError):
@@ -146,7 +146,7 @@ def computed(plan: Plan) -> tuple[str, ...]:
 def _check_memory(plan: Plan, rounds: Rounds) -> None:
     """StoreError, before computing, where this process may not have the memory that the first round takes at least."""
     runs = sum(choice.realizations for choice in rounds.choices)
-    check_room(
+    check_memory(
         held_bytes(plan, runs), "the run", "fewer steps or realizations, or output.keep = 'statistics', take less"
     )
 

@@ -1,7 +1,7 @@
-"""What is asked: the scene file and its sections."""
+"""The scene file: its sections, their validation, and the cells of its sweep."""
 
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.read import read
-from roughmdr.scene.sections import Scene
+from roughmdr.scene.scene import Scene
 
 __all__ = ["FlatPath", "Scene", "read"]

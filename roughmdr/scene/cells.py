@@ -1,4 +1,4 @@
-"""From the table of a scene to the scene, and to the cells that its sweep makes of it."""
+"""Validation of a scene's table: the scene itself and the cells of its sweep, or everything that is wrong."""
 
 import copy
 from collections import Counter
@@ -9,119 +9,128 @@ from typing import Any
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.scene.keys import put, readers
-from roughmdr.scene.sections import Scene
-from roughmdr.scene.sweep import in_words, read_sweep
+from roughmdr.scene.keys import key_readers, set_key
+from roughmdr.scene.scene import Scene
+from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
 from roughmdr.schema.quantities import Reader
 
-_Known = dict[tuple[str, tuple[tuple[str, object], ...]], tuple[dict[str, Any], Any]]
-"""Parts of a scene, as tables and read, by their names and what is swept of them."""
+_Values = tuple[tuple[str, object], ...]
+"""Swept keys of one section, each with its value."""
+_SectionCache = dict[tuple[str, _Values], tuple[dict[str, Any], Any]]
+"""Sections by their name and swept values, each as a table and validated."""
 
 
 def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, list[Fault]]:
-    """The scene with its cells, or all that is wrong with it."""
+    """Return the scene with its cells, or all its faults."""
     if "sweep" not in table:
-        return _read(table, path, {})
-    plain = {key: value for key, value in copy.deepcopy(table).items() if key != "sweep"}
-    sweep, faults = read_sweep(table["sweep"], _known(plain, table["sweep"]))
+        return _validate_one(table, path, {})
+    base_table = {key: value for key, value in copy.deepcopy(table).items() if key != "sweep"}
+    sweep, faults = read_sweep(table["sweep"], _allowed_keys(base_table, table["sweep"]))
     first = {} if sweep is None else next(sweep.cells())
-    filled, found = _fill(plain, first)
-    base, faults_of_base = _read(plain, path, {})
-    # What is wrong with a value that was only filled in is for the cells to find.
-    faults += found + [fault for fault in faults_of_base if fault.key not in filled]
+    filled, fill_faults = _fill_missing(base_table, first)
+    base, base_faults = _validate_one(base_table, path, {})
+    # Faults of a value that was only filled in are found again in the cells.
+    faults += fill_faults + [fault for fault in base_faults if fault.key not in filled]
     if base is None and not faults:
-        base, faults = _read_cell(plain, first, path, {}, {})
+        base, faults = _validate_cell(base_table, first, path, {}, {})
     if base is None or sweep is None or faults:
         return None, faults
-    parts = {name: getattr(base, name) for name in Scene.model_fields if name != "sweep"}
-    known: _Known = {}
-    cells, faults_of_cells, where = [], Counter[Fault](), dict[Fault, str]()
+    sections = {name: getattr(base, name) for name in Scene.model_fields if name != "sweep"}
+    cache: _SectionCache = {}
+    cells, fault_counts, first_cells = [], Counter[Fault](), dict[Fault, str]()
     for values in sweep.cells():
-        cell, found = _read_cell(plain, values, path, parts, known)
-        for fault in found:
-            faults_of_cells[fault] += 1
-            where.setdefault(fault, in_words(values))
+        cell, cell_faults = _validate_cell(base_table, values, path, sections, cache)
+        for fault in cell_faults:
+            fault_counts[fault] += 1
+            first_cells.setdefault(fault, describe_cell(values))
         if cell is not None:
             cells.append(cell)
-    if faults_of_cells:
-        return None, [_counted(fault, count, where[fault]) for fault, count in faults_of_cells.items()]
-    given = {name: parts[name] for name in base.model_fields_set}
+    if fault_counts:
+        return None, [_name_cells(fault, count, first_cells[fault]) for fault, count in fault_counts.items()]
+    given = {name: sections[name] for name in base.model_fields_set}
     return Scene.of(table, path, {"sweep": sweep, **given}, tuple(cells)), []
 
 
-def _known(plain: dict[str, Any], sweep: object) -> dict[str, Reader]:
-    """The keys that a scene can have; those of every distribution that is swept too."""
-    known = dict(readers([Scene], plain))
+def _allowed_keys(base_table: dict[str, Any], sweep: object) -> dict[str, Reader]:
+    """Return the keys that a scene can have, with those of every distribution that is swept."""
+    allowed = dict(key_readers([Scene], base_table))
     for key, entries in sweep.items() if isinstance(sweep, dict) else ():
-        if key in known and key.endswith(".distribution") and isinstance(entries, list):
+        if key in allowed and key.endswith(".distribution") and isinstance(entries, list):
             for entry in entries:
-                other = copy.deepcopy(plain)
+                other = copy.deepcopy(base_table)
                 with suppress(RoughmdrError):
-                    put(other, key, entry)
-                known |= dict(readers([Scene], other))
-    return known
+                    set_key(other, key, entry)
+                allowed |= dict(key_readers([Scene], other))
+    return allowed
 
 
-def _read(table: dict[str, Any], path: Path | None, ready: dict[str, Any]) -> tuple[Scene | None, list[Fault]]:
+def _validate_one(
+    table: dict[str, Any], path: Path | None, validated: dict[str, Any]
+) -> tuple[Scene | None, list[Fault]]:
     try:
-        return Scene.of(table, path, ready), []
+        return Scene.of(table, path, validated), []
     except ValidationError as error:
         faults = find_faults(error, table, Scene)
         likely = with_likely_names(error, table, Scene)
-        more = [] if likely is None else _read(likely, path, ready)[1]
+        more = [] if likely is None else _validate_one(likely, path, validated)[1]
         return None, faults + [fault for fault in more if fault not in faults]
 
 
-def _fill(plain: dict[str, Any], first: dict[str, object]) -> tuple[set[str], list[Fault]]:
-    """Put the first value of each swept key that the scene itself leaves out; which these are, and what is wrong."""
+def _fill_missing(base_table: dict[str, Any], first: dict[str, object]) -> tuple[set[str], list[Fault]]:
+    """Set the swept keys that the scene leaves out to their first values; return these keys, and faults."""
     filled, faults = set(), []
     for key, value in first.items():
-        inner: Any = plain
+        inner: Any = base_table
         for part in key.split("."):
             inner = inner.get(part) if isinstance(inner, dict) else None
         if inner is None:
             try:
-                put(plain, key, value)
+                set_key(base_table, key, value)
                 filled.add(key)
             except RoughmdrError as error:
                 faults.append(Fault(f"sweep.{key}", "", str(error)))
     return filled, faults
 
 
-def _read_cell(
-    plain: dict[str, Any], values: dict[str, object], path: Path | None, parts: dict[str, Any], known: _Known
+def _validate_cell(
+    base_table: dict[str, Any],
+    values: dict[str, object],
+    path: Path | None,
+    sections: dict[str, Any],
+    cache: _SectionCache,
 ) -> tuple[Scene | None, list[Fault]]:
-    """One cell of a sweep; those of the read ``parts`` that no swept key belongs to are taken as they are.
+    """Validate one cell of a sweep, reusing the validated ``sections`` that no swept key belongs to.
 
-    Swept parts are taken from ``known``, where one was read with the same values before, and put there.
+    A swept section is taken from ``cache`` if it was validated with the same values before, and is added to it.
     """
-    swept: dict[str, tuple[tuple[str, object], ...]] = {}
+    swept: dict[str, _Values] = {}
     for key, value in values.items():
         name = key.split(".")[0]
         swept[name] = (*swept.get(name, ()), (key, value))
-    alike = {name: known[name, own] for name, own in swept.items() if (name, own) in known}
-    ready = {name: part for name, part in parts.items() if name not in swept}
-    table = {name: _copied(part) if name in swept and name not in alike else part for name, part in plain.items()}
-    table |= {name: part_table for name, (part_table, _) in alike.items()}
-    for name, own in swept.items():
-        if name in alike:
+    already_read = {name: cache[name, own_values] for name, own_values in swept.items() if (name, own_values) in cache}
+    validated = {name: section for name, section in sections.items() if name not in swept}
+    validated |= {name: section for name, (_, section) in already_read.items()}
+    table = {name: already_read[name][0] if name in already_read else part for name, part in base_table.items()}
+    for name, own_values in swept.items():
+        if name in already_read:
             continue
-        for key, value in own:
+        table[name] = _copy_tables(table.get(name, {}))
+        for key, value in own_values:
             try:
-                put(table, key, value)
+                set_key(table, key, value)
             except RoughmdrError as error:
                 return None, [Fault(f"sweep.{key}", "", str(error))]
-    cell, faults = _read(table, path, ready | {name: part for name, (_, part) in alike.items()})
+    cell, faults = _validate_one(table, path, validated)
     if cell is not None:
-        for name, own in swept.items():
-            known[name, own] = table[name], getattr(cell, name)
+        for name, own_values in swept.items():
+            cache[name, own_values] = table[name], getattr(cell, name)
     return cell, [_at_swept_key(fault, values) for fault in faults]
 
 
-def _copied(table: Any) -> Any:
-    """Tables within tables anew; what stands in them is the same."""
-    return {key: _copied(value) for key, value in table.items()} if isinstance(table, dict) else table
+def _copy_tables(value: Any) -> Any:
+    """Copy tables within tables, but not the values in them."""
+    return {key: _copy_tables(inner) for key, inner in value.items()} if isinstance(value, dict) else value
 
 
 def _at_swept_key(fault: Fault, values: dict[str, object]) -> Fault:
@@ -129,7 +138,6 @@ def _at_swept_key(fault: Fault, values: dict[str, object]) -> Fault:
     return fault._replace(key=f"sweep.{swept[0]}") if swept else fault
 
 
-def _counted(fault: Fault, count: int, first: str) -> Fault:
-    """A fault of some cells, with the first of them."""
+def _name_cells(fault: Fault, count: int, first: str) -> Fault:
     where = f"where {first}" if count == 1 else f"in {count} cells, first where {first}"
     return fault._replace(message=f"{fault.message} ({where})")

@@ -1,4 +1,4 @@
-"""[path]: where the flat goes."""
+"""[path]: the separations of the rigid flat."""
 
 import re
 from typing import Annotated, NamedTuple
@@ -21,7 +21,7 @@ class Separation(NamedTuple):
     in_sigma: bool
 
     def metres(self, sigma: float) -> float:
-        """In metres."""
+        """Return the separation [m], sigma [m] being the standard deviation of the heights."""
         return self.value * sigma if self.in_sigma else self.value
 
 
@@ -31,7 +31,7 @@ class SeparationReader:
     dimension = "m"
 
     def __call__(self, value: object) -> Separation:
-        """The separation, in metres or in sigma."""
+        """Return the separation, in metres or in sigma."""
         if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
             return Separation(quantity(match[1], DIMENSIONLESS), in_sigma=True)
         try:
@@ -52,7 +52,7 @@ class Range(Section):
 
 
 class FlatPath(Section):
-    """[path]: a range or a list of separations; ``unload`` appends the way back."""
+    """[path]: a range or a list of separations; ``unload`` appends the same separations in reverse."""
 
     separation: Annotated[
         Annotated[Range, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
@@ -70,15 +70,19 @@ class FlatPath(Section):
         ends = [self.separation.start, self.separation.stop] if isinstance(self.separation, Range) else self.separation
         return any(end.in_sigma for end in ends)
 
-    def separations(self, sigma: float) -> Floats:
-        """The way in, without the way back [m]; sigma is the standard deviation of the heights [m].
+    def sigma_fault(self, sigma: float) -> str:
+        """Return why separations cannot be given in sigma [m]; empty if they can, or are not."""
+        if not self.uses_sigma or 0.0 < sigma < np.inf:
+            return ""
+        return f"cannot be given in sigma: the heights' standard deviation is {sigma:g} m"
 
-        SceneError where the path is given in sigma and there is none, or where it is not finite.
+    def separations(self, sigma: float) -> Floats:
+        """Return the separations [m] without the appended unloading; sigma [m] is the heights' standard deviation.
+
+        SceneError if the path is given in sigma and there is none, or if it is not finite.
         """
-        if self.uses_sigma and not 0.0 < sigma < np.inf:
-            raise SceneError(
-                f"path.separation: cannot be given in sigma, the heights' standard deviation is {sigma:g} m"
-            )
+        if fault := self.sigma_fault(sigma):
+            raise SceneError(f"path.separation: {fault}")
         if isinstance(self.separation, Range):
             start, stop = self.separation.start.metres(sigma), self.separation.stop.metres(sigma)
             path = np.linspace(start, stop, self.separation.steps) if np.isfinite(stop - start) else np.array([np.inf])

@@ -1,4 +1,4 @@
-"""[sweep]: the scene over and over, each time with other values of some of its keys."""
+"""[sweep]: the values of swept keys, and the cells, dimensions and coordinates that they make."""
 
 import math
 from collections.abc import Iterator
@@ -13,15 +13,15 @@ from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.path import Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, udunits
-from roughmdr.schema.wording import printable, shown, suggestion
+from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities")
-_PATH = ("path.separation.start", "path.separation.stop")
-_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
+_PATH_KEYS = ("path.separation.start", "path.separation.stop")
+_ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
 _NUM = WholeNumber(2, 100_000)
-_MOST_CELLS = 100_000
-_DIGITS = 15  # of the values between two ends, so that 0.3 is 0.3 and can be selected
+_MAX_CELLS = 100_000
+_DIGITS = 15  # of values between two ends, so that 0.3 is 0.3 and can be selected
 
 
 class Axis(NamedTuple):
@@ -38,18 +38,18 @@ class Axis(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Of its coordinate."""
+        """Name of the coordinate."""
         return self.key.replace(".", "_")
 
     @property
     def numeric(self) -> bool:
-        """Whether the values are numbers, and not names."""
+        """Whether the values are numbers, not names."""
         return self.values.dtype.kind != "U"
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """The cells of a sweep: all combinations of the axes' values, or the first of each, the second of each, ...
+    """Cells of a sweep: all combinations of the axes' values ("product"), or one value of each at a time ("zip").
 
     Without axes it has one cell and no dimension.
     """
@@ -59,20 +59,20 @@ class Sweep:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """The dimensions, in their order."""
+        """Length of each dimension, in order."""
         if self.mode == "zip":
             return {"cell": len(self.axes[0].entries)}
         return {axis.name: len(axis.entries) for axis in self.axes}
 
     def cells(self) -> Iterator[dict[str, object]]:
-        """For each cell, the last dimension fastest, what stands under each swept key."""
+        """Yield the entry of each swept key for every cell, the last dimension fastest."""
         entries = [axis.entries for axis in self.axes]
         combinations = zip(*entries, strict=True) if self.mode == "zip" else product(*entries)
         for combination in combinations:
             yield dict(zip((axis.key for axis in self.axes), combination, strict=True))
 
     def coordinates(self) -> dict[str, Array]:
-        """The swept values over their dimensions."""
+        """Return the swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
             unit = {"units": udunits(axis.unit)} if axis.numeric else {}
@@ -81,63 +81,68 @@ class Sweep:
         return coordinates
 
 
-def in_words(cell: dict[str, object]) -> str:
-    """What stands under the swept keys of a cell."""
+def describe_cell(cell: dict[str, object]) -> str:
+    """Return the swept keys of a cell with their entries, in words."""
     return ", ".join(f"{key} = {value}" for key, value in cell.items())
 
 
 def flatten(table: object) -> object:
-    """[sweep] with its keys dotted, whether they came so or as tables within tables; SceneError if one came twice."""
+    """Return [sweep] with dotted keys in place of tables within tables; SceneError if a key is given twice."""
     if not isinstance(table, dict):
         return table
     flat: dict[str, object] = {}
 
-    def walk(inner: dict[str, Any], at: str) -> None:
+    def walk(inner: dict[str, Any], prefix: str) -> None:
         for name, value in inner.items():
+            key = f"{prefix}{name}"
             if isinstance(value, dict) and value and value.keys().isdisjoint({"linspace", "logspace", "num"}):
-                walk(value, f"{at}{name}.")
-            elif f"{at}{name}" in flat:
-                raise SceneError.of([Fault(f"sweep.{printable(at + name)}", "", "is given twice")])
+                walk(value, f"{key}.")
+            elif key in flat:
+                raise SceneError.of([Fault(f"sweep.{printable(key)}", "", "is given twice")])
             else:
-                flat[f"{at}{name}"] = value
+                flat[key] = value
 
     walk(table, "")
     return flat
 
 
-def read_sweep(table: object, known: dict[str, Reader]) -> tuple[Sweep | None, list[Fault]]:
-    """The sweep of a flattened table, and all that is wrong with it; ``known`` are the keys that the scene can have."""
+def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | None, list[Fault]]:
+    """Return the sweep of a flattened table, or its faults; ``allowed_keys`` are those that the scene can have."""
     if not isinstance(table, dict):
-        return None, [Fault("sweep", shown(table), "must be a table")]
+        return None, [Fault("sweep", short_repr(table), "must be a table")]
     mode = table.get("mode", "product")
     faults = []
     if mode not in ("product", "zip"):
-        faults.append(Fault("sweep.mode", shown(mode), f"not available{suggestion(str(mode), ['product', 'zip'])}"))
-    allowed = {key: reader for key, reader in known.items() if key.split(".")[0] in _SECTIONS or key in _PATH}
+        faults.append(
+            Fault("sweep.mode", short_repr(mode), f"not available{suggestion(str(mode), ['product', 'zip'])}")
+        )
+    readers = {
+        key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in _SECTIONS or key in _PATH_KEYS
+    }
     axes = []
     for key, value in table.items():
         if key == "mode":
             continue
         try:
-            axes.append(_axis(key, value, allowed, ordered=mode == "product"))
+            axes.append(_axis(key, value, readers, ordered=mode == "product"))
         except EntryError as error:
-            value_shown = "" if error.value is None else shown(error.value)
-            faults.append(Fault(f"sweep.{printable(error.key)}", value_shown, str(error)))
-    faults += _misfits(mode, axes) if axes else []
+            entry = "" if error.value is None else short_repr(error.value)
+            faults.append(Fault(f"sweep.{printable(error.key)}", entry, str(error)))
+    faults += _conflicts(mode, axes) if axes else []
     if not axes and not faults:
         faults.append(Fault("sweep", "", 'names no key to sweep, like "adhesion.work" = ["10 mJ/m^2", "50 mJ/m^2"]'))
     return (None, faults) if faults else (Sweep(mode, tuple(axes)), [])
 
 
-def _axis(key: str, value: object, allowed: dict[str, Reader], *, ordered: bool) -> Axis:
-    reader = allowed.get(key)
+def _axis(key: str, value: object, readers: dict[str, Reader], *, ordered: bool) -> Axis:
+    reader = readers.get(key)
     if reader is None:
-        hint = suggestion(key, sorted(allowed))
+        hint = suggestion(key, sorted(readers))
         raise EntryError(key, None, f"is no number or name of the scene that can be swept{hint}")
-    entries = _between(key, value, reader) if isinstance(value, dict) else value
+    entries = _spaced_entries(key, value, reader) if isinstance(value, dict) else value
     if not isinstance(entries, list) or not entries:
-        raise EntryError(key, value, _FORMS)
-    numbers, in_sigma = _numbers(key, entries, reader)
+        raise EntryError(key, value, _ALLOWED_FORMS)
+    numbers, in_sigma = _read_entries(key, entries, reader)
     unit, long_name = reader.dimension, f"swept {key}"
     if in_sigma:
         unit, long_name = DIMENSIONLESS, f"swept {key}, in standard deviations of the heights"
@@ -151,8 +156,8 @@ def _axis(key: str, value: object, allowed: dict[str, Reader], *, ordered: bool)
     return Axis(key, tuple(entries[i] for i in order), np.array([numbers[i] for i in order]), unit, long_name)
 
 
-def _numbers(key: str, entries: list[object], reader: Reader) -> tuple[list[Any], bool]:
-    """Each entry in SI, or a name; and whether they are multiples of sigma."""
+def _read_entries(key: str, entries: list[object], reader: Reader) -> tuple[list[Any], bool]:
+    """Return each entry in SI, or its name, and whether they are multiples of sigma."""
     numbers, in_sigma = [], set()
     for i, entry in enumerate(entries):
         try:
@@ -168,13 +173,13 @@ def _numbers(key: str, entries: list[object], reader: Reader) -> tuple[list[Any]
     return numbers, in_sigma.pop()
 
 
-def _between(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
-    """The entries that linspace or logspace stand for; both ends as they were given."""
+def _spaced_entries(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
+    """Return the entries of a linspace or logspace; both ends as they were given."""
     kind = next((kind for kind in ("linspace", "logspace") if kind in table), None)
-    for other in table.keys() - {kind, "num"} if kind else ():
-        raise EntryError(f"{key}.{other}", None, f"unknown key{suggestion(other, ['num'])}")
     if kind is None:
-        raise EntryError(key, table, _FORMS)
+        raise EntryError(key, table, _ALLOWED_FORMS)
+    for other in table.keys() - {kind, "num"}:
+        raise EntryError(f"{key}.{other}", None, f"unknown key{suggestion(other, ['num'])}")
     ends = table[kind]
     if not isinstance(ends, list) or len(ends) != 2 or not reader.dimension:
         raise EntryError(f"{key}.{kind}", ends, "must be two numbers, [first, last]")
@@ -184,13 +189,13 @@ def _between(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
         num = _NUM(table["num"])
     except RoughmdrError as error:
         raise EntryError(f"{key}.num", table["num"], str(error)) from None
-    (first, last), in_sigma = _numbers(f"{key}.{kind}", ends, reader)
+    (first, last), in_sigma = _read_entries(f"{key}.{kind}", ends, reader)
     if kind == "logspace" and not (first > 0.0 and last > 0.0):
         raise EntryError(f"{key}.{kind}", ends, "must be above 0")
     if not math.isfinite(last - first):
         raise EntryError(f"{key}.{kind}", ends, "are too far apart")
-    space = np.linspace(first, last, num) if kind == "linspace" else np.geomspace(first, last, num)
-    inner: list[Any] = [float(f"{value:.{_DIGITS}g}") for value in space[1:-1]]
+    spaced = np.linspace(first, last, num) if kind == "linspace" else np.geomspace(first, last, num)
+    inner: list[Any] = [float(f"{value:.{_DIGITS}g}") for value in spaced[1:-1]]
     if isinstance(reader, WholeNumber):
         if any(not value.is_integer() for value in inner):
             raise EntryError(key, table, "must give whole numbers")
@@ -200,7 +205,7 @@ def _between(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
     return [ends[0], *inner, ends[1]]
 
 
-def _misfits(mode: str, axes: list[Axis]) -> list[Fault]:
+def _conflicts(mode: str, axes: list[Axis]) -> list[Fault]:
     faults = []
     for axis in axes:
         for other in axes:
@@ -211,6 +216,6 @@ def _misfits(mode: str, axes: list[Axis]) -> list[Fault]:
             message = f"has {count} values, {axes[0].key} has {first}; mode = 'zip' takes equally many"
             faults.append(Fault(f"sweep.{axis.key}", "", message))
     cells = math.prod(len(axis.entries) for axis in axes)
-    if mode == "product" and cells > _MOST_CELLS:
-        faults.append(Fault("sweep", "", f"has {cells} cells; at most {_MOST_CELLS} are allowed"))
+    if mode == "product" and cells > _MAX_CELLS:
+        faults.append(Fault("sweep", "", f"has {cells} cells; at most {_MAX_CELLS} are allowed"))
     return faults

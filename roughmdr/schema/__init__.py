@@ -1,1 +1,1 @@
-"""Declaration of sections of a scene: units, checked quantities, faults and their wording."""
+"""How the sections of a scene are declared and read: units, quantities, TOML, and messages about what is wrong."""

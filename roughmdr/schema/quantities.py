@@ -1,7 +1,6 @@
-"""What sections of a scene are declared with: a section refuses keys that it does not know, a reader checks a value.
+"""Building blocks of a scene's sections: a section refuses unknown keys, a reader checks and converts one value.
 
-A reader is a callable that turns what stands in the scene into a value, or raises RoughmdrError; its ``dimension`` says
-what it reads.
+A reader is a callable that converts a value of the scene or raises RoughmdrError; ``dimension`` is its unit.
 """
 
 from dataclasses import dataclass
@@ -14,26 +13,26 @@ from roughmdr.schema.units import DIMENSIONLESS, quantity
 
 
 class Section(BaseModel):
-    """A table of a scene. Keys that it does not declare are errors; it cannot be changed afterwards."""
+    """A table of a scene: keys that it does not declare are errors, and it is immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
 @runtime_checkable
 class Reader(Protocol):
-    """What reads one value of a scene."""
+    """Converts one value of a scene."""
 
     @property
     def dimension(self) -> str:
-        """As in ``units``."""
+        """Dimension as in ``units``; empty for names."""
         ...
 
     def __call__(self, value: object) -> Any:
-        """The value in SI; RoughmdrError where there is none."""
+        """Return the value in SI; RoughmdrError if it is not allowed."""
 
 
 class EntryError(RoughmdrError):
-    """A fault of one entry of the table that a reader was given."""
+    """An entry of a table that a reader was given is wrong."""
 
     def __init__(self, key: str, value: object, message: str) -> None:
         super().__init__(message)
@@ -46,18 +45,18 @@ class Quantity:
 
     dimension: str
     above: float | None = None
-    least: float | None = None
-    most: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
 
     def __call__(self, value: object) -> float:
-        """The number in SI."""
+        """Return the number in SI."""
         number = quantity(value, self.dimension)
         if self.above is not None and not number > self.above:
             raise RoughmdrError(f"must be above {self.above:g}")
-        if self.least is not None and not number >= self.least:
-            raise RoughmdrError(f"must be at least {self.least:g}")
-        if self.most is not None and not number <= self.most:
-            raise RoughmdrError(f"must be at most {self.most:g}")
+        if self.at_least is not None and not number >= self.at_least:
+            raise RoughmdrError(f"must be at least {self.at_least:g}")
+        if self.at_most is not None and not number <= self.at_most:
+            raise RoughmdrError(f"must be at most {self.at_most:g}")
         return number
 
 
@@ -65,16 +64,16 @@ class Quantity:
 class WholeNumber:
     """Reads an integer within the given bounds."""
 
-    least: int
-    most: int
+    minimum: int
+    maximum: int
     dimension: ClassVar[str] = DIMENSIONLESS
 
     def __call__(self, value: object) -> int:
-        """The integer."""
+        """Return the integer."""
         if isinstance(value, bool) or not isinstance(value, int):
             raise RoughmdrError("expected a whole number")
-        if not self.least <= value <= self.most:
-            raise RoughmdrError(f"must be from {self.least} to {self.most}")
+        if not self.minimum <= value <= self.maximum:
+            raise RoughmdrError(f"must be from {self.minimum} to {self.maximum}")
         return value
 
 

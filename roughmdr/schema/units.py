@@ -7,7 +7,7 @@ from functools import cache
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import check_number
-from roughmdr.schema.wording import shown
+from roughmdr.schema.wording import short_repr
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
 _LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
@@ -95,7 +95,7 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     if unit in ("", dimension):
         return Decimal(1)
     if dimension == DIMENSIONLESS:
-        raise RoughmdrError(f"has the unit {shown(unit)}, but is a plain number")
+        raise RoughmdrError(f"has the unit {short_repr(unit)}, but is a plain number")
     spelled = unit.removeprefix("1").lstrip() if unit.startswith("1/") else unit
     spelled = spelled.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")
     table = _table(dimension) if dimension in _BASES else {}
@@ -106,7 +106,7 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
             raise RoughmdrError(
                 f"{unit!r} is a unit of {other}; expected a unit of {dimension}, like {example(dimension)}"
             )
-    raise RoughmdrError(f"unknown unit {shown(unit)}; expected a unit of {dimension}, like {example(dimension)}")
+    raise RoughmdrError(f"unknown unit {short_repr(unit)}; expected a unit of {dimension}, like {example(dimension)}")
 
 
 def udunits(dimension: str) -> str:

@@ -1,66 +1,65 @@
-"""Small parts of messages: values as they stand in a scene, and names that may have been meant."""
+"""Parts of messages: values as a scene gives them, names that may have been meant, sizes and times with units."""
 
 from collections import Counter
 from collections.abc import Iterable
 
-_NEAR = 0.7  # of difflib's ratio: one or two letters of a word
+_MIN_SIMILARITY = 0.7  # of difflib's ratio: one or two letters of a word
 _LAYOUT = "\n\t"
 
 
-def near(given: str, allowed: Iterable[str], count: int = 1) -> list[str]:
-    """Those of the allowed names that are most like a given one, in whatever case; never the given one itself."""
+def close_matches(given: str, allowed: Iterable[str], count: int = 1) -> list[str]:
+    """Return the allowed names most like ``given``, whatever their case; never ``given`` itself."""
     import difflib
 
     folded = {name.strip().casefold(): name for name in allowed if name != given}
-    meant = difflib.get_close_matches(given.strip().casefold(), list(folded), n=count, cutoff=_NEAR)
-    return [folded[name] for name in meant]
+    matches = difflib.get_close_matches(given.strip().casefold(), list(folded), n=count, cutoff=_MIN_SIMILARITY)
+    return [folded[name] for name in matches]
 
 
 def suggestion(given: str, allowed: list[str]) -> str:
-    """The nearest of the allowed names, or else all of them, as the end of a message."""
-    meant = near(given, allowed)
-    if meant:
-        return f"; did you mean {meant[0]!r}?"
+    """Return the end of a message: the closest allowed name, or else all of them."""
+    if matches := close_matches(given, allowed):
+        return f"; did you mean {matches[0]!r}?"
     return f"; it can be {', '.join(allowed)}"
 
 
-def harmless(text: str) -> str:
-    """A text, of one line or several, with every character that a terminal would act on as an escape sequence."""
+def escape_controls(text: str) -> str:
+    """Escape every character that a terminal would act on, but newlines and tabs."""
     if text.isprintable():
         return text
     return "".join(letter if letter.isprintable() or letter in _LAYOUT else repr(letter)[1:-1] for letter in text)
 
 
 def printable(key: str) -> str:
-    """A key on one line."""
+    """Return a key as it is if it prints on one line, else its repr."""
     return key if key.isprintable() else repr(key)
 
 
-def shown(value: object, most: int = 60) -> str:
-    """A value as it stands in the scene, cut where it has more letters than ``most``."""
+def short_repr(value: object, max_length: int = 60) -> str:
+    """Return the repr of a value, cut to ``max_length`` characters."""
     try:
         text = repr(value)
-    except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables without end
+    except (ValueError, RecursionError):  # an integer of thousands of digits, or endlessly nested tables
         return "..."
-    return text if len(text) <= most else text[: most - 3] + "..."
+    return text if len(text) <= max_length else text[: max_length - 3] + "..."
 
 
-def in_cells(lines: Iterable[str], cells: int) -> list[str]:
-    """Each line once, and in how many of the cells of a sweep it was said, where not in all."""
+def count_by_cell(lines: Iterable[str], cells: int) -> list[str]:
+    """Return each line once, with the number of cells of a sweep that it applies to unless it applies to all."""
     return [
         line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in Counter(lines).items()
     ]
 
 
-def seconds_in_words(seconds: float) -> str:
-    """A time with a unit that suits it."""
+def format_seconds(seconds: float) -> str:
+    """Format a time in seconds, minutes or hours."""
     if seconds < 100.0:
         return f"{seconds:.2g} s"
     return f"{seconds / 60.0:.3g} min" if seconds < 6000.0 else f"{seconds / 3600.0:.3g} h"
 
 
-def bytes_in_words(size: float) -> str:
-    """A size with a unit that suits it."""
+def format_bytes(size: float) -> str:
+    """Format a size in bytes, kB, MB or GB."""
     for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if size >= factor:
             return f"{size / factor:.3g} {unit}"

@@ -1,4 +1,4 @@
-"""The profiles of single asperities. A new shape is one file here and one line in ``SHAPES``."""
+"""The profiles of single asperities. CONTRIBUTING.md says how to add one: a file here and a line in ``SHAPES``."""
 
 from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile
 from roughmdr.shapes.capped import CappedParaboloid

@@ -1,10 +1,10 @@
-"""What every axisymmetric profile offers: f, g and G over arrays, and its reduction to width, rise and form."""
+"""The interface of every axisymmetric profile: f, g and G over arrays, and its reduction to width, rise and params."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,81 +13,107 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
-from roughmdr.shapes.profile import Profile, never_softens
+from roughmdr.shapes.profile import Profile, zero
 
 
 class Shape(ABC):
     """An axisymmetric profile with its tip at f(0) = 0, pointing at the flat. Its parameters are floats in SI.
 
-    A shape is a dimensionless form, stretched sideways by a width and upwards by a rise: that triple is all that
-    the kernels see.
+    The kernels see a shape as a dimensionless profile, scaled sideways by a width and upwards by a rise.
     """
 
     name: ClassVar[str]
     units: ClassVar[dict[str, str]]
     """Unit of each parameter, in the order of the arguments."""
-    spellings: ClassVar[tuple[tuple[str, ...], ...]]
-    """The sets of parameters that describe the shape, any one of them whole."""
+    parameter_sets: ClassVar[tuple[tuple[str, ...], ...]]
+    """The sets of parameters that each describe the shape; by default all parameters together."""
     not_below: ClassVar[tuple[tuple[str, str, str], ...]] = ()
-    """Pairs of parameters of which the first must not be below the second, and why."""
+    """(parameter, lower bound, reason) for each parameter that must not be below another one."""
+    pinned: ClassVar[bool] = False
+    """Whether the contact radius is the shape's own under every load, as that of a flat punch is."""
+    uses_profile: ClassVar[bool] = False
+    """Whether its kernels are made from its ``Profile`` and describe a contact by the parameter t of that."""
+    shared: ClassVar[bool] = False
+    """Whether all asperities of an ensemble have one profile."""
+    flat: ClassVar[bool] = False
+    """Whether the tip is flat to one width."""
+    corner: ClassVar[bool] = False
+    """Whether g' is infinite at the edge of such a flat, or where a blunter tip ends."""
+    body_radius: ClassVar[tuple[str, ...]] = ()
+    """The parameters whose sum is the radius where the body that the profile stands for ends."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "units" in vars(cls) and "parameter_sets" not in vars(cls):
+            cls.parameter_sets = (tuple(cls.units),)
 
     @abstractmethod
     def f(self, r: ArrayLike) -> Floats:
-        """Profile at radius r >= 0 [m], as [m]."""
+        """Return the profile [m] at radii r >= 0 [m]."""
+
+    def df(self, r: ArrayLike) -> Floats:
+        """Return f'(r) [1] at radii r >= 0 [m]."""
+        with np.errstate(all="ignore"):
+            return self.slopes(self.nondimensional(), check_radii("r", r))
 
     @abstractmethod
     def g(self, x: ArrayLike) -> Floats:
-        """MDR profile at x >= 0 [m], as [m]: g = |x| ∫_0^x f'(r)/sqrt(x^2 - r^2) dr (H 17)."""
+        """Return the MDR profile [m] at x >= 0 [m]: g = |x| ∫_0^x f'(r)/sqrt(x^2 - r^2) dr (H 17)."""
 
     @abstractmethod
     def G(self, a: ArrayLike) -> Floats:
-        """∫_0^a g dx at a >= 0 [m], as [m2]."""
+        """Return ∫_0^a g dx [m2] at a >= 0 [m]."""
 
     @classmethod
     @abstractmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        """f'(r) [1] of asperities at one radius r [m] each."""
-
-    def df(self, r: ArrayLike) -> Floats:
-        """f'(r) [1] at radius r >= 0 [m]."""
-        r = radii("r", r)
-        with np.errstate(all="ignore"):
-            return self.slopes({name: np.full_like(r, value) for name, value in self.parameters.items()}, r)
-
-    @property
-    def end(self) -> float:
-        """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
-        return float(self.ends({name: np.array([value]) for name, value in self.parameters.items()})[0])
-
-    @classmethod
-    def ends(cls, parameters: dict[str, Floats]) -> Floats:
-        """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
-        return np.full(np.shape(next(iter(parameters.values()))), np.inf)
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
+        """Return f'(r) [1] at radii [m] of one asperity, or of one each, whose width, rise and params are given."""
 
     @classmethod
     @abstractmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """Width [m], rise [m] and form [1] of asperities whose parameters come as equally long arrays."""
+        """Return width [m], rise [m] and params [1] of asperities whose parameters are equally long arrays."""
+
+    @property
+    def limit(self) -> float:
+        """The radius [m] beyond which there is no profile; inf where it goes on for ever."""
+        return math.inf
+
+    @property
+    def end(self) -> float:
+        """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
+        return float(self.ends({name: np.array(value) for name, value in self.parameters.items()}))
 
     @classmethod
-    def spelling(cls, given: set[str]) -> tuple[str, ...]:
-        """The set of parameters that ``given`` names; ShapeError where it names none, or more than one."""
-        for spelling in cls.spellings:
-            if given == set(spelling):
-                return spelling
-        allowed = ", or ".join(" and ".join(spelling) for spelling in cls.spellings)
+    def ends(cls, parameters: dict[str, Floats]) -> Floats:
+        """Return ``end`` [m] of asperities."""
+        lengths = [parameters[name] for name in cls.body_radius]
+        return np.asarray(sum(lengths[1:], lengths[0]) if lengths else math.inf)
+
+    @classmethod
+    def branched(cls) -> bool:
+        """Return whether there can be more than one stable branch with adhesion."""
+        return False
+
+    @classmethod
+    def parameter_set(cls, given: set[str]) -> tuple[str, ...]:
+        """Return the set of parameters that ``given`` names; ShapeError where it names none, or more than one."""
+        for names in cls.parameter_sets:
+            if given == set(names):
+                return names
+        allowed = ", or ".join(" and ".join(names) for names in cls.parameter_sets)
         got = " and ".join(name for name in cls.units if name in given) or "nothing"
         raise ShapeError(f"{cls.name}: got {got}; it takes {allowed}")
 
     @classmethod
     def least_exponent(cls, params: Floats) -> float:
-        """The least n among the tips f ~ r^n of asperities, from the third column of ``nondimensionalise``."""
+        """Return the least n among tips f ~ r^n of asperities; inf where the exponent is no parameter."""
         return math.inf
 
     @classmethod
     def example(cls) -> dict[str, Any]:
-        """The parameters of any one of them."""
-        return dict.fromkeys(cls.spellings[0], 1.0)
+        """Return parameters of an example of the shape."""
+        return dict.fromkeys(cls.parameter_sets[0], 1.0)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -96,7 +122,7 @@ class Shape(ABC):
         return {name: value for name, value in values.items() if value is not None}
 
     def nondimensional(self) -> tuple[float, float, Any]:
-        """Width [m], rise [m] and form [1] of this one."""
+        """Return width [m], rise [m] and params [1] of this asperity."""
         parameters = {name: np.array([value], dtype=np.float64) for name, value in self.parameters.items()}
         with np.errstate(all="ignore"):  # what no float can hold is refused where a contact is looked for
             columns = self.nondimensionalise(parameters)
@@ -105,43 +131,50 @@ class Shape(ABC):
 
     def __post_init__(self) -> None:
         parameters = self.parameters
-        type(self).spelling(set(parameters))
+        self.parameter_set(set(parameters))
         for name, value in parameters.items():
-            check_one(type(self).name, name, value)
+            check_one(self.name, name, value)
         self.check(parameters)
         for name, value in parameters.items():
             object.__setattr__(self, name, float(value))
 
     @classmethod
     def check(cls, parameters: Mapping[str, ArrayLike]) -> None:
-        """ShapeError where a parameter, a number or an array over asperities, is out of its range."""
+        """Raise ShapeError where a parameter, a number or an array over asperities, is out of its range."""
         for name, values in parameters.items():
             check_positive(cls.name, name, values)
-        for name, floor, reason in cls.not_below:
-            values, least = np.atleast_1d(parameters[name]), np.atleast_1d(parameters[floor])
-            below = values < least
+        for name, bound, reason in cls.not_below:
+            values, lowest = np.atleast_1d(parameters[name]), np.atleast_1d(parameters[bound])
+            below = values < lowest
             if below.any():
                 where = "" if below.size == 1 else f" at asperity {int(np.argmax(below))}"
                 raise ShapeError(
-                    f"{cls.name}: {name} is {values[below][0]:g}{where}; it must be at least {floor}, "
-                    f"{least[below][0]:g}: {reason}"
+                    f"{cls.name}: {name} is {values[below][0]:g}{where}; it must be at least {bound}, "
+                    f"{lowest[below][0]:g}: {reason}"
                 )
 
 
 class ProfileShape(Shape):
-    """A shape whose MDR profile comes from the functions of its ``Profile``, compiled when they are first used."""
+    """A shape given by the functions of its ``Profile``, compiled when they are first used."""
 
     profile: ClassVar[Profile]
-    common: ClassVar[bool] = False
-    """Whether all asperities of an ensemble have the same profile."""
+    uses_profile = True
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "profile" in vars(cls):
+            cls.flat, cls.corner = cls.profile.flat, cls.profile.corner
+
+    @property
+    def limit(self) -> float:
+        return math.inf if math.isinf(self.profile.end) else self.profile.end * self.nondimensional()[0]
 
     @classmethod
     def branched(cls) -> bool:
-        """Whether there can be more than one stable branch with adhesion."""
-        return cls.profile.softening_count is not never_softens
+        return cls.profile.softening_count is not zero
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
-        """a [m], g [m] and a g - G [m2] at t with 40 digits."""
+        """Return a [m], g [m] and a g - G [m2] at t with 40 digits."""
         from mpmath import mp
 
         def remake(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -156,51 +189,44 @@ class ProfileShape(Shape):
             a, _, g, _ = remake(self.profile.mdr_profile)(mp.mpf(t), [params])
             return width * a, rise * g, width * rise * remake(self.profile.reduced_load)(mp.mpf(t), [params])
 
+    def f(self, r: ArrayLike) -> Floats:
+        from roughmdr.shapes import evaluate  # it alone needs the compiler
+
+        return evaluate.f_and_slopes(self.profile, self.name, self.nondimensional(), check_radii("r", r, self.limit))[0]
+
+    @classmethod
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
+        from roughmdr.shapes import evaluate
+
+        return evaluate.f_and_slopes(cls.profile, cls.name, columns, r)[1]
+
     def g(self, x: ArrayLike) -> Floats:
-        return self._along(radii("x", x), lambda curve, swept, t, params: curve(t, params)[2])
+        from roughmdr.shapes import evaluate
+
+        return evaluate.g(self.profile, self.name, self.nondimensional(), check_radii("x", x))
 
     def G(self, a: ArrayLike) -> Floats:
-        width = self.nondimensional()[0]
-        return width * self._along(radii("a", a), lambda curve, swept, t, params: swept(t, params))
+        from roughmdr.shapes import evaluate
 
-    def _along(self, radius: Floats, value: Callable[..., float]) -> Floats:
-        """The rise times ``value`` at each contact radius; 0 on the flat."""
-        from roughmdr.numerics.jit import compiled  # it alone needs the compiler
-
-        width, rise, params = self.nondimensional()
-        curve, swept, place = (
-            compiled(part) for part in (self.profile.mdr_profile, self.profile.mdr_integral, self.profile.t_of_radius)
-        )
-        numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
-        begin = width if self.profile.flat else 0.0
-        flat = [value(curve, swept, place(a, width, numbers), numbers) if a > begin else 0.0 for a in radius.flat]
-        results = rise * np.array(flat, dtype=np.float64).reshape(radius.shape)
-        if not np.isfinite(results).all():
-            worst = radius[~np.isfinite(results)].flat[0]
-            raise OutOfRange(f"{self.name}: a radius of {worst:g} m lies beyond what it can touch, or a float can hold")
-        return results
+        return evaluate.G(self.profile, self.name, self.nondimensional(), check_radii("a", a))
 
 
 class SharedProfile(ProfileShape):
-    """A curved shape that all asperities of an ensemble share, since its parameters are no plain numbers."""
+    """A shape whose parameters are arrays, so that all asperities of an ensemble share one profile."""
 
-    common: ClassVar[bool] = True
-    along: ClassVar[str]
-    """The dimension that the columns of an ensemble's Dataset lie over."""
+    shared = True
+    dimension: ClassVar[str]
+    """The dimension of these arrays in the Dataset of an ensemble."""
 
     @property
-    @abstractmethod
     def columns(self) -> dict[str, Floats]:
         """The parameters as equally long arrays."""
+        return dict[str, Any](self.parameters)
 
     @classmethod
-    @abstractmethod
-    def of_columns(cls, columns: dict[str, Floats]) -> "SharedProfile":
-        """The shape of such arrays; ShapeError as the shape itself."""
-
-    @classmethod
-    def slopes(cls, parameters: dict[str, Any], r: Floats) -> Floats:
-        return cls(**parameters).df(r)
+    def from_columns(cls, columns: dict[str, Floats]) -> Self:
+        """Return the shape of such arrays; ShapeError as the shape itself."""
+        return cls(**columns)
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
@@ -211,27 +237,27 @@ class SharedProfile(ProfileShape):
         return math.inf
 
 
-def radii(name: str, values: ArrayLike, most: float = math.inf) -> Floats:
-    """``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``most``."""
+def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats:
+    """Return ``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``limit``."""
     try:
         numbers = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise OutOfRange(f"{name} is {values!r}; it must be numbers, finite and at least 0") from None
-    wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= most))
+    wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= limit))
     if wrong.any():
-        above = "" if math.isinf(most) else f" and at most {most:g} m"
+        above = "" if math.isinf(limit) else f" and at most {limit:g} m"
         raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0{above}")
     return numbers
 
 
 def check_one(owner: str, name: str, value: object) -> None:
-    """ShapeError unless ``value`` is a single thing that can be a number."""
+    """Raise ShapeError unless ``value`` is a single thing that can be a number."""
     if isinstance(value, bool | str | bytes) or np.ndim(value) != 0:  # type: ignore[arg-type]
         raise ShapeError(f"{owner}: {name} is {value!r}; it must be one number")
 
 
 def check_positive(owner: str, name: str, values: ArrayLike) -> None:
-    """ShapeError, naming the first of ``values`` that is not a finite number above 0."""
+    """Raise ShapeError, naming the first of ``values`` that is not a finite number above 0."""
     try:
         numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
     except (TypeError, ValueError, OverflowError):

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
-from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
+from roughmdr.shapes.base import ProfileShape
+from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, kink_at_one, one, q_of_radius
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
@@ -51,21 +48,17 @@ def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
 def _t_of_radius(radius: float, width: float, params: Params) -> float:
     if radius <= width:
         return radius / width
-    return 1.0 + swung(radius, width) / params[0]
+    return 1.0 + q_of_radius(radius, width, params) / params[0]
 
 
 def _t_of_q(q: float, params: Params) -> float:
     return 1.0 + q / params[0]
 
 
-def _one(params: Params) -> int:
-    return 1
-
-
 def _softening_interval(index: int, params: Params) -> tuple[float, float]:
     """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
     c = params[0]
-    low, high = 0.0, 0.61575390344349083  # its place for c = 0
+    low, high = 0.0, 0.61575390344349083  # q where it ends to fall for c = 0
     for _ in range(60):
         q = 0.5 * (low + high)
         square = 1.0 + q * q
@@ -74,10 +67,6 @@ def _softening_interval(index: int, params: Params) -> tuple[float, float]:
         else:
             high = q
     return 1.0, 1.0 + high / c
-
-
-def _at_the_blend(low: float, high: float, params: Params) -> bool:
-    return low < 1.0 < high
 
 
 @dataclass(frozen=True)
@@ -91,44 +80,27 @@ class CappedParaboloid(ProfileShape):
     cap_radius: float
     blend_radius: float
 
-    name: ClassVar[str] = "capped_paraboloid"
+    name = "capped_paraboloid"
     units: ClassVar[dict[str, str]] = {"radius": "m", "cap_radius": "m", "blend_radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius", "cap_radius", "blend_radius"),)
-    not_below: ClassVar[tuple[tuple[str, str, str], ...]] = (
-        ("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),
-    )
-    profile: ClassVar[Profile] = Profile(
+    body_radius = ("radius",)
+    not_below = (("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),)
+    profile = Profile(
         _mdr_profile,
         _reduced_load,
-        _mdr_integral,
-        _t_of_radius,
         _f_and_slope,
-        _one,
-        _softening_interval,
-        _at_the_blend,
+        _t_of_radius,
+        softening_count=one,
+        softening_interval=_softening_interval,
+        kink=kink_at_one,
+        mdr_integral=_mdr_integral,
         corner=True,
-        breakpoint_count=one_breakpoint,
+        breakpoint_count=one,
         breakpoint=breakpoint_at_one,
         t_of_q=_t_of_q,
     )
 
-    def f(self, r: ArrayLike) -> Floats:
-        r, b = radii("r", r), self.blend_radius
-        on_cap = np.minimum(r, b)
-        flank = (r - b).clip(min=0.0) * ((r + b) / (2.0 * self.radius))
-        return np.asarray(on_cap * (on_cap / (2.0 * self.cap_radius)) + flank)
-
-    @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        cap = r / parameters["cap_radius"]
-        return np.where(r <= parameters["blend_radius"], cap, r / parameters["radius"])
-
-    @classmethod
-    def ends(cls, parameters: dict[str, Floats]) -> Floats:
-        return parameters["radius"]
-
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """b, b^2/R2 and R2/R1."""
+        """Width b, rise b^2/R2 and flatness of the cap R2/R1."""
         blend, radius = parameters["blend_radius"], parameters["radius"]
         return blend, blend * (blend / radius), radius / parameters["cap_radius"]

@@ -1,13 +1,13 @@
 """The flat-ended cylindrical punch."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import Shape, radii
+from roughmdr.shapes.base import Shape, check_radii
 
 
 @dataclass(frozen=True)
@@ -16,25 +16,30 @@ class FlatPunch(Shape):
 
     radius: float
 
-    name: ClassVar[str] = "flat_punch"
+    name = "flat_punch"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
+    pinned = True
+    flat = True
+
+    @property
+    def limit(self) -> float:
+        return self.radius
 
     def f(self, r: ArrayLike) -> Floats:
-        return np.zeros_like(radii("r", r, most=self.radius))
+        return np.zeros_like(check_radii("r", r, self.limit))
 
     def g(self, x: ArrayLike) -> Floats:
-        return np.zeros_like(radii("x", x, most=self.radius))
+        return np.zeros_like(check_radii("x", x, self.limit))
 
     def G(self, a: ArrayLike) -> Floats:
-        return np.zeros_like(radii("a", a, most=self.radius))
+        return np.zeros_like(check_radii("a", a, self.limit))
 
     @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
         return np.zeros_like(r)
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """b, b and nothing."""
+        """Width and rise b."""
         radius = parameters["radius"]
         return radius, radius, np.zeros_like(radius)

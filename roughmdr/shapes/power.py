@@ -1,34 +1,34 @@
 """The power laws f(r) = rise (r/width)^n: the cone (n = 1), the paraboloid (n = 2) and any exponent (H 12, 26)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import Shape, radii
+from roughmdr.shapes.base import Shape, check_radii
 
 
 class _Power(Shape):
-    """The power laws' f, g and G, from width, rise and exponent."""
+    """f, g and G of the power laws, from width, rise and the exponent as params."""
 
     def f(self, r: ArrayLike) -> Floats:
         width, rise, exponent = self.nondimensional()
-        return np.asarray(rise * (radii("r", r) / width) ** exponent)
+        return np.asarray(rise * (check_radii("r", r) / width) ** exponent)
 
     def g(self, x: ArrayLike) -> Floats:
         from roughmdr.shapes.kappa import kappa  # it alone needs the compiler
 
-        return np.asarray(kappa(self.nondimensional()[2]) * self.f(radii("x", x)))
+        return np.asarray(kappa(self.nondimensional()[2]) * self.f(check_radii("x", x)))
 
     def G(self, a: ArrayLike) -> Floats:
-        radius = radii("a", a)
+        radius = check_radii("a", a)
         return np.asarray(radius * self.g(radius) / (self.nondimensional()[2] + 1.0))
 
     @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        width, rise, exponent = cls.nondimensionalise(parameters)
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
+        width, rise, exponent = columns
         with np.errstate(divide="ignore"):  # below n = 1 the tip is infinitely steep
             return np.asarray(exponent * rise / width * (r / width) ** (exponent - 1.0))
 
@@ -39,18 +39,13 @@ class Paraboloid(_Power):
 
     radius: float
 
-    name: ClassVar[str] = "paraboloid"
+    name = "paraboloid"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-
-    @classmethod
-    def ends(cls, parameters: dict[str, Floats]) -> Floats:
-        """R: there the sphere that the paraboloid stands for is over."""
-        return parameters["radius"]
+    body_radius = ("radius",)
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """R, R/2 and 2."""
+        """Width R and rise R/2."""
         radius = parameters["radius"]
         return radius, 0.5 * radius, np.full_like(radius, 2.0)
 
@@ -61,13 +56,12 @@ class Cone(_Power):
 
     slope: float
 
-    name: ClassVar[str] = "cone"
+    name = "cone"
     units: ClassVar[dict[str, str]] = {"slope": "1"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope",),)
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """One metre, S and 1."""
+        """Width 1 m and rise S."""
         slope = parameters["slope"]
         return np.ones_like(slope), slope, np.ones_like(slope)
 
@@ -76,8 +70,8 @@ class Cone(_Power):
 class PowerLaw(_Power):
     """f = c r^n (exponent n [1], coefficient c) or f = H (r/l)^n (exponent n, width l [m], rise H [m]).
 
-    c is the number that it is in metres; its unit, m^(1-n), changes with n. The second form keeps its numbers in range
-    for steep exponents. ShapeError unless all of one form are given, > 0.
+    c is the number that it is in metres; its unit, m^(1-n), changes with n. The second set keeps its numbers in range
+    for steep exponents. ShapeError unless all of one set are given, > 0.
     """
 
     exponent: float
@@ -85,12 +79,9 @@ class PowerLaw(_Power):
     width: float | None = None
     rise: float | None = None
 
-    name: ClassVar[str] = "power_law"
+    name = "power_law"
     units: ClassVar[dict[str, str]] = {"exponent": "1", "coefficient": "1", "width": "m", "rise": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (
-        ("exponent", "coefficient"),
-        ("exponent", "width", "rise"),
-    )
+    parameter_sets = (("exponent", "coefficient"), ("exponent", "width", "rise"))
 
     @classmethod
     def least_exponent(cls, params: Floats) -> float:
@@ -98,7 +89,7 @@ class PowerLaw(_Power):
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """l, H and n; with a coefficient, l is one metre."""
+        """Width l and rise H; with a coefficient 1 m and c."""
         exponent = parameters["exponent"]
         if "coefficient" in parameters:
             return np.ones_like(exponent), parameters["coefficient"], exponent

@@ -1,4 +1,4 @@
-"""The profile of every shape, for kernels that need to know nothing else of it; here the power laws' (H 12, 26)."""
+"""The ``Profile`` of each shape, for kernels that need nothing else of it; here those of the power laws (H 12, 26)."""
 
 import math
 from typing import Any
@@ -10,20 +10,12 @@ from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.profile import Params, Profile
 
 
-def _t_of_radius(radius: float, width: float, params: Params) -> float:
-    return radius / width
-
-
 def _paraboloid_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
     return a, 1.0, 2.0 * a * a, 4.0 * a
 
 
 def _paraboloid_reduced_load(a: float, params: Params) -> float:
     return 4.0 / 3.0 * (a * a * a)
-
-
-def _paraboloid_mdr_integral(a: float, params: Params) -> float:
-    return 2.0 / 3.0 * (a * a * a)
 
 
 def _paraboloid_f_and_slope(r: float, params: Params) -> tuple[float, float]:
@@ -52,17 +44,13 @@ def _cone_elastic_integral(a: float, params: Params) -> float:
 
 
 def _power_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
-    """The form is the exponent n, and kappa(n)."""
+    """Return the profile from params = (n, kappa(n))."""
     g = params[1] * a ** params[0]
     return a, 1.0, g, params[0] * g / a
 
 
 def _power_reduced_load(a: float, params: Params) -> float:
     return params[0] / (params[0] + 1.0) * params[1] * a ** params[0] * a
-
-
-def _power_mdr_integral(a: float, params: Params) -> float:
-    return params[1] * a ** params[0] * a / (params[0] + 1.0)
 
 
 def _power_f_and_slope(r: float, params: Params) -> tuple[float, float]:
@@ -79,7 +67,7 @@ def _power_elastic_integral(a: float, params: Params) -> float:
 
 
 def _power_roundings(params: Params) -> float:
-    """Those of any profile, and of t in its power."""
+    """Add the roundings of t in its power to those of any profile."""
     return 14.0 + params[0]
 
 
@@ -91,24 +79,13 @@ _POWERS: dict[type[Shape], Profile] = {
     Paraboloid: Profile(
         _paraboloid_mdr_profile,
         _paraboloid_reduced_load,
-        _paraboloid_mdr_integral,
-        _t_of_radius,
         _paraboloid_f_and_slope,
         elastic_integral=_paraboloid_elastic_integral,
     ),
-    Cone: Profile(
-        _cone_mdr_profile,
-        _cone_reduced_load,
-        _cone_reduced_load,
-        _t_of_radius,
-        _cone_f_and_slope,
-        elastic_integral=_cone_elastic_integral,
-    ),
+    Cone: Profile(_cone_mdr_profile, _cone_reduced_load, _cone_f_and_slope, elastic_integral=_cone_elastic_integral),
     PowerLaw: Profile(
         _power_mdr_profile,
         _power_reduced_load,
-        _power_mdr_integral,
-        _t_of_radius,
         _power_f_and_slope,
         elastic_integral=_power_elastic_integral,
         roundings=_power_roundings,
@@ -118,5 +95,5 @@ _POWERS: dict[type[Shape], Profile] = {
 
 
 def profile_of(shape: type[Shape]) -> Profile:
-    """The profile of a shape that is not a flat punch."""
+    """Return the profile of a shape that is not a flat punch."""
     return shape.profile if issubclass(shape, ProfileShape) else _POWERS[shape]

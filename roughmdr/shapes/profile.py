@@ -1,9 +1,9 @@
-"""What the kernels need to know of a profile: its MDR profile along the contact radius, in units of width and rise.
+"""The functions that the kernels need of a profile, in units of its width (radii) and its rise (depths).
 
-The functions are plain Python on ``elementary``, so that they can be compiled, or run with any number of digits.
-``t`` is the parameter that the shape chooses to count its contact radius by, growing with it: where a contact radius
-needs more digits than a float has (a corner, the equator of a sphere) it is not the radius itself. ``params`` holds the
-numbers, beside width and rise, that tell profiles of one shape apart.
+They are plain Python on ``vector_math``, so that they can be compiled, or run with any number of digits. ``t`` is the
+parameter by which the shape counts its contact radius a, and grows with it: a/width itself, unless a contact radius
+needs more digits than a float has (at a corner, at the equator of a sphere). ``params`` holds the numbers, besides
+width and rise, that tell profiles of one shape apart.
 """
 
 import math
@@ -13,91 +13,97 @@ from typing import Any, NamedTuple
 Params = Sequence[float]
 
 
-def never_softens(params: Params) -> int:
-    """No dip."""
+def zero(params: Params) -> int:
+    """Return 0, as a count of breakpoints or of softening intervals."""
     return 0
 
 
-def _no_softening_interval(index: int, params: Params) -> tuple[float, float]:
-    """Never called."""
-    return 0.0, 0.0
-
-
-def _smooth(low: float, high: float, params: Params) -> bool:
-    """No kink anywhere."""
-    return False
-
-
-def no_breakpoints(params: Params) -> int:
-    """No edge."""
-    return 0
-
-
-def _no_breakpoint(index: int, params: Params) -> tuple[float, float]:
-    """Never called."""
-    return 0.0, 0.0
-
-
-def one_breakpoint(params: Params) -> int:
-    """One edge."""
+def one(params: Params) -> int:
+    """Return 1, as a count of breakpoints or of softening intervals."""
     return 1
 
 
+def _no_interval(index: int, params: Params) -> tuple[float, float]:
+    """Stand for the items of a count that is 0; never called."""
+    return 0.0, 0.0
+
+
 def breakpoint_at_one(index: int, params: Params) -> tuple[float, float]:
-    """At one width, from which on the profile is smooth in sqrt(x^2 - 1)."""
+    """Return a breakpoint at one width, from which on g is smooth in sqrt(x^2 - 1)."""
     return 1.0, 1.0
 
 
-def _few(params: Params) -> float:
-    """Those of a dozen operations, and of the powers of t up to the third."""
+def _no_kink(low: float, high: float, params: Params) -> bool:
+    """Return False: g' is smooth everywhere."""
+    return False
+
+
+def kink_at_one(low: float, high: float, params: Params) -> bool:
+    """Return whether t = 1, where g' has a kink, lies between low and high."""
+    return low < 1.0 < high
+
+
+def radius_over_width(radius: float, width: float, params: Params) -> float:
+    """Return t where it is the contact radius itself."""
+    return radius / width
+
+
+def q_of_radius(radius: float, width: float, params: Params) -> float:
+    """Return q = sqrt(a^2 - b^2)/b for a contact radius a >= b = ``width``."""
+    return float(((radius - width) / width) ** 0.5 * ((radius + width) / width) ** 0.5)
+
+
+def t_is_q(q: float, params: Params) -> float:
+    """Return t where it is q = sqrt(a^2 - 1)."""
+    return q
+
+
+def _default_roundings(params: Params) -> float:
+    """Return the roundings of a dozen operations, and of the powers of t up to the third."""
     return 16.0
 
 
-def _nothing(params: Any) -> None:
-    """Nothing more to find out."""
+def _nothing_to_precompute(params: Any) -> None:
+    """Leave ``params`` as it is."""
 
 
 class Profile(NamedTuple):
-    """A profile in units of its width (radii) and its rise (depths), over the contact radius a; g and G as in H 17."""
+    """The functions of a profile; g and G as in H 17."""
 
     mdr_profile: Callable[..., tuple[Any, Any, Any, Any]]
-    """(t, form) -> a, da/dt, g, dg/dt."""
+    """(t, params) -> a, da/dt, g, dg/dt."""
     reduced_load: Callable[..., Any]
-    """(t, form) -> ∫_0^a x g'(x) dx = a g - G, without their difference."""
-    mdr_integral: Callable[..., Any]
-    """(t, form) -> G."""
-    t_of_radius: Callable[[float, float, Params], float]
-    """(contact radius, width, form) -> t."""
+    """(t, params) -> ∫_0^a x g'(x) dx = a g - G, without that difference."""
     f_and_slope: Callable[..., tuple[Any, Any]]
-    """(r, form) -> f, df/dr."""
-    softening_count: Callable[[Params], int] = never_softens
-    """form -> how often sqrt(a) g'(a) falls on its way from 0 to infinity: each time two stable branches may part."""
-    softening_interval: Callable[[int, Params], tuple[float, float]] = _no_softening_interval
-    """(number, form) -> the t from which and to which it falls."""
-    kink: Callable[[float, float, Params], bool] = _smooth
-    """(low, high, form) -> whether g' is not smooth from low to high."""
+    """(r, params) -> f, df/dr."""
+    t_of_radius: Callable[[float, float, Params], float] = radius_over_width
+    """(contact radius, width, params) -> t."""
+    softening_count: Callable[[Params], int] = zero
+    """params -> number of intervals in which sqrt(a) g'(a) falls: each can part two stable branches."""
+    softening_interval: Callable[[int, Params], tuple[float, float]] = _no_interval
+    """(index, params) -> t at the beginning and at the end of such an interval."""
+    kink: Callable[[float, float, Params], bool] = _no_kink
+    """(low, high, params) -> whether g' is not smooth for t from low to high."""
+    mdr_integral: Callable[..., Any] | None = None
+    """(t, params) -> G; None where a g - reduced_load does not cancel: it does where g rises from 0 at the edge of a
+    flat, or next to one."""
     elastic_integral: Callable[..., Any] | None = None
-    """(t, form) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
+    """(t, params) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
     corner: bool = False
-    """Whether g' jumps up to infinity where it begins to fall."""
+    """Whether g' jumps up to infinity where sqrt(a) g' begins to fall."""
     flat: bool = False
-    """Whether the profile is flat to one width, so that g and t begin there."""
+    """Whether the profile is flat to one width, where g and t begin."""
     end: float = math.inf
     """The radius where the profile ends."""
-    breakpoint_count: Callable[[Params], int] = no_breakpoints
-    """form -> at how many radii g is not smooth."""
-    breakpoint: Callable[[int, Params], tuple[float, float]] = _no_breakpoint
-    """(number, form) -> such a radius, and the one y for which g is smooth in sqrt(x^2 - y^2) from there on."""
+    breakpoint_count: Callable[[Params], int] = zero
+    """params -> number of radii at which g is not smooth."""
+    breakpoint: Callable[[int, Params], tuple[float, float]] = _no_interval
+    """(index, params) -> such a radius, and the y for which g is smooth in sqrt(x^2 - y^2) from there on."""
     t_of_q: Callable[[float, Params], float] | None = None
-    """(q, form) -> t where q = sqrt(x^2 - y^2) beyond the edge y, where that has more digits than x itself."""
-    roundings: Callable[[Params], float] = _few
-    """form -> by how many roundings, of what they are, g and a g - G may be off, that of t among them."""
+    """(q, params) -> t at q = sqrt(x^2 - y^2) beyond the breakpoint y, where q has more digits than x."""
+    roundings: Callable[[Params], float] = _default_roundings
+    """params -> bound of the relative errors of g and reduced_load, that of t included, in units of 2^-53."""
     term_sizes: Callable[[float, Params], tuple[float, float]] | None = None
-    """(t, form) -> how large the terms are that g and push are the sums of; None where none of them cancel."""
-    precompute: Callable[[Any], None] = _nothing
-    """Fills in what else the functions need to know, in the second place of a form that is one number."""
-
-
-def swung(radius: float, width: float) -> float:
-    """q = sqrt(a^2 - b^2)/b for a contact radius a >= b = ``width``."""
-    return float(((radius - width) / width) ** 0.5 * ((radius + width) / width) ** 0.5)
+    """(t, params) -> sizes of the terms that g and reduced_load are sums of; None where the terms do not cancel."""
+    precompute: Callable[[Any], None] = _nothing_to_precompute
+    """(params) fills in what else the functions need, in the second element of parameters that are one number."""

@@ -1,29 +1,35 @@
-"""The power series f = sum of c r^n: any aspheric tip that grows with every term."""
+"""The power series f = sum of c r^n, c > 0."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import SharedProfile, check_one, check_positive, radii
+from roughmdr.shapes.base import SharedProfile, check_one, check_positive, check_radii
 from roughmdr.shapes.profile import Params, Profile
 
-_LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
-_STEEPEST = 1000.0  # exponent: of a steeper term floats hold radii within a factor of two only
+_MAX_LOG = 690.0  # e^690 = 1e299: a little inside the range of a float
+_MAX_EXPONENT = 1000.0  # a steeper term is a float for radii within a factor of two only
+
+
+def _sums(t: float, first: int, params: Params) -> tuple[float, float]:
+    """Return the sums of c t^n and of n c t^n, with the coefficients c at ``first`` and at every third place on."""
+    value, slope = 0.0, 0.0
+    for i in range(int(params[0])):
+        n, term = params[1 + 3 * i], params[first + 3 * i] * t ** params[1 + 3 * i]
+        value += term
+        slope += n * term
+    return value, slope
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
-    """g = sum of kappa(n) c a^n (H 26), term by term; a = t."""
-    g, slope = 0.0, 0.0
-    for i in range(int(params[0])):
-        n, term = params[1 + 3 * i], params[2 + 3 * i] * t ** params[1 + 3 * i]
-        g += term
-        slope += n * term
+    """g = sum of kappa(n) c a^n (H 26); params are the number of terms, and for each n, kappa(n) c and c."""
+    g, slope = _sums(t, 2, params)
     return t, 1.0, g, slope / t
 
 
@@ -32,14 +38,6 @@ def _reduced_load(t: float, params: Params) -> float:
     for i in range(int(params[0])):
         n = params[1 + 3 * i]
         total += n / (n + 1.0) * params[2 + 3 * i] * t**n
-    return total * t
-
-
-def _mdr_integral(t: float, params: Params) -> float:
-    total = 0.0
-    for i in range(int(params[0])):
-        n = params[1 + 3 * i]
-        total += params[2 + 3 * i] * t**n / (n + 1.0)
     return total * t
 
 
@@ -53,25 +51,17 @@ def _elastic_integral(t: float, params: Params) -> float:
 
 
 def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
-    f, slope = 0.0, 0.0
-    for i in range(int(params[0])):
-        n, term = params[1 + 3 * i], params[3 + 3 * i] * r ** params[1 + 3 * i]
-        f += term
-        slope += n * term
+    f, slope = _sums(r, 3, params)
     return f, slope / r if r > 0.0 else (math.inf if params[1] < 1.0 else (params[3] if params[1] == 1.0 else 0.0))
 
 
-def _t_of_radius(radius: float, width: float, params: Params) -> float:
-    return radius / width
-
-
 def _roundings(params: Params) -> float:
-    """Those of any profile, of each sum, and of t in the steepest power."""
+    """Add the roundings of each sum, and of t in the steepest power, to those of any profile."""
     return 14.0 + params[0] + params[3 * int(params[0]) - 2]
 
 
 def _kink(low: float, high: float, params: Params) -> bool:
-    """Where the steepest term grows by more than half, a few nodes do not integrate it to rounding."""
+    """Return whether the steepest term grows so much that a few nodes do not integrate it to rounding."""
     return params[3 * int(params[0]) - 2] * (high - low) > 0.5 * low
 
 
@@ -84,15 +74,13 @@ class PowerSeries(SharedProfile):
 
     terms: Mapping[float, float]
 
-    name: ClassVar[str] = "power_series"
+    name = "power_series"
     units: ClassVar[dict[str, str]] = {"exponent": "1", "terms": "1"}
-    along: ClassVar[str] = "term"
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("terms",),)
-    profile: ClassVar[Profile] = Profile(
+    parameter_sets = (("terms",),)
+    dimension = "term"
+    profile = Profile(
         _mdr_profile,
         _reduced_load,
-        _mdr_integral,
-        _t_of_radius,
         _f_and_slope,
         kink=_kink,
         elastic_integral=_elastic_integral,
@@ -110,8 +98,10 @@ class PowerSeries(SharedProfile):
                 check_one("power_series", "an exponent of terms", exponent)
             check_one("power_series", f"the coefficient of r^{exponent}", coefficient)
             check_positive("power_series", "an exponent of terms", exponent)
-            if float(exponent) > _STEEPEST:
-                raise ShapeError(f"power_series: an exponent of terms is {exponent}; it must be at most {_STEEPEST:g}")
+            if float(exponent) > _MAX_EXPONENT:
+                raise ShapeError(
+                    f"power_series: an exponent of terms is {exponent}; it must be at most {_MAX_EXPONENT:g}"
+                )
             check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
             if float(exponent) in seen:
                 raise ShapeError(f"power_series: terms holds the exponent {float(exponent):g} twice; add them up")
@@ -128,44 +118,42 @@ class PowerSeries(SharedProfile):
         return {"exponent": np.array(list(self.terms)), "terms": np.array(list(self.terms.values()))}
 
     @classmethod
-    def of_columns(cls, columns: dict[str, Floats]) -> "PowerSeries":
+    def from_columns(cls, columns: dict[str, Floats]) -> Self:
         exponents = columns["exponent"].tolist()
         for exponent in exponents:
             if exponents.count(exponent) > 1:
                 raise ShapeError(f"power_series: terms holds the exponent {exponent:g} twice; add them up")
         return cls(dict(zip(exponents, columns["terms"].tolist(), strict=True)))
 
-    def _summed(self, factors: Mapping[float, float], r: Floats, lower: float) -> Floats:
-        """Sum of factor r^(n - lower)."""
-        total: Floats = sum((factor * r ** (n - lower) for n, factor in factors.items()), np.zeros_like(r))
-        return total
-
+    # In the power of a steep term r/width has too few digits for f'.
     def f(self, r: ArrayLike) -> Floats:
-        return self._summed(self.terms, radii("r", r), 0.0)
+        r = check_radii("r", r)
+        return np.asarray(sum((c * r**n for n, c in self.terms.items()), np.zeros_like(r)))
 
     def df(self, r: ArrayLike) -> Floats:
+        r = check_radii("r", r)
         with np.errstate(all="ignore"):  # below n = 1 the tip is infinitely steep
-            return self._summed({n: n * c for n, c in self.terms.items()}, radii("r", r), 1.0)
+            return np.asarray(sum((n * c * r ** (n - 1.0) for n, c in self.terms.items()), np.zeros_like(r)))
 
     def nondimensional(self) -> tuple[float, float, Any]:
-        """The width where the first and the last term are equal, their rise there, and the reduced terms."""
+        """Return the width where the first and the last term are equal, the first term there, and the params."""
         from roughmdr.numerics import double_double as extended  # these alone need the compiler
         from roughmdr.shapes.kappa import precise_kappa
 
         (n, c), (n_last, c_last) = next(iter(self.terms.items())), list(self.terms.items())[-1]
         log_width = (math.log(c) - math.log(c_last)) / (n_last - n) if n_last > n else 0.0
         width = math.exp(min(max(log_width, -25.0), 5.0))  # lengths from 1e-11 to 100 m
-        per_power = extended.log((width, 0.0))
+        log_of_width = extended.log((width, 0.0))
         # A logarithm of hundreds has no more than 13 digits as one float.
         logs = [
-            extended.add(extended.log((factor, 0.0)), extended.multiply((exponent, 0.0), per_power))
+            extended.add(extended.log((factor, 0.0)), extended.multiply((exponent, 0.0), log_of_width))
             for exponent, factor in self.terms.items()
         ]
-        above = [extended.add(log, (-logs[0][0], -logs[0][1])) for log in logs]
-        if max(abs(log[0]) for log in (*logs, *above)) > _LOG_LARGEST:
+        ratios = [extended.add(log, (-logs[0][0], -logs[0][1])) for log in logs]
+        if max(abs(log[0]) for log in (*logs, *ratios)) > _MAX_LOG:
             raise OutOfRange(f"power_series: terms {dict(self.terms)} lie too far apart for floats")
         parts = [float(len(self.terms))]
-        for exponent, log in zip(self.terms, above, strict=True):
+        for exponent, log in zip(self.terms, ratios, strict=True):
             factor = extended.exp(log)
             parts += [exponent, extended.multiply(precise_kappa(exponent), factor)[0], factor[0]]
         return width, extended.exp(logs[0])[0], np.array(parts)
@@ -175,13 +163,13 @@ class PowerSeries(SharedProfile):
 
         with mp.workdps(40):
             a = mp.mpf(self.nondimensional()[0]) * mp.mpf(t)
-            g = push = mp.mpf(0)
+            g = load = mp.mpf(0)
             for exponent, coefficient in self.terms.items():
                 n = mp.mpf(exponent)
                 kappa = mp.sqrt(mp.pi) / 2 * n * mp.gamma(n / 2) / mp.gamma((n + 1) / 2)
                 term = kappa * mp.mpf(coefficient) * a**n
-                g, push = g + term, push + n / (n + 1) * term * a
-            return a, g, push
+                g, load = g + term, load + n / (n + 1) * term * a
+            return a, g, load
 
     @classmethod
     def least_exponent(cls, params: Floats) -> float:

@@ -2,24 +2,24 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import expm1, tanh
-from roughmdr.shapes.base import ProfileShape, radii
+from roughmdr.shapes.base import ProfileShape, check_radii
 from roughmdr.shapes.profile import Params, Profile
 from roughmdr.shapes.special import beyond_tanh
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
-    """a = tanh t, g = a artanh a."""
+    """g = a artanh a with a = tanh t."""
     growth = expm1(2.0 * min(t, 300.0))
     a = growth / (growth + 2.0)
-    narrowing = 4.0 * (growth + 1.0) / (growth + 2.0) / (growth + 2.0)  # 1 - a^2
-    return a, narrowing, a * t, a + t * narrowing
+    slope = 4.0 * (growth + 1.0) / (growth + 2.0) / (growth + 2.0)  # 1 - a^2
+    return a, slope, a * t, a + t * slope
 
 
 def _reduced_load(t: float, params: Params) -> float:
@@ -28,14 +28,8 @@ def _reduced_load(t: float, params: Params) -> float:
     return 0.5 * (beyond_tanh(t, a) + a * a * t)
 
 
-def _mdr_integral(t: float, params: Params) -> float:
-    """[(a^2 - 1) artanh a + a]/2."""
-    a = tanh(t)
-    return 0.5 * (a * a * t - beyond_tanh(t, a))
-
-
 def _roundings(params: Params) -> float:
-    """Those of any profile, and of t - tanh t where that is not yet a series."""
+    """Allow for t - tanh t where that is not yet a series."""
     return 40.0
 
 
@@ -54,29 +48,24 @@ class Sphere(ProfileShape):
 
     radius: float
 
-    name: ClassVar[str] = "sphere"
+    name = "sphere"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius",),)
-    profile: ClassVar[Profile] = Profile(
-        _mdr_profile, _reduced_load, _mdr_integral, _t_of_radius, _f_and_slope, end=1.0, roundings=_roundings
-    )
+    body_radius = ("radius",)
+    profile = Profile(_mdr_profile, _reduced_load, _f_and_slope, _t_of_radius, end=1.0, roundings=_roundings)
 
+    # Next to the equator r/R has too few digits for f and f'.
     def f(self, r: ArrayLike) -> Floats:
-        r = radii("r", r, most=self.radius)
+        r = check_radii("r", r, self.limit)
         return np.asarray(r * (r / (self.radius + np.sqrt((self.radius - r) * (self.radius + r)))))
 
     @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        radius = parameters["radius"]
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
+        radius = columns[0]
         with np.errstate(divide="ignore"):  # at the equator it is vertical
             return np.asarray(r / np.sqrt((radius - r).clip(min=0.0) * (radius + r)))
 
     @classmethod
-    def ends(cls, parameters: dict[str, Floats]) -> Floats:
-        return parameters["radius"]
-
-    @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """R, R and nothing."""
+        """Width and rise R."""
         radius = parameters["radius"]
         return radius, radius, np.zeros_like(radius)

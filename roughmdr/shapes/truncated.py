@@ -1,32 +1,31 @@
-"""Profiles with a flat tip that ends in a corner: the truncated cone and the truncated paraboloid."""
+"""Profiles with a flat tip that ends in a corner: the truncated cone and the truncated paraboloid; t is q."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
-from roughmdr.shapes.base import ProfileShape, radii
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one_breakpoint, swung
+from roughmdr.shapes.base import ProfileShape
+from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one, q_of_radius, t_is_q
 from roughmdr.shapes.special import less_atan
 
 # Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
-_CONE_DIP = 1.0424561234141570
-_PARABOLOID_DIP = 0.61575390344349083
+_CONE_SOFTENING_END = 1.0424561234141570
+_PARABOLOID_SOFTENING_END = 0.61575390344349083
 
-
-def _one(params: Params) -> int:
-    return 1
-
-
-def _t_of_radius(radius: float, width: float, params: Params) -> float:
-    return swung(radius, width)
-
-
-def _t_of_q(q: float, params: Params) -> float:
-    return q
+_TruncatedProfile = partial(
+    Profile,
+    t_of_radius=q_of_radius,
+    softening_count=one,
+    corner=True,
+    flat=True,
+    breakpoint_count=one,
+    breakpoint=breakpoint_at_one,
+    t_of_q=t_is_q,
+)
 
 
 def _cone_mdr_profile(q: float, params: Params) -> tuple[float, float, float, float]:
@@ -48,7 +47,7 @@ def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
 
 
 def _cone_softening_interval(index: int, params: Params) -> tuple[float, float]:
-    return 0.0, _CONE_DIP
+    return 0.0, _CONE_SOFTENING_END
 
 
 @dataclass(frozen=True)
@@ -58,34 +57,19 @@ class TruncatedCone(ProfileShape):
     slope: float
     flat_radius: float
 
-    name: ClassVar[str] = "truncated_cone"
+    name = "truncated_cone"
     units: ClassVar[dict[str, str]] = {"slope": "1", "flat_radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("slope", "flat_radius"),)
-    profile: ClassVar[Profile] = Profile(
+    profile = _TruncatedProfile(
         _cone_mdr_profile,
         _cone_reduced_load,
-        _cone_mdr_integral,
-        _t_of_radius,
         _cone_f_and_slope,
-        _one,
-        _cone_softening_interval,
-        corner=True,
-        flat=True,
-        breakpoint_count=one_breakpoint,
-        breakpoint=breakpoint_at_one,
-        t_of_q=_t_of_q,
+        softening_interval=_cone_softening_interval,
+        mdr_integral=_cone_mdr_integral,
     )
-
-    def f(self, r: ArrayLike) -> Floats:
-        return np.asarray(self.slope * (radii("r", r) - self.flat_radius).clip(min=0.0))
-
-    @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        return np.where(r > parameters["flat_radius"], parameters["slope"], 0.0)
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """b, S b and nothing."""
+        """Width b and rise S b."""
         flat = parameters["flat_radius"]
         return flat, parameters["slope"] * flat, np.zeros_like(flat)
 
@@ -109,7 +93,7 @@ def _paraboloid_f_and_slope(r: float, params: Params) -> tuple[float, float]:
 
 
 def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, float]:
-    return 0.0, _PARABOLOID_DIP
+    return 0.0, _PARABOLOID_SOFTENING_END
 
 
 @dataclass(frozen=True)
@@ -119,38 +103,19 @@ class TruncatedParaboloid(ProfileShape):
     radius: float
     flat_radius: float
 
-    name: ClassVar[str] = "truncated_paraboloid"
+    name = "truncated_paraboloid"
     units: ClassVar[dict[str, str]] = {"radius": "m", "flat_radius": "m"}
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("radius", "flat_radius"),)
-    profile: ClassVar[Profile] = Profile(
+    body_radius = ("radius",)
+    profile = _TruncatedProfile(
         _paraboloid_mdr_profile,
         _paraboloid_reduced_load,
-        _paraboloid_mdr_integral,
-        _t_of_radius,
         _paraboloid_f_and_slope,
-        _one,
-        _paraboloid_softening_interval,
-        corner=True,
-        flat=True,
-        breakpoint_count=one_breakpoint,
-        breakpoint=breakpoint_at_one,
-        t_of_q=_t_of_q,
+        softening_interval=_paraboloid_softening_interval,
+        mdr_integral=_paraboloid_mdr_integral,
     )
-
-    def f(self, r: ArrayLike) -> Floats:
-        r, b = radii("r", r), self.flat_radius
-        return np.asarray((r - b).clip(min=0.0) * ((r + b) / (2.0 * self.radius)))
-
-    @classmethod
-    def slopes(cls, parameters: dict[str, Floats], r: Floats) -> Floats:
-        return np.where(r > parameters["flat_radius"], r / parameters["radius"], 0.0)
-
-    @classmethod
-    def ends(cls, parameters: dict[str, Floats]) -> Floats:
-        return parameters["radius"]
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """b, b^2/R and nothing."""
+        """Width b and rise b^2/R."""
         flat = parameters["flat_radius"]
         return flat, flat * (flat / parameters["radius"]), np.zeros_like(flat)

@@ -9,7 +9,7 @@ import numpy as np
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import FlatPunch, ProfileShape, Shape, Sphere
+from roughmdr.shapes import Shape
 from roughmdr.springs.reduced import reduced
 
 _FALL = 1e-12  # of the highest f, by which a function may fall: rounding
@@ -51,13 +51,12 @@ class OfShape:
     @property
     def limit(self) -> float:
         """The radius of a punch or a sphere."""
-        return self.shape.radius if isinstance(self.shape, FlatPunch | Sphere) else math.inf
+        return self.shape.limit
 
     @property
     def flat(self) -> float:
         """The radius of the flat at the tip."""
-        edged = isinstance(self.shape, ProfileShape) and self.shape.profile.flat
-        return self.shape.nondimensional()[0] if edged or isinstance(self.shape, FlatPunch) else 0.0
+        return self.shape.nondimensional()[0] if self.shape.flat else 0.0
 
     @property
     def start(self) -> float:

@@ -1,1 +1,1 @@
-"""Files that appear whole or not at all, and the labelled arrays in them."""
+"""Labelled arrays, and the netCDF files that hold them: read, validated, and written whole or not at all."""

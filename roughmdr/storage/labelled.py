@@ -1,4 +1,4 @@
-"""Arrays with dimensions, units and attributes: what becomes an xarray Dataset, or a file without importing xarray."""
+"""Labelled arrays: variables, coordinates and attributes as xarray has them, without the time to import xarray."""
 
 import hashlib
 from collections.abc import Hashable, Iterator, Mapping
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray as xr
 
-_TOGETHER = 2**16  # texts
+_TEXTS_AT_ONCE = 2**16
 
 
 class Array(NamedTuple):
@@ -22,7 +22,7 @@ class Array(NamedTuple):
 
 
 class Labelled(NamedTuple):
-    """Variables and coordinates, flat, as netCDF and xarray have them."""
+    """Variables and coordinates without groups, as in a netCDF file or a Dataset."""
 
     variables: dict[str, Array]
     coordinates: dict[str, Array]
@@ -30,7 +30,7 @@ class Labelled(NamedTuple):
 
     @property
     def sizes(self) -> dict[str, int]:
-        """The length of each dimension, in the order in which the variables name them."""
+        """Length of each dimension, in the order in which the variables name them."""
         sizes: dict[str, int] = {}
         for array in (*self.variables.values(), *self.coordinates.values()):
             sizes |= dict(zip(array.dims, array.values.shape, strict=True))
@@ -38,7 +38,7 @@ class Labelled(NamedTuple):
 
     @classmethod
     def of(cls, dataset: "xr.Dataset") -> "Labelled":
-        """The same from a Dataset."""
+        """Convert a Dataset."""
 
         def arrays(variables: "Mapping[Hashable, xr.DataArray]") -> dict[str, Array]:
             return {
@@ -49,7 +49,7 @@ class Labelled(NamedTuple):
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
 
     def checksum(self) -> str:
-        """A hash of the scene and of all arrays but the one that depends on the clock."""
+        """Return a hash of the scene and of all arrays but ``run_time``, which depends on the clock."""
         digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
         for name, array in sorted((self.variables | self.coordinates).items()):
             if name != "run_time":
@@ -58,8 +58,8 @@ class Labelled(NamedTuple):
                     digest.update(part)
         return digest.hexdigest()
 
-    def what_was_changed(self) -> str:
-        """Why the arrays are not to be believed: their attribute ``checksum``. Empty where it is as it must be."""
+    def integrity_fault(self) -> str:
+        """Return why the numbers cannot be trusted; empty if the attribute ``checksum`` matches the arrays."""
         if "checksum" not in self.attrs:
             return "has no checksum: its numbers may not be those that were written"
         if str(self.attrs["checksum"]) != self.checksum():
@@ -67,17 +67,17 @@ class Labelled(NamedTuple):
         return ""
 
     def to_xarray(self) -> "xr.Dataset":
-        """The same as a Dataset."""
+        """Convert to a Dataset."""
         import xarray as xr
 
         return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
 
 
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
-    """The bytes to hash: numbers as they are, texts with a zero between them; a part at a time."""
+    """Yield the bytes to hash, part by part: numbers as they are, texts separated by a zero byte."""
     if values.dtype.kind not in "OU":
         yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
         return
     texts = values.ravel()
-    for first in range(0, texts.size, _TOGETHER):
-        yield ("\0" * (first > 0) + "\0".join(map(str, texts[first : first + _TOGETHER].tolist()))).encode()
+    for first in range(0, texts.size, _TEXTS_AT_ONCE):
+        yield ("\0" * (first > 0) + "\0".join(map(str, texts[first : first + _TEXTS_AT_ONCE].tolist()))).encode()

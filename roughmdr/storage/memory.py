@@ -1,4 +1,4 @@
-"""How much memory this process may still have, and what keeps it from more."""
+"""The memory that this process can still get, and what limits it."""
 
 import math
 from collections.abc import Iterator
@@ -6,52 +6,52 @@ from contextlib import suppress
 from pathlib import Path
 
 from roughmdr.errors import StoreError
-from roughmdr.schema.wording import bytes_in_words
+from roughmdr.schema.wording import format_bytes
 
 
-def check_room(size: float, what: str, advice: str = "") -> None:
-    """StoreError, with figures, where ``what`` takes so many bytes more and cannot have them."""
-    if size > room()[0]:
+def check_memory(size: float, what: str, advice: str = "") -> None:
+    """Raise StoreError, with figures, if ``what`` takes ``size`` [byte] more than can be had."""
+    if size > available_memory()[0]:
         hint = advice and f"; {advice}"
-        raise StoreError(f"{what} takes about {bytes_in_words(size)} of memory, with {left_in_words()}{hint}")
+        raise StoreError(f"{what} takes about {format_bytes(size)} of memory, with {describe_available_memory()}{hint}")
 
 
-def left_in_words() -> str:
-    """How much memory is left, and of what."""
-    left, whole = room()
-    return f"{bytes_in_words(max(left, 0.0))} left of {whole or 'what nothing here tells'}"
+def describe_available_memory() -> str:
+    """Return how much memory is left, and of what, in words."""
+    left, limit = available_memory()
+    return f"{format_bytes(max(left, 0.0))} left of {limit or 'an unknown amount'}"
 
 
-def room() -> tuple[float, str]:
-    """How many bytes more this process can be given at most, and of what; inf where nothing tells."""
-    return min(_rooms(), default=(math.inf, ""))
+def available_memory() -> tuple[float, str]:
+    """Return how much more this process can be given [byte], and the limit in words; inf if it is not known."""
+    return min(_limits(), default=(math.inf, ""))
 
 
-def _rooms() -> Iterator[tuple[float, str]]:
-    held = _lines("/proc/self/status")
-    for name, has, words in (("AS", "VmSize", "address space (ulimit -v)"), ("DATA", "VmData", "data (ulimit -d)")):
-        limit = _limit(name)
-        if has in held and limit < math.inf:
-            yield limit - held[has], f"the {bytes_in_words(limit)} of {words}"
-    machine = _lines("/proc/meminfo")
-    if machine and "VmRSS" in held:
-        whole = machine["MemTotal"] + machine["SwapTotal"]
-        yield whole - held["VmRSS"], f"the {bytes_in_words(whole)} of this machine"
+def _limits() -> Iterator[tuple[float, str]]:
+    used = _read_sizes("/proc/self/status")
+    for name, key, words in (("AS", "VmSize", "address space (ulimit -v)"), ("DATA", "VmData", "data (ulimit -d)")):
+        limit = _resource_limit(name)
+        if key in used and limit < math.inf:
+            yield limit - used[key], f"the {format_bytes(limit)} of {words}"
+    machine = _read_sizes("/proc/meminfo")
+    if machine and "VmRSS" in used:
+        total = machine["MemTotal"] + machine["SwapTotal"]
+        yield total - used["VmRSS"], f"the {format_bytes(total)} of this machine"
 
 
-def _lines(path: str) -> dict[str, float]:
-    """The sizes [byte] in a file of the system; none where there is no such file."""
-    found = {}
+def _read_sizes(path: str) -> dict[str, float]:
+    """Return the sizes [byte] in a file of /proc; none if there is no such file."""
+    sizes = {}
     with suppress(OSError):
         for line in Path(path).read_text().splitlines():
             name, _, size = line.partition(":")
             if size.endswith(" kB"):
-                found[name] = 1024.0 * int(size[:-3])
-    return found
+                sizes[name] = 1024.0 * int(size[:-3])
+    return sizes
 
 
-def _limit(name: str) -> float:
-    """A limit [byte] that was set for this process."""
+def _resource_limit(name: str) -> float:
+    """Return a limit [byte] that was set for this process, inf if none was."""
     with suppress(ImportError, AttributeError):
         import resource
 

@@ -1,7 +1,8 @@
-"""Arrays into a netCDF-4 file, by one thread, piece by piece.
+"""Writing netCDF-4 files, by one thread, block by block.
 
-Where memory or the disk gives out while HDF5 converts texts, it frees what it never had, and the process dies. So all
-the room that a file can take is its own before anything is written, and texts go in a few at a time.
+If memory or disk space runs out while HDF5 converts strings, it frees memory that it never had, and the process dies.
+So all the disk space that a file can take is reserved before anything is written, and strings are written a few at a
+time.
 """
 
 import errno
@@ -11,44 +12,55 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.schema.wording import bytes_in_words
+from roughmdr.errors import StoreError
+from roughmdr.schema.wording import format_bytes
+from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.memory import check_room
-from roughmdr.storage.netcdf import LOCK, WORKING_MEMORY, pieces
+from roughmdr.storage.memory import check_memory
+from roughmdr.storage.netcdf_reading import LOCK, WORKING_MEMORY, blocks
 
 if TYPE_CHECKING:
     import netCDF4
 
-_UNABLE = (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS, errno.ENODEV)  # what disks say that give no room beforehand
-# What a file takes at most beside its numbers [byte]: in all, for each array and attribute, and for each text.
-_FILE, _ARRAY, _ATTRIBUTE, _TEXT = 2**15, 2**11, 2**8, 56
+_NOT_SUPPORTED = (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS, errno.ENODEV)  # file systems that cannot reserve space
+# Upper bounds of what a file takes besides its numbers [byte]: in all, for each array and attribute, and for each text.
+_FILE_OVERHEAD, _ARRAY_OVERHEAD, _ATTRIBUTE_OVERHEAD, _TEXT_OVERHEAD = 2**15, 2**11, 2**8, 56
+
+
+def write_netcdf(data: Labelled, path: Path, folder: Path | None = None) -> None:
+    """Write ``data`` to ``path`` atomically, through a temporary file in ``folder``; StoreError if that fails."""
+    with replace_atomically(path, folder) as temporary:
+        try:
+            write_arrays(data, temporary)
+        except RuntimeError as error:  # raised by the library
+            raise StoreError(f"{path}: cannot be written: {error}") from None
 
 
 def write_arrays(data: Labelled, path: Path) -> None:
-    """Make ``path``, which is there and empty, a netCDF-4 file; OSError, RuntimeError or MemoryError where that fails.
+    """Turn ``path``, an empty file, into a netCDF-4 file; OSError, RuntimeError or MemoryError if that fails.
 
-    OSError names the reason where the disk is full.
+    The OSError gives the size of the file if the disk is full.
     """
     import netCDF4
 
-    check_room(WORKING_MEMORY, "to write a file")
-    size = most_bytes(data)
+    check_memory(WORKING_MEMORY, "to write a file")
+    size = max_file_size(data)
     _reserve(path, size)
     with LOCK:
         with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
             _define(file, data)
         _reserve(path, size)
-        with netCDF4.Dataset(path, "r+") as file:  # what is too much is cut off at the end
+        with netCDF4.Dataset(path, "r+") as file:  # closing it truncates what is reserved in excess
             for name, array in (data.coordinates | data.variables).items():
                 values = array.values
-                for piece in pieces(values.shape):
-                    part = values[piece]
-                    file[name][piece] = part.astype(object) if part.dtype.kind == "U" else part
+                for block in blocks(values.shape):
+                    part = values[block]
+                    file[name][block] = part.astype(object) if part.dtype.kind == "U" else part
 
 
 def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
-    """All of a file but the values."""
-    beside = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
+    """Write everything but the values."""
+    auxiliary = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
     file.setncatts(data.attrs)
     for dimension, size in data.sizes.items():
         file.createDimension(dimension, size)
@@ -61,33 +73,34 @@ def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
             fill_value=np.nan if kind == "f" and name in data.variables else None,
         )
         variable.setncatts(array.attrs)
-        if name in data.variables and (apt := [other for other, dims in beside.items() if dims <= set(array.dims)]):
-            variable.coordinates = " ".join(apt)
+        matching = [other for other, dims in auxiliary.items() if dims <= set(array.dims)]
+        if name in data.variables and matching:
+            variable.coordinates = " ".join(matching)
 
 
 def _reserve(path: Path, size: int) -> None:
-    """Give a file room on the disk; OSError where there is not enough, or where it must not become so large."""
+    """Reserve disk space for a file; OSError if there is too little, or if no file may become so large."""
     if not hasattr(os, "posix_fallocate"):
         return
     with path.open("r+b") as file:
         try:
             os.posix_fallocate(file.fileno(), 0, size)
         except OSError as error:
-            if error.errno not in _UNABLE:
-                what = f"{os.strerror(error.errno or 0)}, and it takes up to {bytes_in_words(size)}"
-                raise OSError(error.errno, what) from None
+            if error.errno not in _NOT_SUPPORTED:
+                reason = f"{os.strerror(error.errno or 0)}, and it takes up to {format_bytes(size)}"
+                raise OSError(error.errno, reason) from None
 
 
-def most_bytes(data: Labelled) -> int:
-    """The most bytes that a file of these arrays takes."""
+def max_file_size(data: Labelled) -> int:
+    """Return an upper bound [byte] of the file that these arrays make."""
     arrays = [*data.variables.values(), *data.coordinates.values()]
     attrs = [data.attrs, *(array.attrs for array in arrays)]
-    said = sum(_ATTRIBUTE + len(str(value).encode()) for some in attrs for value in some.values())
-    return _FILE + said + sum(_ARRAY + _bytes_of(array.values) for array in arrays)
+    attr_size = sum(_ATTRIBUTE_OVERHEAD + len(str(value).encode()) for each in attrs for value in each.values())
+    return _FILE_OVERHEAD + attr_size + sum(_ARRAY_OVERHEAD + _size_in_file(array.values) for array in arrays)
 
 
-def _bytes_of(values: np.ndarray[Any, Any]) -> int:
+def _size_in_file(values: np.ndarray[Any, Any]) -> int:
     if values.dtype.kind not in "OU":
         return values.nbytes
-    letters = sum(len("".join(map(str, values[piece].ravel().tolist())).encode()) for piece in pieces(values.shape))
-    return letters + values.size * _TEXT
+    texts = sum(len("".join(map(str, values[block].ravel().tolist())).encode()) for block in blocks(values.shape))
+    return texts + values.size * _TEXT_OVERHEAD

@@ -333,7 +333,7 @@ def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
     done = CliRunner().invoke(main, ["run", str(tmp_path / "scene.toml"), "-o", str(out)])
     assert done.exit_code == 0, done.output
-    assert "adhesion     jkr in 1, dugdale in 1 of 2; least Tabor number" in done.output
+    assert "adhesion     jkr in 1, dugdale in 1 of 2; smallest Tabor number" in done.output
     with xr.open_dataset(out) as result:
         assert result.adhesion_law.to_numpy().ravel().tolist() == [1, 2]
     assert any("range of the adhesion" in line for line in make_plan(read(table)).left_out)

@@ -87,7 +87,7 @@ def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
         for name, value in (columns or shape.parameters).items():
-            data[name] = ((shape.along,), value) if columns else (("asperity",), [value])
+            data[name] = ((shape.dimension,), value) if columns else (("asperity",), [value])
         names = [*VARIABLES, "contact_radius_sum"]
         law = rm.load_separation(data, separation=path, effective_modulus=E, work=work, variables=names)
         expected = walk(shape, work, -path, 4.0 * shape.nondimensional()[0])
@@ -108,7 +108,7 @@ def test_their_energy_balance_closes(case: str) -> None:
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
         for name, value in (columns or shape.parameters).items():
-            data[name] = ((shape.along,), value) if columns else (("asperity",), [value])
+            data[name] = ((shape.dimension,), value) if columns else (("asperity",), [value])
         way = np.concatenate([way, np.linspace(way[-1], 0.02 * depth, 9), np.linspace(0.02 * depth, way[-1], 9)])
         law = rm.load_separation(data, separation=way, effective_modulus=E, work=work, variables=VARIABLES)
         done = -float(np.trapezoid(law.force[:22_002], way[:22_002]))

@@ -166,7 +166,7 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
 def test_only_the_asked_totals_are_computed() -> None:
     asperities = Ensemble.from_dataset(ensemble([1e-6, 2e-6], radius=5e-5))
     route = LoadingPath.along(np.array([0.0]), unload=False, adhesive=True)
-    columns = asperities.columns()
+    columns = asperities.nondimensional()
     law = choose("paraboloid", Adhesion(W), columns[2])
     total, _, _ = loop.add_asperities(law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS})
     assert total[totals.RADIUS, 0] > 0.0

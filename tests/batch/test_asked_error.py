@@ -169,7 +169,7 @@ def test_to_prepare_for_the_expected_law_takes_one_asperity_and_nothing_where_it
     counts, contacts_of = list[int](), node.contacts_of
 
     def counting(asked: node.Problem, nodes: Nodes) -> list[Contact]:
-        counts.append(nodes.share.size)
+        counts.append(nodes.weights.size)
         return contacts_of(asked, nodes)
 
     monkeypatch.setattr(node, "contacts_of", counting)

@@ -111,8 +111,16 @@ FROM_FILE = dict.fromkeys(("shape", "count", "patch", "height", "radius"))
     [
         ("expected", {"realizations": 2}, "realizations: must be 1 with estimator 'expected'"),
         ("expected", {"asperities": asperities(height="1 um")}, "cannot be 'expected': all heights are the same"),
-        ("expected", {"asperities": asperities(correlation={"radius": 1.0})}, "the height alone tells the parameter"),
-        ("expected", {"asperities": asperities(correlation={"radius": -1.0})}, "the height alone tells the parameter"),
+        (
+            "expected",
+            {"asperities": asperities(correlation={"radius": 1.0})},
+            "the height alone determines the parameter",
+        ),
+        (
+            "expected",
+            {"asperities": asperities(correlation={"radius": -1.0})},
+            "the height alone determines the parameter",
+        ),
         ("expected", {"source": "file"}, "cannot be 'expected': nothing of source 'file' is drawn"),
         ("expected", {"source": "surface"}, "cannot be 'expected': nothing of source 'surface' is drawn"),
         ("stratified", {"source": "file"}, "cannot be 'stratified': nothing of source 'file' is drawn"),

@@ -15,7 +15,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.store import destination
+from roughmdr.storage.file_checks import destination
 
 FEW = {"source": "random", "shape": "paraboloid", "count": 20, "patch": "1 mm", "radius": "50 um"}
 PATH = {"separation": {"start": "2 sigma", "stop": "0 sigma", "steps": 5}}

@@ -1,4 +1,4 @@
-"""Cut distributions, two populations, heights that go with a parameter, drawn numbers of asperities, and places."""
+"""Truncated distributions, two populations, correlated heights, random numbers of asperities, and positions."""
 
 import math
 from pathlib import Path
@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.ensemble.random.distributions import Distribution
-from roughmdr.ensemble.random.reader import DistributionReader
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.scene import read
 
 UM = 1e-6
@@ -37,17 +37,17 @@ CUT = [
 @pytest.mark.parametrize(("entry", "known"), CUT)
 def test_a_cut_distribution_is_the_known_one(entry: dict[str, object], known: scipy.stats.rv_continuous) -> None:
     """Quantiles, density, mean and std; and no draw lies beyond the cut."""
-    law = DistributionReader("m", mean=0.0)(entry)
+    distribution = DistributionReader("m", mean=0.0)(entry)
     levels = np.array([1e-15, 1e-6, 0.1, 0.5, 0.9, 1 - 1e-3])
-    values = law.quantile(levels)
+    values = distribution.quantile(levels)
     np.testing.assert_allclose(values, known.ppf(levels), rtol=1e-12, atol=1e-14 * known.std())
-    np.testing.assert_allclose(law.density(values), known.pdf(values), rtol=1e-12)
-    np.testing.assert_allclose(law.of_scores(law.scores(values[1:-1])), values[1:-1], rtol=1e-8)
-    assert law.mean == pytest.approx(known.mean(), rel=1e-12)
-    assert law.std == pytest.approx(known.std(), rel=1e-10)
+    np.testing.assert_allclose(distribution.density(values), known.pdf(values), rtol=1e-12)
+    np.testing.assert_allclose(distribution.from_scores(distribution.scores(values[1:-1])), values[1:-1], rtol=1e-8)
+    assert distribution.mean == pytest.approx(known.mean(), rel=1e-12)
+    assert distribution.std == pytest.approx(known.std(), rel=1e-10)
     drawn = generate(height=entry, count=2000).height
-    assert law.min <= float(drawn.min())
-    assert float(drawn.max()) <= law.max
+    assert distribution.min <= float(drawn.min())
+    assert float(drawn.max()) <= distribution.max
 
 
 @settings(deadline=None, max_examples=40)
@@ -63,28 +63,28 @@ def test_scores_and_moments_of_any_cut_distribution(
     """Scores are the inverse of values; mean and std are those by integration of the density, in any unit."""
     uncut = Distribution(*family, 0.3 * unit, unit)
     least, most = uncut.quantile(np.array([low, high]))
-    law = Distribution(*family, 0.3 * unit, unit, float(least), float(most))
+    distribution = Distribution(*family, 0.3 * unit, unit, float(least), float(most))
     scores = np.linspace(-5.0, 5.0, 11)
-    np.testing.assert_allclose(law.scores(law.of_scores(scores)), scores, rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(distribution.scores(distribution.from_scores(scores)), scores, rtol=1e-8, atol=1e-9)
     nodes, weights = np.polynomial.legendre.leggauss(80)
     z = least + 0.5 * (most - least) * (1.0 + nodes)
-    mass = 0.5 * (most - least) * weights * law.density(z)
+    mass = 0.5 * (most - least) * weights * distribution.density(z)
     assert mass.sum() == pytest.approx(1.0, rel=1e-9)
-    assert mass @ z == pytest.approx(law.mean, rel=1e-9)
-    assert math.sqrt(mass @ (z - law.mean) ** 2) == pytest.approx(law.std, rel=1e-8)
+    assert mass @ z == pytest.approx(distribution.mean, rel=1e-9)
+    assert math.sqrt(mass @ (z - distribution.mean) ** 2) == pytest.approx(distribution.std, rel=1e-8)
 
 
 @pytest.mark.parametrize("rank", [-1.0, -0.6, 0.3, 1.0])
-def test_heights_and_radii_go_together_as_asked(rank: float) -> None:
-    """And each alone is what it was: the same heights, and radii from the same law."""
+def test_heights_and_radii_are_correlated(rank: float) -> None:
+    """Each alone is unchanged: the same heights, and radii from the same distribution."""
     plain, joined = generate(count=20_000), generate(count=20_000, correlation={"radius": rank})
     got = scipy.stats.spearmanr(joined.height, joined.radius).statistic
     assert got == pytest.approx(rank, abs=4.0 / np.sqrt(20_000))
     np.testing.assert_array_equal(plain.height, joined.height)
     spread = np.sqrt(np.log(1.0 + 0.1**2))
-    law = scipy.stats.lognorm(spread, scale=50 * UM / np.sqrt(1.0 + 0.1**2))
+    lognormal = scipy.stats.lognorm(spread, scale=50 * UM / np.sqrt(1.0 + 0.1**2))
     draws = [generate(realization=number, correlation={"radius": rank}).radius for number in range(40)]
-    levels = [scipy.stats.kstest(radius, law.cdf).pvalue for radius in draws]
+    levels = [scipy.stats.kstest(radius, lognormal.cdf).pvalue for radius in draws]
     assert scipy.stats.kstest(levels, "uniform").pvalue > 0.01  # levels of a right law are evenly spread
 
 
@@ -109,7 +109,7 @@ def test_the_number_of_asperities_follows_poisson() -> None:
     assert set(short.height.to_numpy()) <= set(long.height.to_numpy())  # the same draws, only fewer
 
 
-def test_an_ensemble_of_none_bears_nothing() -> None:
+def test_an_empty_ensemble_bears_no_force() -> None:
     few = {**{key: value for key, value in ASPERITIES.items() if key != "count"}, "density": 1e5}  # 0.1 on a patch
     result = rm.run(scene(asperities=few, batch={"realizations": 50}))
     empty = result.force.max("step") == 0.0
@@ -118,15 +118,15 @@ def test_an_ensemble_of_none_bears_nothing() -> None:
 
 
 def nearest(data: xr.Dataset) -> float:
-    """The least distance between two summits of a patch that repeats itself, over its side."""
+    """The smallest distance between two summits of a periodic patch, over its side."""
     places = np.column_stack([data.x, data.y]) / data.attrs["patch"]
     apart = np.abs(places[:, None] - places[None])
     apart = np.hypot(*np.minimum(apart, 1.0 - apart).T)
     return float(apart[np.triu_indices(len(places), 1)].min())
 
 
-def test_places() -> None:
-    """Within the patch, as far apart as asked, on as even a lattice as can be; and they never change the heights."""
+def test_positions() -> None:
+    """They lie within the patch, at the distance asked for or on a lattice, and never change the heights."""
     plain = generate(count=500)
     assert "x" not in plain
     for changes in (
@@ -146,7 +146,7 @@ def test_places() -> None:
 
 
 @pytest.mark.parametrize("distance", ["40 um", "33 um", "0.9 mm"])
-def test_places_that_do_not_fit_are_refused(distance: str) -> None:
+def test_positions_that_do_not_fit_are_refused(distance: str) -> None:
     with pytest.raises(rm.OutOfRange, match=r"do not fit so far apart on a patch of 0\.001 m; at random about"):
         generate(count=650, placement="hard_core", min_distance=distance)
 
@@ -167,16 +167,16 @@ def test_places_that_do_not_fit_are_refused(distance: str) -> None:
         ({"height": {"distribution": "normal", "std": UM, "min": 1.0}}, "next to nothing between min"),
     ],
 )
-def test_what_does_not_go_together_is_refused(changes: dict[str, object], says: str) -> None:
+def test_contradictory_keys_are_refused(changes: dict[str, object], says: str) -> None:
     with pytest.raises(rm.SceneError, match=says):
         generate(**changes)
 
 
 def test_an_ensemble_from_a_file_is_that_ensemble(tmp_path: Path) -> None:
-    """Its law is that of the ensemble in Python, in any order and unit; what is no ensemble is refused."""
+    """Its curves are those of the ensemble in Python, in any order and unit; other files are refused."""
     data = generate(count=300)
     path = [2 * UM, 0.5 * UM, 2 * UM]
-    law = rm.load_separation(data, separation=path, effective_modulus=4e6, work=0.05)
+    curves = rm.load_separation(data, separation=path, effective_modulus=4e6, work=0.05)
     turned = data.isel(asperity=slice(None, None, -1))
     turned["height"] = turned.height * 1e6
     turned["height"].attrs["units"] = "um"
@@ -188,7 +188,7 @@ def test_an_ensemble_from_a_file_is_that_ensemble(tmp_path: Path) -> None:
         batch=None,
     )
     run = rm.run(asked)
-    np.testing.assert_allclose(run.force[0], law.force, rtol=1e-9)
+    np.testing.assert_allclose(run.force[0], curves.force, rtol=1e-9)
     again = rm.generate(asked["asperities"], seed=0)
     np.testing.assert_allclose(again.height, data.height, rtol=1e-15)
     assert again.attrs["patch"] == data.attrs["patch"]
@@ -204,13 +204,13 @@ def test_an_ensemble_from_a_file_is_that_ensemble(tmp_path: Path) -> None:
 @pytest.mark.parametrize("end", [{"max": -20 * UM}, {"min": 20 * UM}])
 def test_moments_far_out_in_a_tail(end: dict[str, float]) -> None:
     """The excess over a cut far out is nearly exponential, with a mean of a twentieth of the std."""
-    law = DistributionReader("m", mean=0.0)({"distribution": "normal", "std": UM, **end})
-    assert abs(law.mean) - 20 * UM == pytest.approx(UM * (1 / 20 - 2 / 20**3), rel=1e-3)
-    assert law.std == pytest.approx(UM * (1 / 20 - 3 / 20**3), rel=1e-3)
+    distribution = DistributionReader("m", mean=0.0)({"distribution": "normal", "std": UM, **end})
+    assert abs(distribution.mean) - 20 * UM == pytest.approx(UM * (1 / 20 - 2 / 20**3), rel=1e-3)
+    assert distribution.std == pytest.approx(UM * (1 / 20 - 3 / 20**3), rel=1e-3)
 
 
-def test_scipy_does_not_warn_where_roughmdr_has_looked() -> None:
-    """Of what can be drawn from, and of what is refused."""
+def test_warnings_of_scipy_are_suppressed() -> None:
+    """Both where a distribution is read and where it is refused."""
     drawn = DistributionReader("m")({"distribution": "invgauss", "mu": 0.3541, "scale": 1e-6, "mean": 314.0})
     assert (np.diff(drawn.quantile(np.linspace(0.01, 0.99, 50))) >= 0.0).all()
     with pytest.raises(rm.RoughmdrError, match="cannot be drawn from"):
@@ -219,11 +219,11 @@ def test_scipy_does_not_warn_where_roughmdr_has_looked() -> None:
 
 @pytest.mark.parametrize("mu", [0.02, 0.1, 0.3, 1.0])
 @pytest.mark.parametrize("unit", [1e-9, 1.0])
-def test_moments_of_a_family_whose_inverse_is_lost_far_out(mu: float, unit: float) -> None:
+def test_moments_of_a_family_whose_inverse_is_wrong_far_out(mu: float, unit: float) -> None:
     """scipy's inverse of invgauss is wrong by up to 200 orders for fractions below 1e-16 to 1e-50."""
-    law = Distribution("invgauss", (mu,), 0.0, unit, min=-unit)  # which cuts nothing off
-    assert law.mean == pytest.approx(mu * unit, rel=1e-11, abs=0.0)
-    assert law.std == pytest.approx(mu**1.5 * unit, rel=1e-11, abs=0.0)
+    distribution = Distribution("invgauss", (mu,), 0.0, unit, min=-unit)  # which cuts nothing off
+    assert distribution.mean == pytest.approx(mu * unit, rel=1e-11, abs=0.0)
+    assert distribution.std == pytest.approx(mu**1.5 * unit, rel=1e-11, abs=0.0)
 
 
 def test_populations_so_far_apart_that_squares_overflow_have_a_spread() -> None:

@@ -1,4 +1,4 @@
-"""[accuracy] where few asperities bear most of the force: what draws have not met is known from their law."""
+"""[accuracy] where few asperities bear most of the force: the error includes rare ones that were not drawn."""
 
 import math
 from pathlib import Path
@@ -24,7 +24,7 @@ MODULUS, DEPTH = 4e6, 1e-6
 
 
 def cones(spread: float, count: int, relative: float, *, method: str = "sampled", **changes: Any) -> dict[str, Any]:
-    """Cones in a row, of which the inverse of the slope, and so the force, has this std over its mean."""
+    """Cones at one height whose inverse slope, and so their force, has this std over its mean."""
     slope = {"distribution": "lognorm", "s": math.sqrt(math.log1p(spread**2)), "loc": 0.0, "scale": 0.1}
     asperities = {"source": "random", "shape": "cone", "count": count, "patch": "1 mm", "height": "0 um"}
     return {
@@ -45,7 +45,7 @@ def mean_force(spread: float, count: int) -> float:
 
 @settings(deadline=None, max_examples=15)
 @given(st.floats(0.3, 30.0), st.integers(1, 2000), st.integers(16, 100_000))
-def test_what_has_not_been_met_is_what_the_law_has_beyond(spread: float, count: int, realizations: int) -> None:
+def test_unmet_variance_is_that_of_the_tail(spread: float, count: int, realizations: int) -> None:
     """The second moment of a lognormal force beyond the levels at which 4.6 of all draws are, about its mean.
 
     It is found between whole scores, and right to a tenth where it passes through the mean.
@@ -75,13 +75,13 @@ SKEWED: list[tuple[dict[str, Any], int]] = [
 ]
 
 
-def test_only_what_reaches_far_is_followed() -> None:
+def test_only_heavy_tailed_streams_are_followed() -> None:
     for changes in ORDINARY:
-        assert read(scene(asperities={**ASPERITIES, **changes})).asperities.far_reaching == ()
+        assert read(scene(asperities={**ASPERITIES, **changes})).asperities.heavy_tailed_streams == ()
     for changes, streams in SKEWED:
         section = read(scene(asperities={**ASPERITIES, **changes})).asperities
         assert isinstance(section, RandomAsperities)
-        assert len(section.far_reaching) == streams
+        assert len(section.heavy_tailed_streams) == streams
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_only_what_reaches_far_is_followed() -> None:
 def test_the_error_is_met_though_few_asperities_bear_most_of_the_force(
     spread: float, count: int, relative: float, method: str
 ) -> None:
-    """The true standard error is known; of independent draws it comes to that asked for in nearly all runs."""
+    """The true standard error is known; with independent draws it meets the one asked for in nearly all runs."""
     fewest = spread**2 / count / relative**2
     taken, errors = [], []
     for seed in range(20):
@@ -106,8 +106,8 @@ def test_the_error_is_met_though_few_asperities_bear_most_of_the_force(
         assert np.median(taken) < 3.0 * fewest
 
 
-def test_where_so_many_draws_cannot_promise_the_result_says_so() -> None:
-    """By its error, and in words."""
+def test_an_error_that_cannot_be_met_is_reported() -> None:
+    """By the error in the result, and by a warning."""
     table = cones(30.0, 20, 0.2)
     table["accuracy"]["max_realizations"] = 60
     with pytest.warns(rm.LimitWarning, match="too rare to be met by so many draws may bear much of the force"):

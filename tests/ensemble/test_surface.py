@@ -106,7 +106,7 @@ def test_a_useless_map_is_refused(tmp_path: Path, height: np.ndarray, extra: dic
         surface(path)
 
 
-def test_what_is_no_map_is_refused(tmp_path: Path) -> None:
+def test_invalid_maps_are_refused(tmp_path: Path) -> None:
     with pytest.raises(rm.SceneError, match="no such file"):
         surface(tmp_path / "none.nc")
     (tmp_path / "text.nc").write_text("not netCDF")
@@ -149,7 +149,7 @@ def test_area_positions_and_saddles_are_counted() -> None:
 
 @pytest.mark.parametrize(("side", "top"), [(0.5, 0.25**0.5 * 0.5 / (2 * 0.6)), (0.8, 0.0)])
 def test_a_top_beyond_the_neighbours_is_not_trusted(side: float, top: float) -> None:
-    """Drops of 0 and 1 before and behind, ``side`` beside: the fit peaks 0.83 of a spacing away, or 1.39 away."""
+    """Drops of 0 and 1 along one axis, ``side`` across: the fit peaks 0.83 of a spacing away, or 1.39 away."""
     height = np.full((5, 5), -9.0)
     height[1:4, 1:4] = [[-1.0, -1.0, -1.0], [-side, 0.0, -side], [-1e-9, -1e-9, -1e-9]]
     found = find_summits(HeightMap(height, 1.0, 1.0))
@@ -174,7 +174,7 @@ def test_the_paraboloid_goes_through_the_point_and_is_fitted_to_its_eight_neighb
     assert found.parameters["radius"].tolist() == [pytest.approx(unit / np.sqrt(A * C - B * B), rel=1e-9)]
 
 
-def test_rounding_is_no_roughness(tmp_path: Path) -> None:
+def test_rounding_is_not_roughness(tmp_path: Path) -> None:
     x, y = np.arange(60.0)[:, None], np.arange(50.0)[None, :]
     for name, height in (("plane", 1e-3 * x + 2e-3 * y), ("dome", -((x - 30.0) ** 2) - (y - 25.0) ** 2)):
         path = write_map(tmp_path / f"{name}.nc", 1e-9 * height)

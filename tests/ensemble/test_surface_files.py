@@ -1,4 +1,4 @@
-"""Height maps in files: every format gives the same asperities, and what is no map is refused in plain words."""
+"""Height maps in files: every format gives the same asperities, and invalid maps are refused."""
 
 import sys
 from collections.abc import Callable
@@ -36,7 +36,7 @@ def text(delimiter: str, encoding: str = "utf-8", header: str = "") -> Callable[
 
 
 def renamed(save: Callable[[Path, np.ndarray], None], suffix: str) -> Callable[[Path, np.ndarray], None]:
-    """Writes a file of one kind under the name of another."""
+    """Write a file of one kind under the name of another."""
 
     def write(path: Path, height: np.ndarray) -> None:
         save(path.with_name(f"other{suffix}"), height)
@@ -109,7 +109,7 @@ def test_another_variable_and_its_unit(tmp_path: Path) -> None:
     xr.testing.assert_allclose(found, generate(tmp_path / "map.nc"), rtol=1e-12)
 
 
-def test_numbers_of_single_precision_are_no_roughness(tmp_path: Path) -> None:
+def test_rounding_in_single_precision_is_not_roughness(tmp_path: Path) -> None:
     plane = np.add.outer(np.arange(60.0) / 7.0, np.arange(60.0) / 11.0) * 1e-6
     np.save(tmp_path / "single.npy", plane.astype(np.float32))
     with pytest.raises(rm.SceneError, match="has no summit"):
@@ -167,7 +167,7 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
     ("a.npy", GOOD, {"unit": "furlong"}, "unknown unit 'furlong'"),
     ("a.npy", GOOD, {"detrend": "cubic"}, "asperities.detrend = 'cubic': not available"),
     ("a.npy", GOOD, {"periodic": 1}, "asperities.periodic = 1"),
-    ("a.npy", GOOD, {"periodic": True, "detrend": "plane"}, "a periodic map has no trend to take out"),
+    ("a.npy", GOOD, {"periodic": True, "detrend": "plane"}, "a periodic map has no trend to remove"),
     ("a.npy", GOOD, {"cutoff": "1.9 um"}, "cutoff 1.9e-06 m must lie between two spacings, 2e-06 m"),
     (
         "a.npy",
@@ -189,7 +189,7 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
 
 
 @pytest.mark.parametrize(("name", "make", "keys", "says"), REFUSED)
-def test_what_is_no_map_is_refused(
+def test_invalid_maps_are_refused(
     tmp_path: Path, name: str, make: Callable[[Path], object], keys: dict[str, object], says: str
 ) -> None:
     make(tmp_path / name.rpartition("/")[2])
@@ -198,7 +198,7 @@ def test_what_is_no_map_is_refused(
         generate(tmp_path / name, **{key: value for key, value in asked.items() if value is not None})
 
 
-def test_a_unit_is_said_once(tmp_path: Path) -> None:
+def test_a_unit_is_given_once(tmp_path: Path) -> None:
     netcdf(tmp_path / "a.nc", bumps())
     with xr.open_dataset(tmp_path / "a.nc") as data:
         data["height"].attrs["units"] = "m"
@@ -207,7 +207,7 @@ def test_a_unit_is_said_once(tmp_path: Path) -> None:
         generate(tmp_path / "b.nc", unit="nm")
 
 
-def test_what_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", None)
     (tmp_path / "scan.spm").write_bytes(b"\\*File list\r\n")
     with pytest.raises(rm.SceneError, match=r"scan.spm: .spm is left to SurfaceTopography.*pip install 'roughmdr\[sur"):
@@ -215,7 +215,7 @@ def test_what_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 class Instrument(SimpleNamespace):
-    """A file as SurfaceTopography gives it, with one channel."""
+    """A file as SurfaceTopography reads it, with one channel."""
 
     def __init__(self, **changes: object) -> None:
         known = {"name": "Z", "dim": 2, "data_kind": SimpleNamespace(value="height"), "physical_sizes": (100.0, 300.0)}
@@ -240,7 +240,7 @@ def opened(monkeypatch: pytest.MonkeyPatch, path: Path, instrument: Instrument) 
     return path
 
 
-def test_what_an_instrument_says_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_instrument_file_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In angstroms, periodic, masked where undefined."""
     found = generate(opened(monkeypatch, tmp_path / "a.spm", Instrument()))
     np.save(tmp_path / "a.npy", np.where(bumps() > 1.5e-7, np.nan, bumps()))
@@ -259,7 +259,7 @@ def test_what_an_instrument_says_is_taken(tmp_path: Path, monkeypatch: pytest.Mo
         ({"physical_sizes": None}, "give size"),
     ],
 )
-def test_what_an_instrument_leaves_open_is_refused(
+def test_an_incomplete_instrument_file_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], says: str
 ) -> None:
     with pytest.raises(rm.SceneError, match=f"a.spm: .*{says}"):

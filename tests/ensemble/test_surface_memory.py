@@ -1,4 +1,4 @@
-"""A height map is worked on in blocks: little is held beside it, and where a block ends makes no difference."""
+"""Work on a height map in blocks takes little memory, and the size of the blocks makes no difference."""
 
 import tracemalloc
 from pathlib import Path
@@ -13,7 +13,7 @@ import roughmdr as rm
 from roughmdr.ensemble.maps import raw_map
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.resolution import measures
+from roughmdr.ensemble.maps.map_statistics import map_statistics
 from roughmdr.ensemble.maps.summits import find_summits
 
 POINTS = 1024
@@ -53,12 +53,12 @@ def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("gaps.npy", {"cutoff": "60 nm"}, 2.5),
     ],
 )
-def test_little_is_held_beside_the_map(
+def test_a_map_takes_little_extra_memory(
     maps: Path, name: str, keys: dict[str, object], most: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     section = {"source": "surface", "file": str(maps / name), **({} if ".nc" in name else {"size": "10.24 um"}), **keys}
     first = rm.generate(section, seed=0)  # and all that is imported for it
-    monkeypatch.setattr(raw_map, "_TOGETHER", 2**14)
+    monkeypatch.setattr(raw_map, "BLOCK_SIZE", 2**14)
     tracemalloc.start()
     try:
         again = rm.generate(section, seed=0)
@@ -77,7 +77,7 @@ def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> 
     assert (parts[0].start, parts[-1].stop) == (0, rows)
     for part in parts:
         assert part.start % together == 0
-        assert (part.stop - part.start - together) * columns < raw_map._TOGETHER
+        assert (part.stop - part.start - together) * columns < raw_map.BLOCK_SIZE
 
 
 @settings(deadline=None, max_examples=60)
@@ -88,7 +88,7 @@ def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> 
     share=st.sampled_from([0.0, 0.05]),
     seed=st.integers(0, 10**6),
 )
-def test_where_a_block_ends_makes_no_difference(
+def test_the_block_size_makes_no_difference(
     shape: tuple[int, int], together: int, periodic: bool, share: float, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -99,7 +99,7 @@ def test_where_a_block_ends_makes_no_difference(
     found = []
     for size in (2**20, together):
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(raw_map, "_TOGETHER", size)
+            patched.setattr(raw_map, "BLOCK_SIZE", size)
             surface = HeightMap(rough.copy(), 0.5, 0.7, periodic)
             try:
                 summits = find_summits(surface)
@@ -107,7 +107,7 @@ def test_where_a_block_ends_makes_no_difference(
                 bits = [column.tobytes() for column in columns], summits.attrs["saddles"], summits.nominal_area
             except rm.SceneError as error:
                 bits = str(error)
-            numbers = measures(surface)
+            numbers = map_statistics(surface)
             remove_trend(surface.height, "quadratic")
             if 2 * 0.7 <= 1.5 <= min(shape[0] * 0.5, shape[1] * 0.7):
                 remove_short_waves(surface, 1.5)

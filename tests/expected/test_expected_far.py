@@ -16,8 +16,8 @@ from oracles.quantile_means import mean_of_correlated, mean_of_heights, mean_of_
 from studies.all_distributions import Scene, draw, families, judge
 
 import roughmdr as rm
-from roughmdr.ensemble.nodes import Heights
-from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.population_nodes import heights_of
 from roughmdr.expected.heights import HeightTable
 
 UM = 1e-6
@@ -217,7 +217,7 @@ def test_the_table_of_heights_counts_them_all(a: float, b: float, loc: float, at
     """Below any height as many as the distribution has there, give or take what the table does not know."""
     distribution = Distribution("beta", (a, b), loc, 2 * UM)
     with np.errstate(all="ignore"):
-        table = HeightTable.of(Heights.of(distribution))
+        table = HeightTable.of(heights_of(distribution))
     y = np.array([2 * UM * at])
     below = table.between(np.array([-UM]), y)[0]
     loose = table.doubt[(table.low < y[0]) & (y[0] < table.high), 1].sum()

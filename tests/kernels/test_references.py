@@ -32,7 +32,7 @@ def shape_of(name: str, case: dict[str, Any]) -> Any:
     shape = SHAPES[name](**parameters)
     if "slopes" in case:  # the last bit of the spline's slopes depends on who solves for them
         shape.knot_slopes = np.array(case["slopes"])
-        for found in ("_pieces", "_form"):
+        for found in ("_pieces", "_params"):
             vars(shape).pop(found, None)
     return shape
 

@@ -14,7 +14,7 @@ from scipy.special import digamma, gamma
 
 import roughmdr as rm
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import write
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 
@@ -130,7 +130,7 @@ def test_every_number_has_a_unit_and_a_name_and_goes_to_a_file(result: xr.Datase
     for name, array in result.variables.items():
         assert array.attrs["long_name"], name
         assert "units" in array.attrs or array.dtype.kind == "U", name
-    write(Labelled.of(result), tmp_path / "one_asperity.nc")
+    write_netcdf(Labelled.of(result), tmp_path / "one_asperity.nc")
     with xr.open_dataset(tmp_path / "one_asperity.nc") as read:
         xr.testing.assert_equal(read.load(), result)
     for draw in PICTURES.values():

@@ -128,7 +128,7 @@ def special(folder: Path, tmp_path: Path) -> dict[str, Path]:
 def test_what_is_no_ordinary_file_is_not_read(folder: Path, special: dict[str, Path], name: str) -> None:
     path = special[name]
     says = {"folder": "is a folder; expected a file", "round": "cannot be read: Too many levels"}.get(
-        name, "no ordinary"
+        name, "not a regular"
     )
     assert says in checked(f"info {path}").output
     assert says in checked(f"generate {path} -o made.nc").output

@@ -24,7 +24,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.store import read as read_result
+from roughmdr.storage.result_file import read_result
 
 FEW = {**ASPERITIES, "count": 20}
 PATH = {"separation": {"start": "3 um", "stop": "0 um", "steps": 6}, "unload": True}
@@ -210,7 +210,7 @@ def test_a_result_that_was_changed_is_not_used_again(change: str, tmp_path: Path
 def test_a_result_in_the_classic_format_is_refused(tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
     rm.run(few()).to_netcdf(out, format="NETCDF3_64BIT")
-    with pytest.raises(rm.StoreError, match="made of letters"):
+    with pytest.raises(rm.StoreError, match="array of characters"):
         read_result(out)
 
 

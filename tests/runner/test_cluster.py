@@ -270,7 +270,7 @@ def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
         with running(Batch(folder, "--scheduler", cluster.address, *options[:2])) as batch:
             status, said = batch.end()
         assert status == 2, said
-        assert "--tls-ca, --tls-cert and --tls-key go together" in said
+        assert "--tls-ca, --tls-cert and --tls-key must be given together" in said
         with running(Batch(folder, "--scheduler", cluster.address, *options)) as batch:
             assert batch.succeed() == RUNS
     assert_result(folder, curves)

@@ -38,7 +38,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import ShardStore
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.store import read as read_result
+from roughmdr.storage.result_file import read_result
 
 
 @pytest.fixture(scope="module")

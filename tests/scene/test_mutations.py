@@ -20,8 +20,8 @@ from scenes import ASPERITIES, SCENE
 from roughmdr.cli import main
 from roughmdr.errors import SceneError
 from roughmdr.scene import read
-from roughmdr.scene.keys import put, readers
-from roughmdr.scene.sections import Scene
+from roughmdr.scene.keys import key_readers, set_key
+from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
 
 _DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
@@ -141,7 +141,7 @@ def paths(table: dict[str, Any], at: str = "") -> Iterator[str]:
 
 def mutated(base: str, key: str, what: str, value: object) -> Mutation:
     table = copy.deepcopy(BASES[base])
-    put(table, key, value)
+    set_key(table, key, value)
     return Mutation(base, key, what, table)
 
 
@@ -161,7 +161,7 @@ def mutations() -> Iterator[Mutation]:
         for key in paths(table):
             if not key.startswith("asperities.terms."):
                 yield misspelt(base, key)
-        for key, reader in readers([Scene], table):
+        for key, reader in key_readers([Scene], table):
             if value_of(table, key) == {}:
                 continue
             if not reader.dimension:
@@ -311,7 +311,7 @@ def test_no_hint_suggests_what_is_spelt_otherwise(folder: Path, base: str, spelt
         table = with_key(base, at, SPELLINGS[spelt](key))
     else:
         table, key = copy.deepcopy(BASES[base]), data.draw(st.sampled_from(names))
-        put(table, key, SPELLINGS[spelt](value_of(table, key)))
+        set_key(table, key, SPELLINGS[spelt](value_of(table, key)))
     assert_no_hint_suggests_what_was_given(folder, table)
 
 

@@ -15,7 +15,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.scene.keys import put
+from roughmdr.scene.keys import set_key
 
 SMALL: dict[str, Any] = {**ASPERITIES, "count": 60}
 SHORT = {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 12}, "unload": True}
@@ -31,7 +31,7 @@ def single(table: dict[str, Any], values: dict[str, Any]) -> xr.Dataset:
     """The run of one cell's scene by itself."""
     alone = {key: value for key, value in scene(**table).items() if key != "sweep"}
     for key, value in values.items():
-        put(alone, key, value)
+        set_key(alone, key, value)
     return rm.run(alone)
 
 
@@ -262,7 +262,7 @@ def test_faults_stand_on_the_line_of_the_sweep(tmp_path: Path) -> None:
     with pytest.raises(rm.SceneError) as caught:
         read(tmp_path / "bad.toml")
     for fault, key in zip(caught.value.faults, ("adhesion.work", "asperities.hieght.std"), strict=True):
-        line = int(fault.place.rpartition(":")[2])
+        line = int(fault.location.rpartition(":")[2])
         assert key in lines[line - 1]
         assert fault.key.startswith(f"sweep.{key}")
 

@@ -1,6 +1,8 @@
 """f, g and G against integrals of the slope f' alone, and what a shape refuses."""
 
 import sys
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -61,6 +63,40 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
             for name, numbers in got.items():
                 error = abs(numbers[i] - exact[name]) / exact[name]
                 assert error <= (exponent + 8.0) * sys.float_info.epsilon, name
+
+
+b, S, R = 3e-7, 0.4, 2e-5
+EDGES: list[tuple[Any, Callable[[Real], Real], Callable[[Real], Real]]] = [
+    (rm.TruncatedCone(S, b), lambda r: S * max(r - b, 0), lambda r: S * (r > b)),
+    (rm.TruncatedParaboloid(R, b), lambda r: max(r**2 - mp.mpf(b) ** 2, 0) / (2 * R), lambda r: r / R * (r > b)),
+    (rm.RoundedCone(S, b), lambda r: S * (r**2 / (2 * b) if r < b else r - b / 2), lambda r: S * min(r / b, 1)),
+    (
+        rm.CappedParaboloid(R, 1e9 * R, b),
+        lambda r: (min(r, b) ** 2 / 1e9 + max(r**2 - mp.mpf(b) ** 2, 0)) / (2 * R),
+        lambda r: r / R / (1 if r > b else 1e9),
+    ),
+    (rm.RoundedPunch(b, R), lambda r: max(r - b, 0) ** 2 / (2 * R), lambda r: max(r - b, 0) / R),
+    (rm.Sphere(b), lambda r: b - mp.sqrt((b - r) * (b + r)), lambda r: r / mp.sqrt((b - r) * (b + r))),
+    (rm.PowerSeries({1.0: S, 2.0: 1 / R}), lambda r: S * r + r**2 / R, lambda r: S + 2 * r / R),
+]
+
+
+@pytest.mark.parametrize(("shape", "f", "slope"), EDGES, ids=lambda value: getattr(value, "name", ""))
+def test_profiles_are_right_next_to_an_edge_and_far_from_it(
+    shape: Any, f: Callable[[Real], Real], slope: Callable[[Real], Real]
+) -> None:
+    near = b * (1.0 + np.array([-1e-3, -1e-9, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1]))
+    radii = np.concatenate([b * 10.0 ** np.arange(-6.0, 7.0), near])
+    if shape.name == "sphere":
+        radii = radii[radii < b]
+    with mp.workdps(50):
+        for i, r in enumerate(map(mp.mpf, radii.tolist())):
+            assert abs(shape.f(radii)[i] - f(r)) <= 1e-15 * f(r)
+            assert abs(shape.df(radii)[i] - slope(r)) <= 1e-15 * slope(r)
+            # G = ∫ f' sqrt(a^2 - r^2) dr, with r = a sin(angle).
+            ends = [0, mp.pi / 2] if r <= b else [0, mp.asin(b / r), (mp.asin(b / r) + mp.pi / 2) / 2, mp.pi / 2]
+            exact = r**2 * mp.quad(lambda angle, r=r: slope(r * mp.sin(angle)) * mp.cos(angle) ** 2, ends)
+            assert abs(shape.G(radii)[i] - exact) <= 1e-12 * exact
 
 
 @pytest.mark.parametrize("n", [5e-324, 1e-18, 0.99e-18, 3e-5, 0.99e18, 1.01e18, 1.7e308])

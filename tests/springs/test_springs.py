@@ -15,7 +15,7 @@ import roughmdr as rm
 from roughmdr.springs import Springs, row
 from roughmdr.springs.reduced import reduced
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import write
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 _TABLE = np.linspace(0.0, 3.1e-4, 12)
 # Shape, E* [Pa], w [J/m^2], from nanometres to metres; the order of the force without adhesion.
@@ -263,7 +263,7 @@ def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     for name, array in result.variables.items():
         assert array.attrs["long_name"], name
         assert "units" in array.attrs or array.dtype.kind == "U", name
-    write(Labelled.of(result), tmp_path / "springs.nc")
+    write_netcdf(Labelled.of(result), tmp_path / "springs.nc")
     with xr.open_dataset(tmp_path / "springs.nc") as read:
         xr.testing.assert_equal(read.load(), result)
     for draw in PICTURES.values():

@@ -92,10 +92,10 @@ KNOWN: list[tuple[str, list[Callable[[Content], None]], str, str]] = [
     ("sweep", [values("asperities_radius", np.inf)], OF_RESULT[0], "asperities_radius is not finite"),
     ("curves", [values("force", np.nan)], OF_RESULT[0], "force is not finite, and status says that it was computed"),
     ("curves", [values("status", 7)], OF_RESULT[0], "status must be 0, 1 or 2"),
-    ("curves", [only("force", "contact_area", "contact_count", "stiffness")], OF_RESULT[2], "it holds none of force"),
-    ("statistics", [only("force_sem")], OF_RESULT[0], "it holds force_mean but no force_sem"),
+    ("curves", [only("force", "contact_area", "contact_count", "stiffness")], OF_RESULT[2], "it has none of force"),
+    ("statistics", [only("force_sem")], OF_RESULT[0], "it has force_mean but no force_sem"),
     ("statistics", [values("realization_count", np.nan)], OF_RESULT[0], "realization_count must be at least 0"),
-    ("accuracy", [values("accuracy_method", 7)], OF_RESULT[1], "accuracy_method holds a number that is none of its"),
+    ("accuracy", [values("accuracy_method", 7)], OF_RESULT[1], "accuracy_method has a value that is none of its"),
     *[
         ("curves", [all_failed, remarked], command, "nothing to draw: no run was computed")
         for command in OF_RESULT[2:4]

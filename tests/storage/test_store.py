@@ -17,7 +17,8 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.runner.run import execute
 from roughmdr.scene import read as read_scene
-from roughmdr.storage.store import read, replacing
+from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.result_file import read_result
 
 
 @pytest.fixture
@@ -26,7 +27,7 @@ def result(tmp_path: Path) -> xr.Dataset:
 
 
 def test_it_comes_back_as_it_was(result: xr.Dataset, tmp_path: Path) -> None:
-    assert read(tmp_path / "out.nc").to_xarray().identical(result)
+    assert read_result(tmp_path / "out.nc").to_xarray().identical(result)
     with xr.open_dataset(tmp_path / "out.nc", mask_and_scale=False) as opened:
         assert opened.equals(result)
     assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
@@ -45,7 +46,7 @@ def test_an_old_file_is_replaced(result: xr.Dataset, tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="seed was 7, is 8: give another output, or --fresh"):
         rm.run(scene(seed=8), tmp_path / "out.nc")
     again = rm.run(scene(seed=8), tmp_path / "out.nc", resume=False)
-    assert read(tmp_path / "out.nc").to_xarray().force.equals(again.force)
+    assert read_result(tmp_path / "out.nc").to_xarray().force.equals(again.force)
     assert not again.force.equals(result.force)
 
 
@@ -62,7 +63,7 @@ def test_a_failure_while_writing_leaves_the_old_file_and_no_other(tmp_path: Path
     target.write_text("old")
 
     def interrupted() -> None:
-        with replacing(target) as temporary:
+        with replace_atomically(target) as temporary:
             temporary.write_text("half")
             raise KeyboardInterrupt
 
@@ -73,19 +74,19 @@ def test_a_failure_while_writing_leaves_the_old_file_and_no_other(tmp_path: Path
 
 
 def test_a_disk_error_is_a_store_error(tmp_path: Path) -> None:
-    with pytest.raises(rm.StoreError, match="cannot be written"), replacing(tmp_path / "out.nc"):
+    with pytest.raises(rm.StoreError, match="cannot be written"), replace_atomically(tmp_path / "out.nc"):
         raise OSError(28, "No space left on device")
 
 
 def test_what_is_no_result_is_refused(tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="no such file"):
-        read(tmp_path / "none.nc")
+        read_result(tmp_path / "none.nc")
     (tmp_path / "text.nc").write_text("text")
     with pytest.raises(rm.StoreError, match="not a netCDF file"):
-        read(tmp_path / "text.nc")
+        read_result(tmp_path / "text.nc")
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "other.nc")
     with pytest.raises(rm.StoreError, match="not a result as roughmdr writes it"):
-        read(tmp_path / "other.nc")
+        read_result(tmp_path / "other.nc")
 
 
 _ENDLESS = """
@@ -108,15 +109,15 @@ def test_a_killed_run_leaves_a_whole_file_or_none(tmp_path: Path, pause: float) 
         process.stdout.readline()
         time.sleep(pause)
         os.kill(process.pid, signal.SIGKILL)
-    assert read(target).to_xarray().force.equals(rm.run(scene()).force)
+    assert read_result(target).to_xarray().force.equals(rm.run(scene()).force)
 
 
 def test_only_an_ordinary_file_that_is_no_input_is_replaced(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(rm.StoreError, match="no ordinary file"):
+    with pytest.raises(rm.StoreError, match="not a regular file"):
         rm.run(scene(), tmp_path / "pipe")
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene()))
-    with pytest.raises(rm.StoreError, match="is read from"):
+    with pytest.raises(rm.StoreError, match="is an input"):
         rm.run(tmp_path / "scene.toml", tmp_path / "scene.toml")
     assert (tmp_path / "pipe").is_fifo()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pipe", "scene.toml"]

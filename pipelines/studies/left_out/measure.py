@@ -106,7 +106,7 @@ def count(scene: Scene, path: LoadingPath | None = None, positions: bool = False
 
     sys.setprofile(see)
     try:
-        ensemble = scene.asperities.ensemble(scene.seed, 0, placed=positions)
+        ensemble = scene.asperities.ensemble(scene.seed, 0, with_positions=positions)
         found = compute(ensemble, path or make_plan(scene).cells[0].path, **arguments)
     finally:
         sys.setprofile(None)

@@ -26,7 +26,7 @@ class Inputs(NamedTuple):
         ensembles = {}
         for name, shape in SHAPES.items():
             given: dict[str, Any] = {
-                key: 1e2 * FILE_SIZE if shape.units[key] == "m" else 2.5 for key in shape.spellings[-1]
+                key: 1e2 * FILE_SIZE if shape.units[key] == "m" else 2.5 for key in shape.parameter_sets[-1]
             }
             if name == "power_series":
                 given = {"terms": {"2": 1e4, "4": 1e13}}

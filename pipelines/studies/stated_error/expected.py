@@ -19,8 +19,9 @@ from scipy.optimize import brentq
 from studies.stated_error.contacts import branch_numbers
 
 from roughmdr.asperity.contact import Contact
-from roughmdr.ensemble.nodes import Heights, Nodes, Rule, nodes_of
+from roughmdr.ensemble.nodes import Heights, Nodes, Rule
 from roughmdr.ensemble.random.population import Population, Populations
+from roughmdr.ensemble.random.population_nodes import nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.adhesion import release_stretch
@@ -69,17 +70,17 @@ class ExpectedForce:
         self.populations: Populations | None = None
         if isinstance(scene.asperities, RandomAsperities):
             # Heights are measured from where most of them are: far from there z - h would lose its digits.
-            populations = scene.asperities.law
-            datum = populations.populations[0].height.loc
+            populations = scene.asperities.populations
+            datum = populations.members[0].height.loc
             self.separation = separation - datum
-            moved = tuple(_lowered(each, datum) for each in populations.populations)
-            self.populations = replace(populations, populations=moved)
+            moved = tuple(_lowered(each, datum) for each in populations.members)
+            self.populations = replace(populations, members=moved)
 
     def force(self, order: int) -> Floats:
         """Return the force [N] at each step, with ``order`` nodes on each panel."""
         nodes = self._nodes(self._scores(order))
         total = np.zeros_like(self.separation)
-        for number, share in enumerate(nodes.share.tolist()):
+        for number, share in enumerate(nodes.weights.tolist()):
             total += share * _EqualTips(self, nodes, number).force(order)
         return self.scene.asperities.expected_count * total
 
@@ -91,7 +92,7 @@ class ExpectedForce:
     @cached_property
     def _count_of_three(self) -> int:
         """The number of nodes with three scores for each parameter."""
-        return self._nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).share.size
+        return self._nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).weights.size
 
     def _nodes(self, scores: Rule) -> Nodes:
         """Return the asperities that stand for all."""
@@ -128,7 +129,7 @@ class ExpectedForce:
     def _label(self, score: float) -> list[object]:
         """Return the ends of all that is in contact, by their names."""
         nodes = self._nodes(Rule(np.array([score]), np.ones(1)))
-        return [_EqualTips(self, nodes, number).label for number in range(nodes.share.size)]
+        return [_EqualTips(self, nodes, number).label for number in range(nodes.weights.size)]
 
 
 def _lowered(population: Population, datum: float) -> Population:
@@ -144,7 +145,7 @@ class _EqualTips:
     def __init__(self, expected: ExpectedForce, nodes: Nodes, number: int) -> None:
         source, scene = expected.scene.asperities, expected.scene
         values = {name: float(column[number]) for name, column in nodes.parameters.items()}
-        self.shape = source.fixed or SHAPES[source.shape_name](**values)
+        self.shape = source.shared_profile or SHAPES[source.shape_name](**values)
         self.contact = Contact.of(self.shape, scene.effective_modulus, scene.adhesion_model)
         self.heights: Heights = nodes.heights[number]
         self.separation = expected.separation

@@ -73,7 +73,7 @@ def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[N
     """Return the force [N] at each step, of the asperities of one realisation of a scene without a sweep."""
     source = scene.asperities
     drawn = source.ensemble(scene.seed, realization, stratified=scene.batch.estimator == "stratified")
-    columns = {} if drawn.fixed is not None else drawn.parameters
+    columns = {} if drawn.shared_profile is not None else drawn.parameters
     with mp.workdps(DIGITS):
         path = [mp.mpf(h) for h in separation.tolist()]
         total = [mp.mpf(0)] * len(path)
@@ -83,7 +83,7 @@ def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[N
             values = {name: float(column[number]) for name, column in columns.items()}
             key = tuple(values.values())
             if key not in contacts:
-                shape = source.fixed or SHAPES[source.shape_name](**values)
+                shape = source.shared_profile or SHAPES[source.shape_name](**values)
                 contacts[key] = contact_path(shape, scene, deepest)
             forces = contacts[key].forces([mp.mpf(z) - h for h in path])
             total = [one + other for one, other in zip(total, forces, strict=True)]

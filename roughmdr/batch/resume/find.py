@@ -12,9 +12,9 @@ from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.store import ShardStore
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
-from roughmdr.schema.toml_text import table_of
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import read
+from roughmdr.storage.result_file import read_result
 from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED
 
 _MOST_CHANGES = 5
@@ -28,17 +28,17 @@ def find_previous(target: Path) -> Labelled | None:
     if not target.exists():
         return None
     try:
-        old = read(target)
+        old = read_result(target)
     except StoreError as error:
         raise StoreError(f"{error}. It is there already: {_WAYS_OUT}") from None
-    if fault := old.what_was_changed():
+    if fault := old.integrity_fault():
         raise StoreError(f"{target}: {fault}: {_WAYS_OUT}")
     return old
 
 
 def is_finished(old: Labelled, plan: Plan, keys: Sequence[set[str]]) -> bool:
     """Whether a result is just what is asked for; ``keys`` are those that each cell may have."""
-    asked, was = (table_of(text) for text in (plan.scene.toml, old.attrs["scene"]))
+    asked, was = (parse_toml(text) for text in (plan.scene.toml, old.attrs["scene"]))
     same = all(asked.get(part) == was.get(part) for part in _SHAPING)
     same = same and list(asked.get("sweep", ())) == list(was.get("sweep", ()))  # in this order are its dimensions
     held = _keys(old)

@@ -10,8 +10,8 @@ from roughmdr.batch.plan import Cell, Plan
 from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
-from roughmdr.schema.toml_text import table_of
-from roughmdr.schema.wording import shown
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.wording import short_repr
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
 _LONG = 1000  # letters of a value, as of a path or a list of numbers, in a message
@@ -57,7 +57,7 @@ def _key(cell: Cell, estimator: str, known: dict[int, str]) -> str:
 
 def _asperities(section: Source) -> str:
     """A section in words, with what is in its file in place of its name."""
-    return repr(section.model_copy(update={"file": section.content}) if section.inputs else section)
+    return repr(section.model_copy(update={"file": section.content_hash}) if section.inputs else section)
 
 
 @lru_cache(maxsize=16)
@@ -67,12 +67,12 @@ def _path(separation: bytes) -> str:
 
 def changes(old: str, new: str) -> Iterator[str]:
     """What of a scene that matters is another in a new one; both in TOML."""
-    before, after = (_flat(table_of(text)) for text in (old, new))
+    before, after = (_flat(parse_toml(text)) for text in (old, new))
     for key in dict.fromkeys([*before, *after]):
         if key.startswith(_NO_MATTER) and key not in _MATTER:
             continue
         if before.get(key) != after.get(key):
-            was, now = (shown(side[key], _LONG) if key in side else "not given" for side in (before, after))
+            was, now = (short_repr(side[key], _LONG) if key in side else "not given" for side in (before, after))
             yield f"{key} was {was}, is {now}"
 
 

@@ -22,7 +22,8 @@ from typing import Any
 
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
-from roughmdr.storage.store import cannot_be_written, sync_folder
+from roughmdr.storage.atomic import sync_folder
+from roughmdr.storage.file_checks import convert_os_errors
 
 # What disks say that know no locks, as some of those that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
@@ -83,7 +84,7 @@ class ShardStore:
         """Keep a shard for good; StoreError where that fails, and then nothing is changed."""
         content, file = shard.dumped(), _SHARD.format(self._next)
         temporary = self.folder / f"{file}.tmp"
-        with cannot_be_written(self.folder):
+        with convert_os_errors(self.folder):
             try:
                 with temporary.open("wb") as written:
                     written.write(content)
@@ -107,7 +108,7 @@ class ShardStore:
 
     def remove(self) -> None:
         """Take away all that was written to the folder but the lock: while anything is in it, it is locked."""
-        with cannot_be_written(self.folder):
+        with convert_os_errors(self.folder):
             (self.folder / _MANIFEST).unlink(missing_ok=True)  # first: without it nothing else counts
             for path in self.folder.iterdir():
                 if _OWN.fullmatch(path.name):
@@ -135,7 +136,7 @@ class ShardStore:
 
     def _append(self, line: dict[str, Any]) -> None:
         manifest = self.folder / _MANIFEST
-        with cannot_be_written(self.folder), manifest.open("ab") as file:
+        with convert_os_errors(self.folder), manifest.open("ab") as file:
             before = file.tell()
             try:
                 file.write(json.dumps(line).encode() + b"\n")
@@ -154,10 +155,10 @@ def locked_store(target: Path) -> Iterator[ShardStore]:
     The folder goes away at the end if nothing is kept in it.
     """
     folder = store_folder(target)
-    with cannot_be_written(folder):
+    with convert_os_errors(folder):
         lock = _locked(folder, target)
     try:
-        with cannot_be_written(folder):
+        with convert_os_errors(folder):
             for path in folder.glob("*.tmp"):
                 if _OWN.fullmatch(path.name):
                     path.unlink()

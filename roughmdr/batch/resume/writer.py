@@ -12,7 +12,7 @@ from roughmdr.batch.resume.store import ShardStore, locked_store, store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.store import write
+from roughmdr.storage.netcdf_writing import write_netcdf
 from roughmdr.variables import FAILED
 
 _LONGEST = 255  # bytes of a file's name
@@ -68,7 +68,7 @@ class CheckpointWriter:
     def finish(self, result: Labelled, *, whole: bool) -> None:
         """Write the result; the parts go if it is ``whole``: if no run failed, and all that was kept is in it."""
         self.flush()
-        write(result, self.target, self._near())
+        write_netcdf(result, self.target, self._near())
         if self.parts is not None and whole:
             self.parts.remove()
 

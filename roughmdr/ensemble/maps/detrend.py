@@ -1,4 +1,4 @@
-"""What is taken out of a height map before its summits are looked for: its trend, and its short waves."""
+"""Remove the trend and the short waves of a height map before its summits are detected."""
 
 import math
 from typing import Literal
@@ -13,14 +13,14 @@ from roughmdr.numerics.arguments import Floats
 Trend = Literal["none", "mean", "plane", "quadratic"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "plane": 1, "quadratic": 2}
 
-_REACH = 1.5  # cut-offs: how far the Gaussian reaches; beyond, it is below 1e-14 of its height
-_AT_CUTOFF = 1e-9  # relative; a wave as long as the cut-off is kept
+_KERNEL_WIDTH = 1.5  # of the Gaussian, in cut-offs; beyond, it is below 1e-14 of its height
+_CUTOFF_RTOL = 1e-9  # a wave as long as the cut-off is kept
 
 
 def remove_trend(height: Floats, trend: Trend) -> None:
-    """Take the least-squares polynomial in x and y out of a map, in place; it is fitted to the points that are not NaN.
+    """Subtract a polynomial in x and y from a map, in place: the least-squares fit to the points that are not NaN.
 
-    "mean" leaves the mean 0, "plane" no tilt either, "quadratic" no curvature of the whole.
+    It is of degree 0 for "mean", 1 for "plane" and 2 for "quadratic".
     """
     if trend == "none":
         return
@@ -45,71 +45,69 @@ def remove_trend(height: Floats, trend: Trend) -> None:
 
 
 def remove_short_waves(surface: HeightMap, cutoff: float) -> None:
-    """Take waves shorter than ``cutoff`` [m] out of a map, in place.
+    """Remove waves shorter than ``cutoff`` [m] from a map, in place.
 
-    A periodic map is cut sharply in its spectrum. Any other is smoothed by the Gaussian that passes half of a wave of
-    the cut-off length, and 2^-(cutoff/length)^2 of any other (ISO 16610-61); at edges and beside undefined points, it
-    is the mean over what there is. SceneError where the cut-off does not fit the grid, or a periodic map has gaps.
+    The spectrum of a periodic map is cut sharply. Any other map is smoothed by the Gaussian filter that transmits half
+    of a wave of the cut-off length, and 2^-(cutoff/length)^2 of any other (ISO 16610-61); its weights are normalised at
+    edges and next to undefined points. SceneError where the cut-off does not fit the grid, or a periodic map has gaps.
     """
     height, dx, dy, periodic, _ = surface
     nx, ny = height.shape
-    least, most = 2.0 * max(dx, dy), min(nx * dx, ny * dy)
-    if not least <= cutoff <= most:
-        raise SceneError(
-            f"cutoff {cutoff:g} m must lie between two spacings, {least:g} m, and the map's shorter side, {most:g} m"
-        )
-    whole = surface.defined == height.size
-    if periodic and not whole:
+    shortest, longest = 2.0 * max(dx, dy), min(nx * dx, ny * dy)
+    if not shortest <= cutoff <= longest:
+        side = f"the map's shorter side, {longest:g} m"
+        raise SceneError(f"cutoff {cutoff:g} m must lie between two spacings, {shortest:g} m, and {side}")
+    complete = surface.defined == height.size
+    if periodic and not complete:
         raise SceneError("a periodic map with undefined points has no spectrum to cut: fill them or leave out cutoff")
     if periodic:
-        _cut(height, cutoff / dx, cutoff / dy)
+        _cut_spectrum(height, cutoff / dx, cutoff / dy)
         return
-    spacings = cutoff / dx, cutoff / dy
-    if whole:
+    if complete:
         weights = [np.ones((nx, 1)), np.ones((1, ny))]
     else:
         undefined = ~np.isfinite(height)
         weights = [1.0 - undefined]
         height[undefined] = 0.0
     for field in (height, *weights):
-        _smooth(field, *spacings)
+        _smooth(field, cutoff / dx, cutoff / dy)
     for weight in weights:
         height /= weight
-    if not whole:
+    if not complete:
         height[undefined] = np.nan
 
 
-def _cut(height: Floats, along_x: float, along_y: float) -> None:
-    """Cut waves that are shorter than so many spacings along x and y out of a periodic map, in place."""
+def _cut_spectrum(height: Floats, along_x: float, along_y: float) -> None:
+    """Remove waves shorter than so many spacings along x and y from a periodic map, in place."""
     from scipy import fft
 
     nx, ny = height.shape
     x, y = along_x * fft.fftfreq(nx), along_y * fft.rfftfreq(ny)
-    y = y[y <= 1.0 + _AT_CUTOFF]  # of the others nothing is left
+    y = y[y <= 1.0 + _CUTOFF_RTOL]  # no other is kept
     waves = np.empty((nx, y.size), dtype=np.complex128)
     for rows in blocks(nx, ny):
         waves[rows] = fft.rfft(height[rows])[:, : y.size]
     for columns in blocks(y.size, nx):
         part = fft.fft(waves[:, columns], axis=0)
-        part[np.hypot(x[:, None], y[columns]) > 1.0 + _AT_CUTOFF] = 0.0
+        part[np.hypot(x[:, None], y[columns]) > 1.0 + _CUTOFF_RTOL] = 0.0
         waves[:, columns] = fft.ifft(part, axis=0)
     for rows in blocks(nx, ny):
         height[rows] = fft.irfft(waves[rows], ny)
 
 
 def _smooth(field: Floats, along_x: float, along_y: float) -> None:
-    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; zeros lie around it.
+    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside.
 
-    It is the product of a Gaussian along x and one along y. An axis along which the field is one point long, because it
-    is the same everywhere, is left alone.
+    The Gaussian is a product of one along x and one along y. An axis with one point, along which the field is constant,
+    is skipped.
     """
     from scipy import fft
 
-    for turned, spacings in ((field.T, along_x), (field, along_y)):
-        n = turned.shape[1]
+    for rows_along, spacings in ((field.T, along_x), (field, along_y)):
+        n = rows_along.shape[1]
         if n == 1:
             continue
-        around = fft.next_fast_len(n + math.ceil(_REACH * spacings), real=True)
-        passed = np.exp2(-np.square(spacings * fft.rfftfreq(around)))
-        for rows in blocks(*turned.shape):
-            turned[rows] = fft.irfft(fft.rfft(turned[rows], around) * passed, around)[:, :n]
+        padded = fft.next_fast_len(n + math.ceil(_KERNEL_WIDTH * spacings), real=True)
+        transmission = np.exp2(-np.square(spacings * fft.rfftfreq(padded)))
+        for rows in blocks(*rows_along.shape):
+            rows_along[rows] = fft.irfft(fft.rfft(rows_along[rows], padded) * transmission, padded)[:, :n]

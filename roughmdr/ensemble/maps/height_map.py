@@ -1,4 +1,4 @@
-"""Height maps: whatever the format of the file, heights and spacings in metres, NaN where a point is undefined."""
+"""Height maps in metres, read from files of any format; undefined points are NaN."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,23 +6,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.maps.instrument import read_instrument
+from roughmdr.ensemble.maps.instrument_map import read_instrument
 from roughmdr.ensemble.maps.netcdf_map import read_netcdf
-from roughmdr.ensemble.maps.plain import read_npy, read_npz, read_text
+from roughmdr.ensemble.maps.plain_map import read_npy, read_npz, read_text
 from roughmdr.ensemble.maps.raw_map import RawMap, blocks, check_points
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.units import unit_factor
 
-_BY_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
+_READER_OF_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), read_netcdf),
     **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), read_text),
     ".npy": read_npy,
     ".npz": read_npz,
 }
-_BY_START = ((b"CDF", read_netcdf), (b"\x89HDF", read_netcdf), (b"\x93NUMPY", read_npy))
-_INSTRUMENTS_OWN = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does, and are none
+_READER_OF_MAGIC = ((b"CDF", read_netcdf), (b"\x89HDF", read_netcdf), (b"\x93NUMPY", read_npy))
+_INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
 
 
 class HeightMap(NamedTuple):
@@ -34,9 +34,9 @@ class HeightMap(NamedTuple):
     """Spacing along x [m]."""
     dy: float
     periodic: bool = False
-    """Whether the opposite edges meet."""
+    """Whether the map repeats beyond its edges."""
     rounding: float = 0.0
-    """What the number format of the file leaves of a height's last digits [m]."""
+    """Rounding error of a height in the number format of the file [m]."""
 
     @property
     def highest(self) -> float:
@@ -45,7 +45,7 @@ class HeightMap(NamedTuple):
 
     @property
     def defined(self) -> int:
-        """How many points have a height."""
+        """The number of points that have a height."""
         return sum(int(np.isfinite(self.height[rows]).sum()) for rows in blocks(*self.height.shape))
 
 
@@ -56,7 +56,7 @@ class Sides:
     _side = Quantity("m", above=0.0)
 
     def __call__(self, value: object) -> float | tuple[float, float]:
-        """The one side, or both, in SI."""
+        """Return one side, or both, in SI."""
         if not isinstance(value, list | tuple):
             return self._side(value)
         if len(value) != 2:
@@ -72,29 +72,29 @@ def read_map(
     channel: str | None = None,
     periodic: bool | None = None,
 ) -> HeightMap:
-    """The map in a file; ``size`` [m] and ``unit`` say what the file does not, ``channel`` which of its maps.
+    """Read the map of a file; ``size`` [m] and ``unit`` say what the file does not, ``channel`` which of its maps.
 
-    ``periodic`` overrules the file. SceneError, naming the file, where there is no map or too much or little is said.
+    ``periodic`` overrides the file. SceneError, naming the file, where there is no map, or these do not fit it.
     """
-    content = _content(path, channel)
-    values = content.height
+    raw = _read_raw(path, channel)
+    values = raw.height
     if values.dtype.kind not in "iuf":
         raise SceneError(f"{path}: heights are of type {values.dtype}; they must be real numbers")
-    dx, dy = _spacings(path, content, size, values.shape)
-    factor = _factor(path, content, unit)
+    dx, dy = _spacings(path, raw, size)
+    factor = _factor(path, raw, unit)
     eps = float(np.finfo(values.dtype).eps) if values.dtype.kind == "f" else 0.0
-    with np.errstate(over="ignore"):  # what no float can hold is undefined
+    with np.errstate(over="ignore"):  # a height out of range is undefined
         height = np.require(values, np.float64, "W")
         for rows in blocks(*height.shape):
             height[rows] *= factor
             height[rows][~np.isfinite(height[rows])] = np.nan
-    found = HeightMap(height, dx, dy, bool(content.periodic) if periodic is None else periodic)
-    if not found.defined:
+    surface = HeightMap(height, dx, dy, bool(raw.periodic) if periodic is None else periodic)
+    if not surface.defined:
         raise SceneError(f"{path}: all its {height.size} heights are undefined")
-    return found._replace(rounding=eps * found.highest)
+    return surface._replace(rounding=eps * surface.highest)
 
 
-def _content(path: Path, channel: str | None) -> RawMap:
+def _read_raw(path: Path, channel: str | None) -> RawMap:
     try:
         with path.open("rb") as file:
             start = file.read(8)
@@ -103,36 +103,34 @@ def _content(path: Path, channel: str | None) -> RawMap:
     if not start:
         raise SceneError(f"{path}: is empty")
     suffix = path.suffix.lower()
-    known = _BY_SUFFIX.get(suffix)
-    if known is None and suffix not in _INSTRUMENTS_OWN:
-        known = next((read for begins, read in _BY_START if start.startswith(begins)), None)
+    read = _READER_OF_SUFFIX.get(suffix)
+    if read is None and suffix not in _INSTRUMENT_SUFFIXES:
+        read = next((reader for magic, reader in _READER_OF_MAGIC if start.startswith(magic)), None)
     try:
-        content = (known or read_instrument)(path, channel)
-        check_points(content.height.shape)
+        raw = (read or read_instrument)(path, channel)
+        check_points(raw.height.shape)
     except RoughmdrError as error:
         raise SceneError(f"{path}: {error}") from error
-    return content
+    return raw
 
 
-def _factor(path: Path, content: RawMap, unit: str | None) -> float:
-    """What one unit of the heights is in metres."""
-    if unit is not None and content.unit is not None:
-        raise SceneError(f"{path}: the file says itself that heights are in {content.unit}; leave out unit = {unit!r}")
+def _factor(path: Path, raw: RawMap, unit: str | None) -> float:
+    """Return one unit of the heights in metres."""
+    if unit is not None and raw.unit is not None:
+        raise SceneError(f"{path}: the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}")
     try:
-        return float(unit_factor((content.unit if unit is None else unit) or "m", "m"))
+        return float(unit_factor((raw.unit if unit is None else unit) or "m", "m"))
     except RoughmdrError as error:
         raise SceneError(f"{path}: units of the heights: {error}") from None
 
 
-def _spacings(
-    path: Path, content: RawMap, size: float | tuple[float, float] | None, shape: tuple[int, ...]
-) -> tuple[float, float]:
-    nx, ny = shape
-    if content.spacing is not None:
+def _spacings(path: Path, raw: RawMap, size: float | tuple[float, float] | None) -> tuple[float, float]:
+    nx, ny = raw.height.shape
+    if raw.spacing is not None:
         if size is not None:
-            own = f"{content.spacing[0] * nx:.4g} m x {content.spacing[1] * ny:.4g} m"
-            raise SceneError(f"{path}: the file says itself that the map is {own}; leave out size")
-        return content.spacing
+            sides = f"{raw.spacing[0] * nx:.4g} m x {raw.spacing[1] * ny:.4g} m"
+            raise SceneError(f"{path}: the file says itself that the map is {sides}; leave out size")
+        return raw.spacing
     if size is None:
         raise SceneError(f'{path}: the file does not say how large the map is; give size, as size = "100 um"')
     if isinstance(size, tuple):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.datasets import opened
+from roughmdr.ensemble.from_file import open_dataset
 from roughmdr.ensemble.maps.raw_map import RawMap, blocks, check_points
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import unit_factor
@@ -14,20 +14,19 @@ from roughmdr.schema.units import unit_factor
 if TYPE_CHECKING:
     import xarray as xr
 
-_UNEVEN = 1e-3  # a spacing that varies by more than this part is no regular grid
+_MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
 
 
 def read_netcdf(path: Path, channel: str | None) -> RawMap:
-    """The variable ``channel``, or height, over x and y; fill values become NaN. RoughmdrError where there is none."""
+    """Read the variable ``channel``, or height; fill values become NaN. RoughmdrError where there is none."""
     name = channel or "height"
-    with opened(path) as dataset:
+    with open_dataset(path) as dataset:
         if name not in dataset.data_vars or dataset[name].ndim != 2:
             raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
         height = dataset[name]
         check_points(height.shape)
-        turned = height.dims == ("y", "x")
         values, dims = _values(height), height.dims
-        if turned:
+        if dims == ("y", "x"):
             values, dims = values.T, dims[::-1]
         dx, dy = (_spacing(dataset, str(dim)) for dim in dims)
         unit = str(height.attrs.get("units", "")).strip() or None
@@ -35,13 +34,13 @@ def read_netcdf(path: Path, channel: str | None) -> RawMap:
 
 
 def _values(height: "xr.DataArray") -> NDArray[Any]:
-    """Read in blocks, since what is packed or has fill values is several times as large while it is unpacked.
+    """Read heights in blocks, since packed ones take several times the memory while they are unpacked.
 
-    What the file compresses together is read together, and so only once.
+    Rows that the file compresses together are read together, and so only once.
     """
     values = np.empty(height.shape, height.dtype)
-    together = (height.encoding.get("chunksizes") or (1,))[0]
-    for rows in blocks(values.shape[0], values.shape[1], together):
+    chunk = (height.encoding.get("chunksizes") or (1,))[0]
+    for rows in blocks(values.shape[0], values.shape[1], chunk):
         values[rows] = height[rows].to_numpy()
     return values
 
@@ -49,17 +48,17 @@ def _values(height: "xr.DataArray") -> NDArray[Any]:
 def _spacing(dataset: "xr.Dataset", dim: str) -> float:
     if dim not in dataset.coords:
         raise RoughmdrError(f"the coordinate {dim} is missing; it says where the points lie")
-    along = dataset[dim]
-    if along.dtype.kind not in "iuf":
-        raise RoughmdrError(f"the coordinate {dim} is of type {along.dtype}; it must be numbers")
+    coordinate = dataset[dim]
+    if coordinate.dtype.kind not in "iuf":
+        raise RoughmdrError(f"the coordinate {dim} is of type {coordinate.dtype}; it must be numbers")
     try:
-        factor = float(unit_factor(str(along.attrs.get("units", "")), "m"))
+        factor = float(unit_factor(str(coordinate.attrs.get("units", "")), "m"))
     except RoughmdrError as error:
         raise RoughmdrError(f"units of {dim}: {error}") from None
-    with np.errstate(all="ignore"):  # what is not finite is not even
-        steps = np.diff(np.asarray(along.to_numpy(), dtype=np.float64) * factor)
+    with np.errstate(all="ignore"):  # steps that are not finite are not even
+        steps = np.diff(np.asarray(coordinate.to_numpy(), dtype=np.float64) * factor)
         mean = float(np.mean(steps))
-        uneven = not np.isfinite(mean) or mean == 0.0 or np.ptp(steps) > _UNEVEN * abs(mean)
+        uneven = not np.isfinite(mean) or mean == 0.0 or np.ptp(steps) > _MAX_UNEVENNESS * abs(mean)
     if uneven:
         raise RoughmdrError(f"the coordinate {dim} is not evenly spaced")
     return abs(mean)

@@ -1,4 +1,4 @@
-"""What a file says of its height map."""
+"""A height map as a file states it, and how maps are worked on in blocks of rows."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -7,14 +7,15 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError
 
-_TOGETHER = 2**20  # points of a block
+BLOCK_SIZE = 2**20
+"""Points of a block."""
 
 
 class RawMap(NamedTuple):
-    """A map as it stands in a file; None is what the file does not say."""
+    """A map as a file states it; None is what the file does not say."""
 
     height: NDArray[Any]
-    """Over x and y; not yet checked, and for whoever takes it to write to."""
+    """Over x and y, not yet checked; the reader may overwrite it."""
     unit: str | None = None
     """Of the heights."""
     spacing: tuple[float, float] | None = None
@@ -23,16 +24,16 @@ class RawMap(NamedTuple):
 
 
 def check_points(shape: tuple[int, ...]) -> None:
-    """RoughmdrError where a map of this shape has no inner point."""
+    """Raise RoughmdrError where a map of this shape has no inner point."""
     if len(shape) != 2 or min(shape) < 3:
         points = " x ".join(map(str, shape)) or "no"
         raise RoughmdrError(f"the map has {points} points; it needs at least 3 x 3, over two dimensions")
 
 
-def blocks(rows: int, columns: int, together: int = 1) -> Iterator[slice]:
-    """Some rows at a time of so many with so many columns: a map is worked on in parts that need little beside it.
+def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
+    """Yield slices over the rows of a map, which bound the memory that work on it takes.
 
-    Rows that belong ``together``, so many of them, are not parted.
+    ``chunk`` rows that belong together are never split.
     """
-    size = together * -(-_TOGETHER // (columns * together))
+    size = chunk * -(-BLOCK_SIZE // (columns * chunk))
     return (slice(first, min(first + size, rows)) for first in range(0, rows, size))

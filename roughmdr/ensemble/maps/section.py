@@ -1,4 +1,4 @@
-"""source = "surface": the summits of a measured height map, as paraboloids through points above their neighbours."""
+"""source = "surface": the summits of a measured height map, as paraboloids."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,21 +11,21 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import Sides, read_map
-from roughmdr.ensemble.maps.resolution import few_points, measures
+from roughmdr.ensemble.maps.map_statistics import map_statistics, resolution_warnings
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import SceneError
 from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
-_ROUNDING = 64 * np.finfo(float).eps  # of the largest height: what removing a trend may leave of nothing
+_ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
 
 
 class SurfaceAsperities(FromFile):
     """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``).
 
-    ``size`` and ``unit``, of the heights, describe a map whose file does not; ``channel`` chooses among the maps of a
-    file. ``detrend`` is what is taken out: "quadratic", of a periodic map "mean", unless it says otherwise.
-    ``periodic`` overrules the file. ``cutoff`` takes out shorter waves.
+    ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
+    file; ``periodic`` overrides the file. ``detrend`` is removed, by default "quadratic", or "mean" of a periodic map;
+    so are waves shorter than ``cutoff``.
     """
 
     source: Literal["surface"]
@@ -44,7 +44,6 @@ class SurfaceAsperities(FromFile):
         return value
 
     def read(self) -> Ensemble:
-        """The asperities of the map; SceneError where it cannot be read or has none."""
         path = Path(self.file)
         surface = read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
         noise = surface.rounding + _ROUNDING * surface.highest
@@ -52,7 +51,7 @@ class SurfaceAsperities(FromFile):
         try:
             if surface.periodic and trend in ("plane", "quadratic"):
                 raise SceneError(
-                    f'a periodic map has no trend to take out: detrend is {trend!r}; it must be "mean" or "none"'
+                    f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
                 )
             remove_trend(surface.height, trend)
             if self.cutoff is not None:
@@ -60,12 +59,13 @@ class SurfaceAsperities(FromFile):
             if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
                 raise SceneError(f"the map has no summit: with detrend {trend!r} it is flat, but for rounding")
             with np.errstate(over="ignore", under="ignore"):  # refused below
-                found = find_summits(surface, noise)
-            radius, area = found.parameters["radius"], found.nominal_area or 0.0
+                summits = find_summits(surface, noise)
+            radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
             if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
                 raise SceneError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
         except SceneError as error:
             raise SceneError(f"{self.file}: {error}") from None
-        asked = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
-        warnings = tuple(f"{path.name}: {text}" for text in few_points(float(found.attrs["points_per_summit"])))
-        return replace(found, attrs={**found.attrs, **measures(surface), **asked}, warnings=warnings)
+        options = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
+        attrs = {**summits.attrs, **map_statistics(surface), **options}
+        texts = resolution_warnings(float(summits.attrs["points_per_summit"]))
+        return replace(summits, attrs=attrs, warnings=tuple(f"{path.name}: {text}" for text in texts))

@@ -1,4 +1,4 @@
-"""The summits of a height map: where they are, and the paraboloid that fits each."""
+"""Find the summits of a height map, and fit a paraboloid to each."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,11 +11,11 @@ from roughmdr.ensemble.maps.raw_map import blocks
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 
-_AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
-class _Fitted(NamedTuple):
-    """Summits of a part of a map; lengths along x and y in spacings."""
+class _Fits(NamedTuple):
+    """Summits of a block of a map; lengths along x and y in spacings."""
 
     height: Floats
     x: Floats
@@ -27,20 +27,20 @@ class _Fitted(NamedTuple):
     fourth: Floats
     """h_xxyy."""
     candidates: int
-    """How many points stand above their neighbours, saddles among them."""
+    """The number of points above their neighbours, saddles included."""
 
 
 def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
-    """The points above all eight neighbours by more than ``noise`` [m], each with a paraboloid through the point.
+    """Return the summits of a map: points above all eight neighbours by more than ``noise`` [m].
 
-    To the eight neighbours the paraboloid is fitted by least squares. Its top is the summit; the radius is 1/sqrt(k1
-    k2), from the geometric mean of the principal curvatures: that of the sphere which an elliptic contact is best
-    replaced by (J. A. Greenwood, Wear 261 (2006) 191). A point whose paraboloid is a saddle is no summit, nor is one
-    beside an undefined point; the nominal area [m2] is that of the points that are defined. SceneError where no summit
-    is found.
+    The paraboloid through such a point is fitted to the neighbours by least squares. Its top is the summit; its radius
+    is 1/sqrt(k1 k2), from the geometric mean of the principal curvatures, that of the sphere which best replaces an
+    elliptic contact (J. A. Greenwood, Wear 261 (2006) 191). A point whose paraboloid is a saddle is not a summit, nor
+    is one next to an undefined point; the nominal area [m2] is that of the defined points. SceneError where there is no
+    summit.
 
-    Attributes: ``points_per_summit``; ``saddles``, the points left out as such; ``misfit``, the fourth difference
-    h_xxyy over the second, h_xx + h_yy, both r.m.s. over the summits: what the fit leaves over what it finds.
+    Attributes: ``points_per_summit``; ``saddles``, their number; ``misfit``, the fourth difference h_xxyy over the
+    second, h_xx + h_yy, both r.m.s. over the summits: the residual of the fit over the curvature.
     """
     dx, dy = surface.dx, surface.dy
     nx, ny = surface.height.shape
@@ -49,14 +49,12 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     if not height.size:
         raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")
     defined = surface.defined
-    # A top may lie across the edge of a periodic map.
-    places = {"x": x % nx * dx, "y": y % ny * dy}
-    return Ensemble.sorted(
+    return Ensemble(
         "paraboloid",
         height,
         {"radius": dx * dy / np.sqrt(determinant)},
         defined * dx * dy,
-        places,
+        {"x": x % nx * dx, "y": y % ny * dy},  # a top may lie across the edge of a periodic map
         {
             "patch_x": nx * dx,
             "patch_y": ny * dy,
@@ -64,13 +62,13 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
             "saddles": sum(candidates) - height.size,
             "misfit": float(np.linalg.norm(fourth) / np.linalg.norm(second)),
         },
-    )
+    ).sorted()
 
 
 def _parts(surface: HeightMap) -> Iterator[tuple[Floats, int, float]]:
-    """Some rows of points that have neighbours, with the row before, the row behind and the columns at both sides.
+    """Yield blocks of rows of points that have neighbours, with a row and a column of neighbours at each side.
 
-    With each its first row, and how many spacings the first point of a map lies from the edge of the patch.
+    With each its first row, and the distance of the first inner point of a map from the edge of the patch, in spacings.
     """
     height, periodic = surface.height, surface.periodic
     nx, ny = height.shape
@@ -79,26 +77,26 @@ def _parts(surface: HeightMap) -> Iterator[tuple[Floats, int, float]]:
             yield height[rows.start : rows.stop + 2], rows.start, 1.5
         return
     for rows in blocks(nx, ny):
-        around = height[np.arange(rows.start - 1, rows.stop + 1) % nx]
-        yield np.pad(around, ((0, 0), (1, 1)), mode="wrap"), rows.start, 0.5
+        padded = height[np.arange(rows.start - 1, rows.stop + 1) % nx]
+        yield np.pad(padded, ((0, 0), (1, 1)), mode="wrap"), rows.start, 0.5
 
 
-def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fitted:
-    """The summits of the inner points of a part of a map."""
+def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
+    """Fit paraboloids to the summits among the inner points of a block."""
     inner = part[1:-1, 1:-1]
 
     def neighbours(i: int, j: int) -> Floats:
         return part[1 + i : part.shape[0] - 1 + i, 1 + j : part.shape[1] - 1 + j]
 
-    level, above = inner - noise, np.ones(inner.shape, dtype=bool)
-    for i, j in _AROUND:
-        above &= level > neighbours(i, j)
+    lowered, above = inner - noise, np.ones(inner.shape, dtype=bool)
+    for i, j in _NEIGHBOURS:
+        above &= lowered > neighbours(i, j)
     rows, columns = np.nonzero(above)
-    drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in _AROUND}
+    drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in _NEIGHBOURS}
 
     def moment(m: int, n: int) -> Floats:
         total = np.zeros(rows.size)
-        for i, j in _AROUND:
+        for i, j in _NEIGHBOURS:
             total += i**m * j**n * drop[i, j]
         return total
 
@@ -111,16 +109,16 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fitted:
     second = moment(2, 0) + moment(0, 2) - 2.0 * moment(2, 2)
     fourth = moment(2, 2) - 2.0 * second
 
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # what no float can hold is no dome
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # a curvature out of range is not a dome
         determinant = A * C - B * B
     domed = (determinant > 0.0) & (A < 0.0)
     p, q, A, B, C, determinant = (values[domed] for values in (p, q, A, B, C, determinant))
     i_top, j_top = (B * q - C * p) / determinant, (B * p - A * q) / determinant
-    # A top beyond the neighbours is an extrapolation: there the point itself is the better summit.
-    trusted = np.maximum(np.abs(i_top), np.abs(j_top)) <= 1.0
-    i_top, j_top = np.where(trusted, i_top, 0.0), np.where(trusted, j_top, 0.0)
+    # A top beyond the neighbours is an extrapolation: the point itself is the better summit.
+    near = np.maximum(np.abs(i_top), np.abs(j_top)) <= 1.0
+    i_top, j_top = np.where(near, i_top, 0.0), np.where(near, j_top, 0.0)
     at = rows[domed], columns[domed]
-    return _Fitted(
+    return _Fits(
         inner[at] + 0.5 * (p * i_top + q * j_top),
         at[0] + first + edge + i_top,
         at[1] + edge + j_top,

@@ -1,41 +1,41 @@
-"""The law that heights and shape parameters are drawn from: one population of asperities, or two mixed."""
+"""Populations of asperities with common distributions of height and shape parameters: one, or two mixed."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Streams
 from roughmdr.numerics.arguments import Floats
 
 
 @dataclass(frozen=True)
 class Population:
-    """Asperities that have their height and each shape parameter from the same distributions."""
+    """Asperities whose heights have one distribution, and each shape parameter another."""
 
-    share: float
+    fraction: float
     """Of all asperities."""
     height: Distribution
     parameters: dict[str, Distribution]
 
     @property
-    def drawn(self) -> list[str]:
-        """The shape parameters that are not always the same."""
+    def random_parameters(self) -> list[str]:
+        """The shape parameters that are not constant."""
         return [name for name, entry in self.parameters.items() if entry.constant is None]
 
 
 @dataclass(frozen=True)
 class Populations:
-    """One or two populations, in which one parameter may go with the height."""
+    """One or two populations, in each of which one parameter may be correlated with the height."""
 
-    populations: tuple[Population, ...]
-    streams: dict[str, int]
+    members: tuple[Population, ...]
+    parameter_streams: dict[str, int]
     """The stream of random numbers of each parameter."""
     correlated: str = ""
-    """The parameter that goes with the height; empty for none."""
+    """The parameter that is correlated with the height; empty for none."""
     rank_correlation: float = 0.0
-    """Spearman's coefficient between the two, in each population."""
+    """Spearman's coefficient of the two, in each population."""
 
     @property
     def score_correlation(self) -> float:
@@ -47,43 +47,45 @@ class Populations:
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]; inf or NaN where there is none."""
-        if len(self.populations) == 1:
-            return self.populations[0].height.std
-        middle = self.populations[0].height.mean
-        means = [each.height.mean - middle for each in self.populations]
-        mean = sum(each.share * own for each, own in zip(self.populations, means, strict=True))
-        spreads = [math.hypot(each.height.std, own - mean) for each, own in zip(self.populations, means, strict=True)]
-        return math.hypot(*(math.sqrt(each.share) * own for each, own in zip(self.populations, spreads, strict=True)))
+        if len(self.members) == 1:
+            return self.members[0].height.std
+        origin = self.members[0].height.mean
+        fractions = [each.fraction for each in self.members]
+        means = [each.height.mean - origin for each in self.members]
+        mean = sum(p * m for p, m in zip(fractions, means, strict=True))
+        spreads = [math.hypot(each.height.std, m - mean) for each, m in zip(self.members, means, strict=True)]
+        return math.hypot(*(math.sqrt(p) * s for p, s in zip(fractions, spreads, strict=True)))
 
     @property
-    def varied(self) -> tuple[int, ...]:
-        """The streams that are drawn from, but for those whose quantity is always the same."""
-        names = [
-            name for name in self.streams if any(each.parameters[name].constant is None for each in self.populations)
+    def random_streams(self) -> tuple[int, ...]:
+        """The streams that draws depend on: without those of quantities that are constant."""
+        streams = [
+            stream
+            for name, stream in self.parameter_streams.items()
+            if any(each.parameters[name].constant is None for each in self.members)
         ]
-        mixed = (POPULATION,) if len(self.populations) > 1 else ()
-        return (HEIGHT, *mixed, *(self.streams[name] for name in names))
+        return (HEIGHT, *((POPULATION,) if len(self.members) > 1 else ()), *streams)
 
-    def draw(self, draws: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
-        """Heights [m] and shape parameters [SI] of ``count`` asperities."""
-        level = draws(HEIGHT, count)
-        levels = {name: draws(stream, count) for name, stream in self.streams.items()}
+    def draw(self, streams: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
+        """Draw heights [m] and shape parameters [SI] of ``count`` asperities."""
+        level = streams(HEIGHT, count)
+        levels = {name: streams(stream, count) for name, stream in self.parameter_streams.items()}
         if self.correlated:
-            levels[self.correlated] = self._joined(level, levels[self.correlated])
-        first = self.populations[0]
+            levels[self.correlated] = self._correlated_levels(level, levels[self.correlated])
+        first = self.members[0]
         height = first.height.quantile(level)
         parameters = {name: entry.quantile(levels[name]) for name, entry in first.parameters.items()}
-        for other in self.populations[1:]:
-            belongs = draws(POPULATION, count) < other.share
+        for other in self.members[1:]:
+            belongs = streams(POPULATION, count) < other.fraction
             height[belongs] = other.height.quantile(level[belongs])
             for name, entry in other.parameters.items():
                 parameters[name][belongs] = entry.quantile(levels[name][belongs])
         return height, parameters
 
-    def _joined(self, level: Floats, own: Floats) -> Floats:
-        """Levels that go with those of the heights as the copula says."""
+    def _correlated_levels(self, height_level: Floats, independent: Floats) -> Floats:
+        """Return levels of the parameter that are correlated with those of the heights by the copula."""
         from scipy.special import ndtr, ndtri
 
         r = self.score_correlation
-        joined = ndtr(r * ndtri(level) + math.sqrt((1.0 - r) * (1.0 + r)) * ndtri(own))
-        return np.clip(joined, SMALLEST_UNIFORM, 1.0 - SMALLEST_UNIFORM)
+        levels = ndtr(r * ndtri(height_level) + math.sqrt((1.0 - r) * (1.0 + r)) * ndtri(independent))
+        return np.clip(levels, SMALLEST_UNIFORM, 1.0 - SMALLEST_UNIFORM)

@@ -1,4 +1,4 @@
-"""source = "random": heights and shape parameters drawn from distributions."""
+"""source = "random": the keys of its section that all shapes share, and what a run asks of it."""
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
@@ -8,27 +8,26 @@ import numpy as np
 from pydantic import BeforeValidator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.nodes import Nodes, Rule, nodes_of
-from roughmdr.ensemble.patch import PatchSource
-from roughmdr.ensemble.random.count import poisson
-from roughmdr.ensemble.random.distributions import Distribution
+from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.ensemble.patch import MAX_COUNT, PatchSource
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
-from roughmdr.ensemble.random.reader import DistributionReader
-from roughmdr.ensemble.streams import HEIGHT, PARAMETER, independent, spread
+from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SHAPES
 
-_MOST = 1_000_000_000
 _Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
 
 
 class Second(Section):
-    """[asperities.second]: a second population, this share of all asperities; what it leaves out is as in the first."""
+    """[asperities.second]: a second population, ``share`` of all asperities; keys left out are as in the first."""
 
-    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, most=1.0))]
+    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))]
     height: _Height | None = None
 
 
@@ -40,184 +39,171 @@ class RandomAsperities(PatchSource):
     """[asperities] with source = "random": ``count`` asperities, or a ``density``, on a square of side ``patch``."""
 
     source: Literal["random"]
-    count: Annotated[int, BeforeValidator(WholeNumber(1, _MOST))] | None = None
+    count: Annotated[int, BeforeValidator(WholeNumber(1, MAX_COUNT))] | None = None
     density: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
     height: _Height
     second: Second | None = None
     correlation: Correlation | None = None
 
     @model_validator(mode="after")
-    def _parameters_describe_the_shape(self) -> "RandomAsperities":
-        if self.fixed is None:
-            SHAPES[self.shape].spelling(set(self.distributions))
+    def _check_parameters_and_count(self) -> "RandomAsperities":
+        if self.shared_profile is None:
+            SHAPES[self.shape].parameter_set(set(self.distributions))
         if self.count is None and self.density is None:
             raise RoughmdrError("needs count, or a density from which the number in each realisation is drawn")
         if self.count is not None and self.density is not None:
             raise EntryError("density", self.density, "does not go with count; leave one of them out")
-        if self.density is not None and not self.expected_count <= _MOST:
-            raise EntryError(
-                "density", self.density, f"puts {self.expected_count:.3g} asperities on the patch; at most {_MOST:g}"
-            )
+        if self.density is not None and not self.expected_count <= MAX_COUNT:
+            message = f"puts {self.expected_count:.3g} asperities on the patch; at most {MAX_COUNT:g}"
+            raise EntryError("density", self.density, message)
         return self
 
     @model_validator(mode="after")
-    def _populations_fit(self) -> "RandomAsperities":
-        for name in _given(self.second, self.shape):
+    def _check_populations(self) -> "RandomAsperities":
+        names = ", ".join(self.distributions) or "none"
+        for name in _parameters_of(self.second, self.shape):
             if name not in self.distributions:
-                raise EntryError(f"second.{name}", None, f"is not given for the first population: {self._spelled}")
-        for population in self.law.populations:
+                raise EntryError(f"second.{name}", None, f"is not given for the first population: {names}")
+        for population in self.populations.members:
             _check_order(self.shape, population)
-        name = self.law.correlated
-        if self.correlation is not None and not name:
-            raise EntryError("correlation", None, f"names no parameter of the {self.shape}; it takes {self._spelled}")
-        if len(_given(self.correlation, self.shape)) > 1:
+        if self.correlation is None:
+            return self
+        correlated = self.populations.correlated
+        if not correlated:
+            raise EntryError("correlation", None, f"names no parameter of the {self.shape}; it takes {names}")
+        if len(_parameters_of(self.correlation, self.shape)) > 1:
             raise EntryError("correlation", None, "takes one parameter: it goes with the height")
-        for other in (name, "height") if name else ():
-            if all(self._entry(each, other).constant is not None for each in self.law.populations):
-                raise EntryError(f"correlation.{name}", None, f"needs a {other} that is not always the same")
+        for name in (correlated, "height"):
+            entries = [{"height": each.height, **each.parameters}[name] for each in self.populations.members]
+            if all(entry.constant is not None for entry in entries):
+                raise EntryError(f"correlation.{correlated}", None, f"needs a {name} that is not always the same")
         return self
-
-    @property
-    def _spelled(self) -> str:
-        return ", ".join(self.distributions) or "none"
-
-    @staticmethod
-    def _entry(population: Population, name: str) -> Distribution:
-        return population.height if name == "height" else population.parameters[name]
-
-    @cached_property
-    def law(self) -> Populations:
-        """What heights and parameters are drawn from."""
-        first = Population(1.0, self.height, self.distributions)
-        populations = [first]
-        if self.second is not None:
-            share = self.second.share
-            parameters = {**self.distributions, **_given(self.second, self.shape)}
-            second = Population(share, self.second.height or self.height, parameters)
-            populations = [Population(1.0 - share, self.height, self.distributions), second]
-        order = list(SHAPES[self.shape].units)
-        streams = {name: PARAMETER + order.index(name) for name in self.distributions}
-        correlated = _given(self.correlation, self.shape)
-        name = next((name for name in correlated if name in self.distributions), "")
-        return Populations(tuple(populations), streams, name, correlated.get(name, 0.0))
-
-    @property
-    def least_exponent(self) -> float:
-        """The least exponent among the tips."""
-        if self.fixed is not None:
-            return self.fixed.least_exponent(np.asarray(self.fixed.nondimensional()[2])[None])
-        exponents = [
-            each.parameters["exponent"].least for each in self.law.populations if "exponent" in each.parameters
-        ]
-        return min(exponents, default=np.inf)
 
     @property
     def distributions(self) -> dict[str, Distribution]:
         """The distribution of each shape parameter that was given."""
-        return {} if self.fixed is not None else _given(self, self.shape)
+        return {} if self.shared_profile is not None else _parameters_of(self, self.shape)
 
-    def sampled(self, count: int) -> "RandomAsperities":
-        """The same with at most about ``count`` asperities."""
+    @cached_property
+    def populations(self) -> Populations:
+        """The populations that the asperities are drawn from."""
+        first = self.distributions
+        members = [Population(1.0, self.height, first)]
+        if self.second is not None:
+            fraction = self.second.share
+            parameters = {**first, **_parameters_of(self.second, self.shape)}
+            second = Population(fraction, self.second.height or self.height, parameters)
+            members = [Population(1.0 - fraction, self.height, first), second]
+        order = list(SHAPES[self.shape].units)
+        streams = {name: PARAMETER + order.index(name) for name in first}
+        correlations = _parameters_of(self.correlation, self.shape)
+        name = next((name for name in correlations if name in first), "")
+        return Populations(tuple(members), streams, name, correlations.get(name, 0.0))
+
+    @property
+    def min_exponent(self) -> float:
+        if self.shared_profile is not None:
+            return self.shared_profile.least_exponent(np.asarray(self.shared_profile.nondimensional()[2])[None])
+        parameters = [each.parameters for each in self.populations.members]
+        return min((each["exponent"].smallest for each in parameters if "exponent" in each), default=np.inf)
+
+    def limited_to(self, count: int) -> "RandomAsperities":
         if self.count is not None:
             return self.model_copy(update={"count": min(count, self.count)})
         return self.model_copy(update={"density": min(count, self.expected_count) / self.patch / self.patch})
 
     @property
     def expected_count(self) -> float:
-        """How many asperities there are, on average."""
         return self.density * self.patch * self.patch if self.density is not None else float(self.count or 0)
 
     @property
-    def doubts(self) -> tuple[str, ...]:
-        """Heights by scipy's own parameters whose place was left to scipy, and is not about z = 0."""
-        second = None if self.second is None else self.second.height
-        heights = {"height": self.height} | ({} if second is None else {"second.height": second})
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings of heights with scipy's own parameters but no location, and a mean that is not at z = 0."""
+        heights = {"height": self.height}
+        if self.second is not None and self.second.height is not None:
+            heights["second.height"] = self.second.height
         return tuple(
             f"asperities.{key}: {entry.family} with its own parameters is that of scipy.stats, loc = 0, and its mean "
             "is not at z = 0; say loc = 0 if that is meant, or mean = 0 to move it there"
             for key, entry in heights.items()
-            if entry.off_centre
+            if entry.mean_off_zero
         )
 
     @property
-    def far_reaching(self) -> tuple[int, ...]:
-        """Of the heights, and of the shape parameters."""
-        populations = self.law.populations
-        heights = (HEIGHT,) if any(each.height.long_tailed for each in populations) else ()
-        names = [name for name in self.distributions if any(each.parameters[name].many_sized for each in populations)]
-        return (*heights, *(self.law.streams[name] for name in names))
+    def heavy_tailed_streams(self) -> tuple[int, ...]:
+        members = self.populations.members
+        heights = (HEIGHT,) if any(each.height.long_tailed for each in members) else ()
+        names = [name for name in self.distributions if any(each.parameters[name].broad for each in members)]
+        return (*heights, *(self.populations.parameter_streams[name] for name in names))
 
-    def at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
-        """For each level in (0, 1) ``count`` asperities at it in one of the streams, evenly spread in the others."""
-        others = spread(0, 0, self.law.varied)
+    def ensembles_at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:
+        others = make_streams(0, 0, self.populations.random_streams)
         for level in levels:
 
-            def draws(asked: int, number: int, level: float = level) -> Floats:
-                return np.full(number, level) if asked == stream else others(asked, number)
+            def streams(number: int, size: int, level: float = level) -> Floats:
+                return np.full(size, level) if number == stream else others(number, size)
 
-            yield Ensemble.sorted(self.shape, *self.law.draw(draws, count), self.nominal_area, fixed=self.fixed)
+            height, parameters = self.populations.draw(streams, count)
+            yield Ensemble(
+                self.shape, height, parameters, self.nominal_area, shared_profile=self.shared_profile
+            ).sorted()
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the heights [m]."""
-        return self.law.sigma
+        return self.populations.sigma
 
-    def unfit_for(self, estimator: str) -> str:
-        """The expected law needs heights that are spread, and parameters that do not follow from them."""
+    def reason_against(self, estimator: str) -> str:
+        """Return why the expected law is impossible: heights must be random, and more than a function of parameters."""
         if estimator != "expected":
             return ""
-        if any(each.height.constant is not None for each in self.law.populations):
+        if any(each.height.constant is not None for each in self.populations.members):
             return "all heights are the same"
-        if abs(self.law.rank_correlation) == 1.0:
-            return "the height alone tells the parameter that is correlated with it"
+        if abs(self.populations.rank_correlation) == 1.0:
+            return "the height alone determines the parameter that is correlated with it"
         return ""
 
     @property
     def one_parameter(self) -> bool:
-        """Whether just one shape parameter is drawn, and from one distribution."""
-        first, *others = self.law.populations
-        return len(first.drawn) == 1 and not others
+        first, *others = self.populations.members
+        return len(first.random_parameters) == 1 and not others
 
     @property
     def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
-        """The shape parameters that are drawn, of each population: normal scores -> values [SI]."""
-        return [each.parameters[name].of_scores for each in self.law.populations for name in each.drawn]
+        members = self.populations.members
+        return [each.parameters[name].from_scores for each in members for name in each.random_parameters]
 
     def node_count(self, order: int) -> int:
-        """One for each set of scores of the parameters that are drawn."""
-        return sum(order ** len(population.drawn) for population in self.law.populations)
+        return sum(order ** len(population.random_parameters) for population in self.populations.members)
 
     def nodes(self, rule: Rule) -> Nodes:
-        """Nodes at the scores of a rule, for each shape parameter that is not a constant."""
-        return nodes_of(self.law, rule)
+        return nodes_of(self.populations, rule)
 
-    def ensemble(self, seed: int, realization: int, *, stratified: bool = False, placed: bool = False) -> Ensemble:
-        """The asperities of one realization; their number is the nearest to the mean where they are stratified."""
-        draws = spread(seed, realization, self.law.varied) if stratified else independent(seed, realization)
+    def ensemble(
+        self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
+    ) -> Ensemble:
+        """Return the asperities of one realisation; of a density, stratified ones are the mean number, rounded."""
+        streams = make_streams(seed, realization, self.populations.random_streams if stratified else ())
         if self.count is not None or stratified:
             count = round(self.expected_count)
         else:
-            count = poisson(draws, self.expected_count)
-        height, parameters = self.law.draw(draws, count)
-        positions = self.positions(draws, count) if placed else {}
+            count = poisson(streams, self.expected_count)
+        height, parameters = self.populations.draw(streams, count)
+        positions = self.positions(streams, count) if with_positions else {}
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
-        return Ensemble.sorted(self.shape, height, parameters, self.nominal_area, positions, attrs, self.fixed)
+        return Ensemble(
+            self.shape, height, parameters, self.nominal_area, positions, attrs, self.shared_profile
+        ).sorted()
 
 
-def _given(section: Section | None, shape: str) -> dict[str, Any]:
-    """What a section says of the shape parameters, by their names."""
-    if section is None:
-        return {}
+def _parameters_of(section: Section | None, shape: str) -> dict[str, Any]:
+    """Return the entries of a section for the parameters of a shape, by their names."""
     entries = {name: getattr(section, name, None) for name in SHAPES[shape].units}
     return {name: entry for name, entry in entries.items() if entry is not None}
 
 
 def _check_order(shape: str, population: Population) -> None:
     for name, floor, reason in SHAPES[shape].not_below:
-        entry, least = population.parameters[name], population.parameters[floor]
-        if entry.least < least.greatest:
-            raise EntryError(
-                name,
-                f"from {entry.least:.3g}",
-                f"must not be below {floor}, which can be as high as {least.greatest:.3g}: {reason}",
-            )
+        entry, lower = population.parameters[name], population.parameters[floor]
+        if entry.smallest < lower.largest:
+            message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
+            raise EntryError(name, f"from {entry.smallest:.3g}", message)

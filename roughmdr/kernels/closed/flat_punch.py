@@ -6,7 +6,7 @@ is the indentation over it, and so without adhesion, where the depth is b.
 
 import math
 
-from roughmdr.numerics import double_double as extended
+from roughmdr.numerics import double_double as dd
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import njit
 
@@ -17,21 +17,19 @@ _KERNEL_ERROR = 1e-14
 def scales(
     effective_modulus: float, work: float, width: float, rise: float, n: float
 ) -> tuple[Pair, float, float, float]:
-    """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where no float can hold the stretch."""
+    """Depth [m], b [m], 2 E* b depth [N] and 2 E* b [N/m]; all 0 where the stretch is not representable."""
     depth = (width, 0.0)
     if work > 0.0:
-        square = extended.divide(
-            extended.multiply(extended.PI, extended.two_product(2.0 * work, width)), (effective_modulus, 0.0)
-        )
+        square = dd.divide(dd.multiply(dd.PI, dd.two_product(2.0 * work, width)), (effective_modulus, 0.0))
         if not 1e-280 < square[0] < 1e290:
             return (0.0, 0.0), 0.0, 0.0, 0.0
-        depth = extended.sqrt(square)
+        depth = dd.sqrt(square)
     return depth, width, 2.0 * effective_modulus * width * depth[0], 2.0 * effective_modulus * width
 
 
 @njit
 def relative_errors(n: float) -> tuple[float, float]:
-    """The scales and the state are a few roundings each."""
+    """The error of the force: the scales and the state have a few roundings each."""
     return _KERNEL_ERROR, 0.0
 
 
@@ -39,7 +37,7 @@ def relative_errors(n: float) -> tuple[float, float]:
 def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """The force [N] at the depth, and b [m]."""
     depth = scales(effective_modulus, work, width, rise, n)[0]
-    return extended.multiply(extended.two_product(2.0 * effective_modulus, width), depth), width
+    return dd.multiply(dd.two_product(2.0 * effective_modulus, width), depth), width
 
 
 @njit
@@ -50,13 +48,13 @@ def state(x: float, n: float) -> float:
 
 @njit
 def state_jkr(x: float, n: float) -> float:
-    """delta over depth at the distance x to where the contact lets go."""
+    """delta over depth at the distance x to the detachment."""
     return x - 1.0
 
 
 @njit
 def state_of_radius(radius: float, size: float, n: float) -> float:
-    """None: the radius does not tell the state."""
+    """NaN: the radius does not determine the state."""
     return math.nan
 
 

@@ -9,13 +9,13 @@ from roughmdr.numerics.double_double import ROUNDING, Pair, two_product
 from roughmdr.numerics.jit import njit
 from roughmdr.shapes.kappa import kappa
 
-_KERNEL_ERROR = 1e-13  # of the force, as it is tested
+_KERNEL_ERROR = 1e-13  # of the force, as tested
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 
 @njit
 def _scales(effective_modulus: float, width: float, depth: float) -> tuple[Pair, float, float, float]:
-    """Depth [m], radius [m], force [N] and stiffness [N/m] in which the contact is measured."""
+    """Depth [m], radius [m], force [N] and stiffness [N/m] as natural scales."""
     return (depth, 0.0), width, 2.0 * effective_modulus * width * depth, 2.0 * effective_modulus * width
 
 

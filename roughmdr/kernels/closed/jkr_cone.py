@@ -3,8 +3,8 @@
 import math
 
 from roughmdr.kernels.closed.jkr_paraboloid import radius, relative_errors, state_of_radius
-from roughmdr.kernels.closed.jkr_power import branch
-from roughmdr.numerics import double_double as extended
+from roughmdr.kernels.closed.jkr_power import stable_log_tau
+from roughmdr.numerics import double_double as dd
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import njit
 
@@ -27,9 +27,9 @@ __all__ = [
 @njit
 def _fold(effective_modulus: float, work: float, width: float, rise: float) -> tuple[Pair, Pair]:
     """|delta_c| = w/(S E*) and a_c = 2 w/(pi S^2 E*) [m]."""
-    slope = extended.divide((rise, 0.0), (width, 0.0))
-    depth = extended.divide((work, 0.0), extended.multiply(slope, (effective_modulus, 0.0)))
-    return depth, extended.divide(extended.multiply((2.0, 0.0), depth), extended.multiply(extended.PI, slope))
+    slope = dd.divide((rise, 0.0), (width, 0.0))
+    depth = dd.divide((work, 0.0), dd.multiply(slope, (effective_modulus, 0.0)))
+    return depth, dd.divide(dd.multiply((2.0, 0.0), depth), dd.multiply(dd.PI, slope))
 
 
 @njit
@@ -45,7 +45,7 @@ def scales(
 def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 54 w^2/(pi S^3 E*) [N] under dead load, and a_P = 9 a_c [m]."""
     depth, a_c = _fold(effective_modulus, work, width, rise)
-    return extended.multiply(extended.multiply(extended.two_product(27.0, effective_modulus), a_c), depth), 9.0 * a_c[0]
+    return dd.multiply(dd.multiply(dd.two_product(27.0, effective_modulus), a_c), depth), 9.0 * a_c[0]
 
 
 @njit
@@ -57,13 +57,13 @@ def state(x: float, n: float) -> float:
 @njit
 def radius_of_force(x: float, n: float) -> float:
     """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
-    return math.exp(2.0 / 3.0 * branch(x, 1.0 / 3.0))
+    return math.exp(2.0 / 3.0 * stable_log_tau(x, 1.0 / 3.0))
 
 
 @njit
 def state_of_force(x: float, n: float) -> float:
     """v at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where tau = 3 at x = 0."""
-    return 3.0 * math.exp(branch(x, 1.0 / 3.0) / 3.0) - 1.0
+    return 3.0 * math.exp(stable_log_tau(x, 1.0 / 3.0) / 3.0) - 1.0
 
 
 @njit

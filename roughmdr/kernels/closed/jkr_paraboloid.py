@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from roughmdr.numerics import double_double as extended
+from roughmdr.numerics import double_double as dd
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import njit
 
@@ -19,7 +19,7 @@ _B = 2.577472688647387
 _C0, _C1, _C2 = 2.5126716141883847, -2.5782406660482913, 1.2749000231451322
 _C3, _C4, _C5 = -0.04324516500758297, -0.24742443101061207, 0.08133881774388521
 _SMALLEST = 1e-270
-_KERNEL_ERROR = 1e-13  # of the force, as it is tested
+_KERNEL_ERROR = 1e-13  # of the force, as tested
 
 
 @njit
@@ -31,8 +31,8 @@ def _curvature_radius(width: float, rise: float) -> float:
 @njit
 def _reduced_work(effective_modulus: float, work: float, radius: float) -> Pair:
     """pi w/(E* R), the part without R first: a loop over asperities computes it once."""
-    length = extended.divide(extended.multiply(extended.PI, (work, 0.0)), (effective_modulus, 0.0))
-    return extended.divide(length, (radius, 0.0))
+    length = dd.divide(dd.multiply(dd.PI, (work, 0.0)), (effective_modulus, 0.0))
+    return dd.divide(length, (radius, 0.0))
 
 
 @partial(njit, inline=True)
@@ -46,17 +46,17 @@ def scales(
     curvature_radius = _curvature_radius(width, rise)
     reduced = _reduced_work(effective_modulus, work, curvature_radius)
     root = float(np.cbrt(reduced[0] if _SMALLEST < reduced[0] < 1.0 / _SMALLEST else math.nan))
-    cube = extended.multiply(extended.two_product(root, root), (root, 0.0))
-    rest = extended.add(reduced, (-cube[0], -cube[1]))
-    root_exact = extended.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
-    depth = extended.multiply(extended.multiply(root_exact, root_exact), extended.two_product(0.75, curvature_radius))
+    cube = dd.multiply(dd.two_product(root, root), (root, 0.0))
+    rest = dd.add(reduced, (-cube[0], -cube[1]))
+    root_exact = dd.two_sum(root, (rest[0] + rest[1]) / (3.0 * root * root))
+    depth = dd.multiply(dd.multiply(root_exact, root_exact), dd.two_product(0.75, curvature_radius))
     a_c = 0.5 * curvature_radius * root_exact[0]
     return depth, a_c, math.pi * work * curvature_radius, 2.0 * effective_modulus * a_c
 
 
 @njit
 def relative_errors(n: float) -> tuple[float, float]:
-    """The state comes from the distance to the fold."""
+    """The error of the force; the state comes from the distance to the fold."""
     return _KERNEL_ERROR, 0.0
 
 
@@ -64,7 +64,7 @@ def relative_errors(n: float) -> tuple[float, float]:
 def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| = 3/2 pi w R [N] under dead load, and a_P = 9^(1/3) a_c [m]."""
     curvature_radius = _curvature_radius(width, rise)
-    force = extended.multiply(extended.PI, extended.multiply(extended.two_product(1.5, work), (curvature_radius, 0.0)))
+    force = dd.multiply(dd.PI, dd.multiply(dd.two_product(1.5, work), (curvature_radius, 0.0)))
     reduced = _reduced_work(effective_modulus, work, curvature_radius)[0]
     return force, 0.5 * curvature_radius * float(np.cbrt(9.0 * reduced))
 

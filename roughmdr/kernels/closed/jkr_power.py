@@ -1,6 +1,6 @@
 """One power-law asperity with JKR adhesion, any exponent n > 1/2 (H 32-33, 40-41, 44).
 
-All is measured from the fold under fixed grips, where the contact lets go: there
+The reference is the fold under fixed grips, where the contact detaches: there
 a_c g'(a_c) = dl(a_c)/2. With tau = sqrt(a/a_c), e = 2 n - 1 and the distance to the fold X = 1 - delta/delta_c,
 
     X = tau (tau^e - 1)/e - (tau - 1),   delta_c = -e/(2 n) dl(a_c),
@@ -14,15 +14,15 @@ holds with u = (tau/tau_P)^3, tau_P^e = 3, in place of tau, e/3 in place of e, a
 import math
 from functools import partial
 
-from roughmdr.numerics import double_double as extended
+from roughmdr.numerics import double_double as dd
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, njit
 from roughmdr.numerics.vector_math import expm1, log, log1p
 from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
-_KERNEL_ERROR = 1e-13  # of the force over its terms, as it is tested
-_TINY = 1e-150  # 1/z^2 of a lesser z is no float
+_KERNEL_ERROR = 1e-13  # of the force over its terms, as tested
+_TINY = 1e-150  # 1/z^2 of a smaller z overflows
 _expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)
 
@@ -31,7 +31,7 @@ _vector = partial(njit, small=True)
 def _length(effective_modulus: float, work: float) -> tuple[Pair, int]:
     """2 pi w/E* [m], and the power of two that goes with it, for range."""
     (w, w_power), (stiff, stiff_power) = math.frexp(work), math.frexp(effective_modulus)
-    return extended.divide(extended.multiply(extended.PI, (w, 0.0)), (stiff, 0.0)), 1 + w_power - stiff_power
+    return dd.divide(dd.multiply(dd.PI, (w, 0.0)), (stiff, 0.0)), 1 + w_power - stiff_power
 
 
 @njit
@@ -39,11 +39,11 @@ def _log_growth(effective_modulus: float, work: float, width: float, rise: float
     """ln(a_c/width): (a_c/width)^e = 2 pi w width/(E* (2 n kappa rise)^2), powers of two apart."""
     length, length_power = _length(effective_modulus, work)
     (size, size_power), (high, high_power), (half, n_power) = math.frexp(width), math.frexp(rise), math.frexp(n)
-    steepness = extended.multiply(precise_kappa(n), extended.two_product(half, high))
-    ratio = extended.divide(extended.multiply(length, (size, 0.0)), extended.multiply(steepness, steepness))
+    steepness = dd.multiply(precise_kappa(n), dd.two_product(half, high))
+    ratio = dd.divide(dd.multiply(length, (size, 0.0)), dd.multiply(steepness, steepness))
     power = length_power + size_power - 2 * (1 + high_power + n_power)
-    log_ratio = extended.add(extended.log(ratio), extended.multiply((float(power), 0.0), extended.LOG_2))
-    return extended.divide(log_ratio, extended.two_sum(2.0 * n, -1.0))
+    log_ratio = dd.add(dd.log(ratio), dd.multiply((float(power), 0.0), dd.LOG_2))
+    return dd.divide(log_ratio, dd.two_sum(2.0 * n, -1.0))
 
 
 @njit
@@ -55,21 +55,21 @@ def scales(
     if not (abs(growth[0]) < _LOG_LARGEST and abs(growth[0] + math.log(width)) < _LOG_LARGEST):
         return (0.0, 0.0), 0.0, 0.0, 0.0
     size, size_power = math.frexp(width)
-    a_c = extended.multiply((size, 0.0), extended.exp(growth))
+    a_c = dd.multiply((size, 0.0), dd.exp(growth))
     a_c = math.ldexp(a_c[0], size_power), math.ldexp(a_c[1], size_power)
     length, power = _length(effective_modulus, work)
     if power % 2 != 0:
         length, power = (2.0 * length[0], 2.0 * length[1]), power - 1
-    root = extended.sqrt(extended.multiply(length, a_c))
+    root = dd.sqrt(dd.multiply(length, a_c))
     stretch = math.ldexp(root[0], power // 2), math.ldexp(root[1], power // 2)
-    e = extended.two_sum(2.0 * n, -1.0)
-    depth = extended.multiply(stretch, extended.divide(e, (2.0 * n, 0.0)))
+    e = dd.two_sum(2.0 * n, -1.0)
+    depth = dd.multiply(stretch, dd.divide(e, (2.0 * n, 0.0)))
     return depth, a_c[0], 2.0 * effective_modulus * a_c[0] * stretch[0], 2.0 * effective_modulus * a_c[0]
 
 
 @njit
 def relative_errors(n: float) -> tuple[float, float]:
-    """The state comes from the distance to the fold."""
+    """The error of the force; the state comes from the distance to the fold."""
     return _KERNEL_ERROR, 0.0
 
 
@@ -96,7 +96,7 @@ def _halley(value: float, slope: float, bend: float, x: float, ratio: float) -> 
 
 
 @_vector
-def branch(x: float, e: float) -> float:
+def stable_log_tau(x: float, e: float) -> float:
     """The l >= 0 with X(l) = x >= 0: the stable branch.
 
     The start has the right limits, l ~ sqrt(2 x/(1 + e)) and l ~ ln(x)/(1 + e); Halley's method, on X near the fold and
@@ -118,7 +118,7 @@ def branch(x: float, e: float) -> float:
 @_vector
 def state(x: float, n: float) -> float:
     """l at the distance x >= 0 to the fold."""
-    return branch(x, 2.0 * n - 1.0)
+    return stable_log_tau(x, 2.0 * n - 1.0)
 
 
 @njit
@@ -130,7 +130,7 @@ def state_of_radius(radius: float, size: float, n: float) -> float:
 @njit
 def radius_of_force(x: float, n: float) -> float:
     """a/a_P at x = 1 - P/P_c >= 0, on the branch that is stable under dead load."""
-    return math.exp(2.0 / 3.0 * branch(x, (2.0 * n - 1.0) / 3.0))
+    return math.exp(2.0 / 3.0 * stable_log_tau(x, (2.0 * n - 1.0) / 3.0))
 
 
 @njit
@@ -140,7 +140,7 @@ def state_of_force(x: float, n: float) -> float:
     Near n = 1/2 that is a large number, so that ``radius_of_force`` is the better way to a.
     """
     e = 2.0 * n - 1.0
-    return extended.LOG_3[0] / e + branch(x, e / 3.0) / 3.0
+    return dd.LOG_3[0] / e + stable_log_tau(x, e / 3.0) / 3.0
 
 
 @njit
@@ -196,16 +196,16 @@ def force_scales(effective_modulus: float, work: float, width: float, rise: floa
 
     All in logarithms: near n = 1/2 these can be ordinary where a_c is not.
     """
-    e = extended.two_sum(2.0 * n, -1.0)
+    e = dd.two_sum(2.0 * n, -1.0)
     length, power = _length(effective_modulus, work)
-    log_length = extended.add(extended.log(length), extended.multiply((float(power), 0.0), extended.LOG_2))
-    log_radius = extended.add(extended.log((width, 0.0)), _log_growth(effective_modulus, work, width, rise, n))
-    log_stretch = extended.multiply((0.5, 0.0), extended.add(log_length, log_radius))
-    log_tau = extended.divide(extended.LOG_3, e)
-    log_force = extended.add(extended.add(log_radius, log_stretch), extended.log((2.0 * effective_modulus, 0.0)))
-    log_force = extended.add(log_force, extended.multiply((3.0, 0.0), log_tau))
-    log_force = extended.add(log_force, extended.log(extended.divide(e, extended.two_sum(2.0 * n, 2.0))))
-    log_radius = extended.add(log_radius, extended.multiply((2.0, 0.0), log_tau))
+    log_length = dd.add(dd.log(length), dd.multiply((float(power), 0.0), dd.LOG_2))
+    log_radius = dd.add(dd.log((width, 0.0)), _log_growth(effective_modulus, work, width, rise, n))
+    log_stretch = dd.multiply((0.5, 0.0), dd.add(log_length, log_radius))
+    log_tau = dd.divide(dd.LOG_3, e)
+    log_force = dd.add(dd.add(log_radius, log_stretch), dd.log((2.0 * effective_modulus, 0.0)))
+    log_force = dd.add(log_force, dd.multiply((3.0, 0.0), log_tau))
+    log_force = dd.add(log_force, dd.log(dd.divide(e, dd.two_sum(2.0 * n, 2.0))))
+    log_radius = dd.add(log_radius, dd.multiply((2.0, 0.0), log_tau))
     if not (abs(log_force[0]) < _LOG_LARGEST and abs(log_radius[0]) < _LOG_LARGEST):
         return (0.0, 0.0), 0.0
-    return extended.exp(log_force), extended.exp(log_radius)[0]
+    return dd.exp(log_force), dd.exp(log_radius)[0]

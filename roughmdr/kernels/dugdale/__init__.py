@@ -1,1 +1,1 @@
-"""Kernels under adhesion of finite range (Dugdale, Maugis)."""
+"""Kernels under adhesion with a range (Dugdale, Maugis)."""

@@ -1,32 +1,33 @@
-"""The stable branches under adhesion of finite range: where the controlled quantity grows along the equilibria.
+"""The stable branches under adhesion with a range: where the controlled quantity grows along the equilibria.
 
-Looked for at places ever further out, and between two of them where the slope changes its sign. Notation of ``params``.
+The slope is looked at in growing steps of the state, and its sign changes between them are solved for. Notation of
+``layout``.
 """
 
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOLD, MOST, ONSET, RANGE, UNIT
+from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOLD, MAX_BRANCHES, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
-_FIRST = 2.0**-24  # of the way to contact
-_BEGIN = 2.0**-8  # of the unit beyond it
-_ON_FLAT = 1.0 / 16.0
-_SHARP = 0.1  # m/a of a contact that is as in JKR
+_FIRST = 2.0**-24  # the first state looked at; contact begins at 1
+_FIRST_STEP = 2.0**-8  # beyond it
+_STEP_ON_FLAT = 1.0 / 16.0
+_THIN_ZONE = 0.1  # m/a: with a thinner zone a contact is as in JKR, and has no further branch
 _LARGEST = 1e140  # its square is a float
-_CLOSE = 4e-16
-_PATIENCE = 200
-_LAST = 1.0 - 1e-9  # of the end of the profile: beyond, a float does not tell c from a
+_RTOL = 4e-16
+_MAX_ITERATIONS = 200
+_NEAR_END = 1.0 - 1e-9  # of the end of the profile: beyond, c and a are the same float
 
 
 def next_trial(s: float) -> float:
-    """The next place to look at."""
+    """The next state to look at."""
     if s < 1.0:
         return max(2.0 * s, _FIRST)
     if law.flat and s < 2.0:
-        return s + _ON_FLAT
+        return s + _STEP_ON_FLAT
     begin = 2.0 if law.flat else 1.0
-    return begin + max(law.stride * (s - begin), _BEGIN)
+    return begin + max(law.stride * (s - begin), _FIRST_STEP)
 
 
 def slope_root(low: float, high: float, params: Floats) -> float:
@@ -36,13 +37,13 @@ def slope_root(low: float, high: float, params: Floats) -> float:
     """
     at_low, at_high = law.control_at(low, params)[1], law.control_at(high, params)[1]
     rising = at_high > 0.0
-    for i in range(_PATIENCE):
-        if high - low <= _CLOSE * high:
+    for i in range(_MAX_ITERATIONS):
+        if high - low <= _RTOL * high:
             break
         middle = 0.5 * (low + high)
         if i % 3 != 2 and abs(at_low) < math.inf and abs(at_high) < math.inf:
             middle = low - at_low * (high - low) / (at_high - at_low)
-            middle = min(max(middle, low + _CLOSE * high), high - _CLOSE * high)
+            middle = min(max(middle, low + _RTOL * high), high - _RTOL * high)
         slope = law.control_at(middle, params)[1]
         if (slope > 0.0) == rising:
             high, at_high, at_low = middle, slope, 0.5 * at_low
@@ -52,7 +53,7 @@ def slope_root(low: float, high: float, params: Floats) -> float:
 
 
 def find_branches(params: Floats) -> None:
-    """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
+    """Fill in the stable branches and the depth; COUNT = 0 where they are not found."""
     params[COUNT], params[FOLD], params[DEPTH], params[ONSET] = 0.0, 0.0, 1.0, 0.0
     if not law.find_junction(params):
         return
@@ -63,7 +64,11 @@ def find_branches(params: Floats) -> None:
     while True:
         before, was = s, stable
         s = law.next_trial(s)
-        if s > 1.0 and law.end < math.inf and law.mdr_profile((s - 1.0) * params[UNIT], params)[0] > _LAST * law.end:
+        if (
+            s > 1.0
+            and law.end < math.inf
+            and law.mdr_profile((s - 1.0) * params[UNIT], params)[0] > _NEAR_END * law.end
+        ):
             if stable:
                 break
             return
@@ -74,9 +79,9 @@ def find_branches(params: Floats) -> None:
             count = law.note_branch(count, foot, law.slope_root(before, s, params), params)
         if s > 1.0:
             _, a, m, _, _, _, _ = law.zone_edge(s, params)
-            if stable and m < _SHARP * a and a > beyond:
+            if stable and m < _THIN_ZONE * a and a > beyond:
                 break
-        if not s < _LARGEST or count >= MOST:
+        if not s < _LARGEST or count >= MAX_BRANCHES:
             return
     law.measure_branches(law.note_branch(count, foot, math.inf, params), params)
     params[ONSET] = 1.0 - params[RANGE] / params[DEPTH]

@@ -1,5 +1,5 @@
-"""One asperity under adhesion of finite range: within the cohesive radius c > a the surfaces attract each other with
-the strength sigma0, until the gap is w/sigma0 (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for the sphere).
+"""One asperity under adhesion with a range: within the cohesive radius c > a the surfaces attract each other with the
+strength sigma0, until the gap is w/sigma0 (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for the sphere).
 
 With m = sqrt(c^2 - a^2), theta = atan(m/a) and the integrals of ``zone``, in units of the shape's width and rise and
 beta = 2 sigma0/E*, any profile has (from delta = g(a) - beta m and f(c) = 2/pi ∫_0^c g/sqrt(c^2 - x^2) dx)
@@ -13,7 +13,7 @@ so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta
 zone does too, as on a flat punch: c stays, the gap there is at most w/sigma0, and B is without bound.
 
 The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
-grows with s. Notation of ``params``.
+grows with s. Notation of ``layout``.
 """
 
 import math
@@ -23,8 +23,8 @@ from roughmdr.kernels.profile.layout import CONTROL, DEPTH, JUNCTION, RANGE, STR
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 
-_ZONE_ERROR = 1e-12  # of the force: as it is tested
-_ZONE_ROUNDINGS = 32.0  # of the zone's share of the indentation
+_ZONE_ERROR = 1e-12  # of the force, as tested
+_ZONE_ROUNDINGS = 32.0  # of the part of the indentation that the zone takes
 
 
 def state_along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
@@ -59,7 +59,7 @@ def control_at(s: float, params: Floats) -> tuple[float, float]:
 
 
 def reduced_control(s: float, params: Floats) -> float:
-    """The controlled quantity from the lowest foot on, over its depth."""
+    """x: the controlled quantity above the lowest foot over DEPTH."""
     return (law.control_at(s, params)[0] + params[DEPTH]) / params[DEPTH]
 
 
@@ -93,7 +93,7 @@ def stiffness(s: float, params: Floats) -> float:
 
 
 def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
-    """No less than beta m over rise, and beta/2 (a m + c^2 theta) over width rise.
+    """Upper bounds of beta m over rise, and of beta/2 (a m + c^2 theta) over width rise.
 
     The gap at c is at most w/sigma0, so that beta (m theta - c + a) <= pi/2 RANGE; and the bracket is at least
     2/pi (pi/2 - 1) theta m, theta >= pi/4 min(m/a, 1).
@@ -103,7 +103,7 @@ def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
 
 
 def relative_errors(params: Floats) -> tuple[float, float]:
-    """That of the force as it is tested; of the indentation from the roundings of the profile and of the zone."""
+    """The error of the force, as tested, and of the indentation, from the roundings of the profile and of the zone."""
     error = ROUNDING * (law.roundings(params) + _ZONE_ROUNDINGS)
     return max(_ZONE_ERROR, error), error
 

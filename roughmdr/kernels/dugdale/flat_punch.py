@@ -1,7 +1,7 @@
-"""One flat-ended punch under adhesion of finite range: the cohesive zone ends at its edge, c = b.
+"""One flat-ended punch under adhesion with a range: the cohesive zone ends at its edge, c = b.
 
 Between delta = 0 and -beta b the contact shrinks from a = b to 0, a^2 = b^2 - (delta/beta)^2; below, all of the punch
-is pulled with the strength. It lets go where the gap at its edge is w/sigma0. The state is delta/b.
+is pulled with the strength. It detaches where the gap at its edge is w/sigma0. The state is delta/b.
 Notation of ``params``.
 """
 
@@ -18,8 +18,8 @@ from roughmdr.numerics.jit import compiled, njit
 scales, force_scales = compiled(build.scales), compiled(build.force_scales)
 params_of = njit(build.params_of, inline=True)
 newton_steps = 1
-_KERNEL_ERROR = 1e-12  # of the force, as it is tested
-_LONGEST = 2.0**26  # times beta: the depth, of whose roundings the edge of a contact that closes makes less than 1e-12
+_KERNEL_ERROR = 1e-12  # of the force, as tested
+_MAX_DEPTH = 2.0**26  # over beta: of a larger depth the roundings would be more than 1e-12 of a closing contact
 
 
 @njit
@@ -59,7 +59,7 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
         else:
             angle = _angle(0.5 * math.pi * gap_limit / beta, False)
             depth = beta * math.sin(angle)
-        params[COUNT] = 1.0 if depth <= _LONGEST * beta else 0.0
+        params[COUNT] = 1.0 if depth <= _MAX_DEPTH * beta else 0.0
         params[ONSET] = 1.0 - gap_limit / depth
         angle_term = angle + math.sin(angle) * math.cos(angle)
         params[DEPTH] = depth if control == 0.0 else 0.5 * beta * angle_term
@@ -69,37 +69,37 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
 
 @njit
 def state(x: float, params: Floats) -> float:
-    """delta/b at the distance x to where the contact lets go."""
+    """delta/b at x."""
     return (x - 1.0) * params[DEPTH]
 
 
 @njit
 def state_on_branch(x: float, branch: float, params: Floats) -> float:
-    """The same: there is one branch."""
+    """delta/b at x; there is one branch."""
     return state(x, params)
 
 
 @njit
 def initial_guess(x: float, params: Floats) -> float:
-    """The same: nothing is left to find."""
+    """delta/b at x, with nothing left to solve for."""
     return state(x, params)
 
 
 @njit
 def newton_step(s: float, x: float, params: Floats) -> tuple[float, float, float]:
-    """The state, no step, and the slope."""
+    """The state, a step of 0, and the slope."""
     return state(x, params), 0.0, params[DEPTH]
 
 
 @njit
 def converged(s: float, step: float, x: float, branch: float, params: Floats) -> bool:
-    """Always."""
+    """True: the state is explicit."""
     return True
 
 
 @njit
 def state_of_radius(radius: float, size: float, params: Floats) -> float:
-    """None: the radius does not tell the state."""
+    """NaN: the radius does not determine the state."""
     return math.nan
 
 
@@ -152,13 +152,13 @@ def stiffness(s: float, params: Floats) -> float:
 
 @njit
 def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
-    """No less than what the attraction takes of delta/b and of P over 2 E* b^2."""
+    """Upper bounds of what adhesion takes from delta/b and from P over 2 E* b^2."""
     return params[STRENGTH], params[STRENGTH]
 
 
 @njit
 def relative_errors(params: Floats) -> tuple[float, float]:
-    """That of the force as it is tested; the state is the indentation itself."""
+    """The error of the force, as tested; none of the indentation, which is the state."""
     return _KERNEL_ERROR, 0.0
 
 
@@ -179,5 +179,5 @@ def branch(x: float, before: float, touched: bool, params: Floats) -> float:
 
 @njit
 def jump_energy(before: float, after: float, params: Floats) -> float:
-    """The energy lost where attraction begins, or where it ends."""
+    """The energy dissipated where attraction begins, or where it ends."""
     return -energy(-params[RANGE], params) if after > before else energy(-params[DEPTH], params)

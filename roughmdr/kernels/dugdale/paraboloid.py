@@ -1,4 +1,4 @@
-"""One paraboloid under adhesion of finite range, whose equilibria have a closed form. Notation of ``dugdale``.
+"""One paraboloid under adhesion with a range, whose equilibria have a closed form. Notation of ``equilibrium``.
 
 With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m, s = 1 + sigma and e = 1 + sigma^2 = c^2/m^2, the gap is
 

@@ -23,12 +23,12 @@ from roughmdr.numerics.arguments import Floats
 _Z, _WEIGHT = np.polynomial.legendre.leggauss(40)
 _Z, _WEIGHT = 0.5 * (1.0 + _Z), 0.5 * _WEIGHT
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
-_FAR = 8.0  # from the lower end of a panel to the higher
-_THIN = 0.01  # m/a: below it g(x) - g(a) has too few digits to find m by
-_STEEP = 6.0  # times 1/sqrt(n) is the psi within which x^n falls to nothing
-_NEAREST = 1e-8  # to the end of the profile; its square is a rounding of it
-_BEFORE = 1.0 - 2.0**-53  # times the end of the profile: so far g is finite
-_UPRIGHT = 1e100  # stands for what is without bound
+_PANEL_RATIO = 8.0  # of the ends of a panel, at most
+_THIN = 0.01  # m/a: in a thinner zone g(x) - g(a) has too few digits
+_STEEP = 6.0  # over sqrt(n): the psi within which x^n falls below rounding
+_NEAREST = 1e-8  # distance to the end of the profile, over it; its square is below rounding
+_BEFORE = 1.0 - 2.0**-53  # of the end of the profile: up to there g is finite
+_UNBOUNDED = 1e100  # stands for infinity
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 
 
@@ -71,7 +71,7 @@ def zone_panel(
 
 
 def rise_begins(low: float, c: float, params: Floats) -> float:
-    """From where on the profile rises, to all digits, where it is as steep as x^n with a large n; else ``low``."""
+    """The x below which the profile is flat to all digits, where it rises like x^n with a large n; else ``low``."""
     a, da, g, dg = law.mdr_profile(law.t_of_radius(c, 1.0, params), params)
     n = a * dg / (da * g) if 0.0 < g < math.inf else 0.0
     return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
@@ -87,10 +87,10 @@ def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -
         begin, after = law.breakpoint(i, params) if i < count else (math.inf, 0.0)
         if begin > low:
             high = min(begin, c)
-            while base > 0.0 and _FAR * low < high:  # at q << x as smooth as at q = x
-                parts = law.zone_panel(low, _FAR * low, base, g, c, beside, thin, params)
+            while base > 0.0 and _PANEL_RATIO * low < high:  # at q << x as smooth as at q = x
+                parts = law.zone_panel(low, _PANEL_RATIO * low, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
-                low = _FAR * low
+                low = _PANEL_RATIO * low
                 beside = math.sqrt((c - low) * (c + low))
             if base == 0.0 and not law.flat and high == c:
                 middle = law.rise_begins(low, c, params)
@@ -105,4 +105,4 @@ def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -
                 break
             low, beside = begin, math.sqrt((c - begin) * (c + begin))
         base = after
-    return j, k if m < law.widest_zone(a) else _UPRIGHT, l
+    return j, k if m < law.widest_zone(a) else _UNBOUNDED, l

@@ -1,4 +1,4 @@
-"""Where the contact and the cohesive zone of any profile end, along all equilibria. Notation of ``dugdale``."""
+"""Where the contact and the cohesive zone of any profile end, along all equilibria. Notation of ``equilibrium``."""
 
 import math
 
@@ -10,9 +10,9 @@ from roughmdr.numerics.vector_math import atan
 
 _atan = compiled(atan, small=True)
 
-_CLOSE = 1e-9  # its square is below rounding
+_RTOL_STEP = 1e-9  # its square is below rounding
 _ROUNDING = 1e-15
-_PATIENCE = 100
+_MAX_ITERATIONS = 100
 _LARGEST = 1e150  # its square, and that of its inverse, is a float
 
 
@@ -25,12 +25,12 @@ def find_junction(params: Floats) -> bool:
     if not (high > 0.0 and law.f_and_slope(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
         return False
     c = high if high < law.end else 0.5 * high
-    for _ in range(_PATIENCE):
+    for _ in range(_MAX_ITERATIONS):
         f, slope = law.f_and_slope(c, params)
         value = f + per_c * c
         low, high = (c, high) if value < wanted else (low, c)
         better = c * math.exp((math.log(wanted) - math.log(value)) * value / (c * (slope + per_c)))
-        if abs(better - c) <= _CLOSE * c:
+        if abs(better - c) <= _RTOL_STEP * c:
             c = better
             break
         c = better if low < better < high else 0.5 * (low + high)
@@ -63,16 +63,16 @@ def zone_width(a: float, g: float, slope: float, params: Floats) -> float:
     m = min(most, max(c0, near))
     if not m < high:
         m = 0.5 * high
-    for _ in range(_PATIENCE):
+    for _ in range(_MAX_ITERATIONS):
         value, growth = law.gap_at(a, g, m, params)
-        if not 0.0 < value < math.inf:  # so near to the end of the profile that floats do not tell c from a
+        if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
             low, high = (m, high) if value <= 0.0 else (low, m)
             m = 0.5 * (low + high)
             continue
         low, high = (m, high) if value < wanted else (low, m)
         change = math.log(wanted / value) * value / (m * m * growth)
         better = m * math.exp(min(max(change, -5.0), 5.0))
-        if abs(change) <= _CLOSE or not low < high:
+        if abs(change) <= _RTOL_STEP or not low < high:
             return better
         m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
     return m

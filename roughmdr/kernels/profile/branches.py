@@ -1,4 +1,4 @@
-"""The state of one curved asperity on its branches, and the jumps between them. Notation of ``params``."""
+"""The state of one asperity on its branches, and the jumps between them. Notation of ``layout``."""
 
 import math
 
@@ -8,7 +8,7 @@ from roughmdr.numerics.arguments import Floats
 
 
 def state_on_branch(x: float, branch: float, params: Floats) -> float:
-    """t at the distance x to the lowest foot on branch number ``branch`` = 1, 2, ..."""
+    """t at x on branch number ``branch`` = 1, 2, ..."""
     j = int(branch) - 1
     foot = params[FOOT + j]
     if x <= params[FOOT_X + j]:
@@ -30,7 +30,7 @@ def state_on_branch(x: float, branch: float, params: Floats) -> float:
 
 
 def state(x: float, params: Floats) -> float:
-    """t at the distance x >= 0 to the lowest foot, on the branch of a slow retraction: the last that reaches so low."""
+    """t at x >= 0 on the branch of a slow retraction: the last that reaches so low."""
     j = int(params[COUNT])
     while j > 1 and x < params[FOOT_X + j - 1]:
         j -= 1
@@ -38,7 +38,7 @@ def state(x: float, params: Floats) -> float:
 
 
 def branch(x: float, before: float, touched: bool, params: Floats) -> float:
-    """The branch, 1, 2, ... or 0 for none, after a way in one direction to x from where the contact was on ``before``.
+    """The branch, 1, 2, ... or 0 for none, after a path in one direction to x from a state on branch ``before``.
 
     It begins where it is ``touched``, at ONSET, and moves to the next stable root where its branch ends.
     """
@@ -53,7 +53,7 @@ def branch(x: float, before: float, touched: bool, params: Floats) -> float:
 
 
 def jump_energy(before: float, after: float, params: Floats) -> float:
-    """The energy lost in the jumps from one branch to another, over that of ``energy``; each where its branch ends."""
+    """The energy dissipated in jumps from one branch to another, each where its branch ends (unit as ``energy``)."""
     j, last, lost = int(before), int(after), 0.0
     if j == 0 and last > 0:
         first = law.branch(params[ONSET], 0.0, True, params)

@@ -20,7 +20,6 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.shapes import Paraboloid, Shape
-from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.power_profiles import profile_of
 
 
@@ -123,7 +122,7 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
 @cache
 def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range."""
-    profile, shared = profile_of(shape), issubclass(shape, ProfileShape) and shape.common
+    profile, shared = profile_of(shape), shape.shared
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
         of_paraboloid = (paraboloid,) if shape is Paraboloid else ()

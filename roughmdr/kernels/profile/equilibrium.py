@@ -1,6 +1,6 @@
-"""The equilibrium of one curved asperity at a state t: its load, force, stiffness and energy (H 25, 32-33, 40-41).
+"""Equilibrium of one asperity at a state t: indentation, force, stiffness and energy (H 25, 32-33, 40-41).
 
-Notation of ``params``. All in units of the shape's width and rise.
+Notation of ``layout``. All in units of the shape's width and rise.
 """
 
 import math
@@ -37,7 +37,7 @@ def control_at(t: float, params: Floats) -> tuple[float, float]:
 
 
 def reduced_control(t: float, params: Floats) -> float:
-    """The controlled quantity from the lowest foot on, over its depth; without adhesion from first touch on."""
+    """x: the controlled quantity above the lowest foot over DEPTH; without adhesion above first touch."""
     value = law.control_at(t, params)[0]
     return (value + params[DEPTH]) / params[DEPTH] if params[TENSION] > 0.0 else value
 
@@ -73,13 +73,13 @@ def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
 
 
 def relative_errors(params: Floats) -> tuple[float, float]:
-    """Both from the roundings of the profile and of dl."""
+    """Errors of the force and of the indentation, from the roundings of the profile and of dl."""
     error = ROUNDING * law.roundings(params)
     return error, error
 
 
 def elastic_integral(t: float, params: Floats) -> float:
-    """2 ∫ g' ∫ x g' dx dx, panel by panel; over the fourth power of the place in it, as g' may begin like a root."""
+    """2 ∫ g' ∫ x g' dx dx, panel by panel, in the fourth root of the position, as g' may begin like a root."""
     total, low = 0.0, 0.0
     while low < t:
         high = min(1.0 if low < 1.0 else 2.0 * low, t)

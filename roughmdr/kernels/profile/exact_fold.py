@@ -1,4 +1,4 @@
-"""How deep a curved asperity is pulled before it lets go, beyond the digits of a float.
+"""The depth of a fold, where an asperity detaches, beyond the digits of a float.
 
 Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt(X) in what is found there.
 """

@@ -1,7 +1,7 @@
-"""The stable branches of one curved asperity: where each begins, at a fold or a corner, and where it ends.
+"""The stable branches of one asperity: where each begins, at a fold or a corner, and where it ends.
 
 A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g'(a) > tension under fixed grips, and
-> 3 tension under dead load (H 32, 40). Notation of ``params``.
+> 3 tension under dead load (H 32, 40). Notation of ``layout``.
 """
 
 import math
@@ -16,7 +16,7 @@ from roughmdr.kernels.profile.layout import (
     FOOT_X,
     LAST,
     LAST_X,
-    MOST,
+    MAX_BRANCHES,
     NEAR,
     ONSET,
     TENSION,
@@ -26,9 +26,9 @@ from roughmdr.kernels.profile.layout import (
 from roughmdr.numerics.arguments import Floats
 
 _LARGEST = 1e140  # its square is a float
-_CLOSE = 1e-15
-# From what part of the foot on a difference has lost too many digits for a square root of it: in ordinary profiles, and
-# where the terms of that difference are ``_SWING`` times as large; and how far an integral is right to rounding.
+_RTOL = 1e-15
+# Within _NEAR of a foot, relative to it, a difference has lost too many digits for its square root; in proportion
+# more where its terms are above _SWING times the depth. Up to _FARTHEST an integral is exact to rounding.
 _NEAR, _SWING, _FARTHEST = 4e-3, 8.0, 0.1
 _NEXT = 2.0**-52
 
@@ -73,7 +73,7 @@ def steepness_crossing(low: float, high: float, tension: float, params: Floats) 
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
         excess = law.log_excess(math.exp(z), tension, params)
-        if abs(excess) < _CLOSE or not z_low < z < z_high:
+        if abs(excess) < _RTOL or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
             z_high, e_high = z, excess
@@ -83,14 +83,14 @@ def steepness_crossing(low: float, high: float, tension: float, params: Floats) 
 
 
 def note_branch(count: int, foot: float, top: float, params: Floats) -> int:
-    """Note one more branch; the new count, or more than MOST."""
-    if count < MOST:
+    """Add a branch to the list, if there is room; return the new count."""
+    if count < MAX_BRANCHES:
         params[FOOT + count], params[TOP + count] = foot, top
     return count + 1
 
 
 def list_branches(tension: float, params: Floats) -> int:
-    """Fill in where the stable branches begin and end; how many there are, 0 where it cannot be said."""
+    """Fill in where the stable branches begin and end; return their number, 0 where it is not found."""
     count, low, foot, stable = 0, 0.0, 0.0, False
     for i in range(law.softening_count(params)):
         peak, dip = law.softening_interval(i, params)
@@ -106,11 +106,11 @@ def list_branches(tension: float, params: Floats) -> int:
     if not stable:
         foot = law.steepness_crossing(low, math.inf, tension, params)
     count = law.note_branch(count, foot, math.inf, params)
-    return count if count <= MOST and foot < math.inf else 0
+    return count if count <= MAX_BRANCHES and foot < math.inf else 0
 
 
 def find_branches(params: Floats) -> None:
-    """Fill in the stable branches and the depth; COUNT = 0 where it cannot be done."""
+    """Fill in the stable branches and the depth; COUNT = 0 where they are not found."""
     params[COUNT], params[FOLD], params[DEPTH], params[ONSET], params[NEAR] = 0.0, 0.0, 1.0, 1.0, _NEAR
     if params[TENSION] == 0.0:
         params[FOOT], params[TOP], params[FOOT_X], params[TOP_X], params[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0

@@ -1,7 +1,7 @@
-"""Where Newton's method begins on the last branch: cubics over octaves of y, or parts of them, and power laws outside.
+"""The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts; outside power laws.
 
 y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
-``params``.
+``layout``.
 """
 
 import math
@@ -16,21 +16,21 @@ from roughmdr.numerics.vector_math import octave
 
 _octave = compiled(octave, small=True)
 
-_LOWEST = 2.0 ** (OCTAVES // 2)  # over which depth the start without adhesion begins
+_LOWEST = 2.0 ** (OCTAVES // 2)  # without adhesion the octaves begin at 1/_LOWEST of the depth
 _LARGEST = 2.0**OCTAVES
-_ROUGH = 0.1  # of the way from the foot: a larger second step to a node is not trusted
-_CORNER = 1e-6  # of the depth over the foot: a fold has no slope
-_BEND = 1e-4  # of the foot: over it the slope at a fold is linear
+_MAX_STEP = 0.1  # of the distance to the foot: after a larger second step a node is solved for by itself
+_CORNER = 1e-6  # of the depth over the foot: a steeper foot is a corner, not a fold
+_BEND = 1e-4  # of the foot: so far from a fold the slope is linear
 
 
 def y_of_x(x: float, params: Floats) -> float:
-    """y at the distance x to the lowest foot."""
+    """y at x."""
     side = 1.0 + math.sqrt(max(x - params[LAST_X], 0.0))
     return side * side if params[TENSION] > 0.0 else x * _LOWEST
 
 
 def initial_guess(x: float, params: Floats) -> float:
-    """t within the octaves; beyond them anything."""
+    """t within the octaves; outside any number."""
     node, u = _octave(law.y_of_x(x, params), law.split)
     node = min(max(node, 0), (OCTAVES << law.split) - 1)
     at, parts = (
@@ -43,7 +43,7 @@ def initial_guess(x: float, params: Floats) -> float:
 
 
 def guess_anywhere(x: float, params: Floats) -> float:
-    """t anywhere."""
+    """t within and outside the octaves."""
     y = law.y_of_x(x, params)
     if 1.0 <= y < _LARGEST:
         return law.initial_guess(x, params)
@@ -52,7 +52,7 @@ def guess_anywhere(x: float, params: Floats) -> float:
 
 
 def x_of_y(y: float, params: Floats) -> tuple[float, float]:
-    """The distance x to the lowest foot at y, and dx/dy times y."""
+    """x at y, and y dx/dy."""
     side = math.sqrt(y)
     if params[TENSION] > 0.0:
         return params[LAST_X] + (side - 1.0) * (side - 1.0), (side - 1.0) * side
@@ -60,7 +60,7 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 
 def extrapolate_node(node: int, interval: float, params: Floats) -> float:
-    """About t at a node, from the one before with ln y less by ``interval``: the way from the foot is a power of y."""
+    """t at a node, estimated from the one before, ln y less by ``interval``: t beyond the foot is a power of y."""
     foot, at = params[LAST], law.first_node + 2 * node
     way, step = params[at - 2] - foot, params[at - 1] * interval
     power = step / way if way > 0.0 else 0.0
@@ -82,7 +82,7 @@ def fill_first_node(params: Floats) -> None:
 
 
 def fill_node(node: int, y: float, params: Floats) -> None:
-    """Fill in a node by itself."""
+    """Fill in one node, solved for by itself."""
     foot, at = params[LAST], law.first_node + 2 * node
     x, dx = law.x_of_y(y, params)
     before = params[at - 2] if node > 0 else 0.0
@@ -92,7 +92,7 @@ def fill_node(node: int, y: float, params: Floats) -> None:
 
 
 def fill_nodes(rows: Floats) -> None:
-    """Fill in the nodes of all rows, one after the other for all at once, so that no row waits for another."""
+    """Fill in the nodes of all rows, each node for all rows at a time, so that no row waits for another."""
     count = rows.shape[0]
     t, step, per = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
@@ -114,7 +114,7 @@ def fill_nodes(rows: Floats) -> None:
                 law.x_of_y(y, rows[i])[1] * per[i],
             )
         for i in range(count):
-            # Under dead load ``nearer`` has gone elsewhere.
-            trusted = (abs(step[i]) < _ROUGH * (t[i] - rows[i, LAST])) & (rows[i, CONTROL] == 0.0)
+            # ``newton_step`` is for fixed grips.
+            trusted = (abs(step[i]) < _MAX_STEP * (t[i] - rows[i, LAST])) & (rows[i, CONTROL] == 0.0)
             if not trusted and rows[i, COUNT] > 0.0:
                 law.fill_node(node, y, rows[i])

@@ -1,27 +1,27 @@
-"""One curved asperity as a row of numbers: what ``prepare`` finds out once, and the kernels read.
+"""The row of numbers that describes one asperity: filled once by ``prepare``, read by the kernels.
 
 In units of the shape's width and rise the contact is indentation = g(a) - tension sqrt(a) and, over 2 E* width rise,
 force = ∫ x g' dx - tension a^(3/2), with tension = dl(width)/rise. A branch is stable from its foot to its top.
 """
 
-MOST = 8
+MAX_BRANCHES = 8
 OCTAVES = 24
 
-# Places from the end of a row: the numbers of the shape come first, so that its functions need not look for them.
+# Indices from the end of a row: the parameters of the shape stand at its beginning.
 TENSION = -1
 CONTROL = -2  # 0: fixed grips, 1: dead load
-DEPTH = -3  # how far below first touch the lowest foot lies, in the controlled quantity; 1 without adhesion
+DEPTH = -3  # distance of the lowest foot below first touch, in the controlled quantity; 1 without adhesion
 FOLD = -4  # t of the lowest foot
-COUNT = -5  # of stable branches; 0 where there are too many, or none that floats can hold
-LAST, LAST_X = -6, -7  # the foot of the last branch: its t, and its distance to the lowest foot over DEPTH
-ONSET = -8  # the distance at which the contact, or attraction, begins
-STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range (``dugdale``)
-JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and what t - 1 is counted in
-NEAR = -13  # times t: so near a foot the integral of the slope has more digits than the difference of the values
-FOOT, TOP = NEAR - MOST, NEAR - 2 * MOST  # t of the first
-FOOT_X, TOP_X = NEAR - 3 * MOST, NEAR - 4 * MOST  # the distances
+COUNT = -5  # number of stable branches; 0 where they are too many, or not representable
+LAST, LAST_X = -6, -7  # the foot of the last branch: its t and its x, the distance to the lowest foot over DEPTH
+ONSET = -8  # the x at which contact, or attraction, begins
+STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range
+JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and the unit of t - 1
+NEAR = -13  # over t: nearer to a foot the integral of the slope is more precise than the difference of values
+FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
+FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first
 
 
 def first_node(split: int) -> int:
-    """The place of the nodes of the first guess, with octaves in 2^split parts: for each t and y dt/dy."""
+    """Return the index of the nodes of the initial guess, octaves in 2^split parts: t and y dt/dy of each."""
     return TOP_X - 2 * ((OCTAVES << split) + 1)

@@ -1,4 +1,4 @@
-"""The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``params``."""
+"""The state at which the controlled quantity has a value: Newton's method on one branch. Notation of ``layout``."""
 
 import math
 
@@ -6,25 +6,25 @@ from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 from roughmdr.numerics.arguments import Floats
 
-_LOST = 1e-4  # of the depth: so near a foot at t = 0, the corner of a flat, four digits are lost
+_CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
 # Gauss's rule of five nodes, exact for a slope of ninth degree: from the middle over the length, and weights.
 _INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for sign in (1.0, -1.0))
 _MIDDLE = 64.0 / 225.0
 _INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
-_FINE = 1e-8  # of the way and of the value: the square of a last step is below rounding
-_LEAST_WAY = 1e-3  # of the way to the foot: so much is left after a step that would go beyond it
-_PATIENCE = 6  # steps: where a slope changes much, or a value is all roundings, Newton's method circles or creeps
+_RTOL_STEP = 1e-8  # of the distance to the foot and of the value: the next error, its square, is below rounding
+_MIN_DISTANCE = 1e-3  # of the distance to the foot: left after a step that would go beyond it
+_FREE_STEPS = 6  # then every third step is a bisection: where the slope changes much, Newton's method may not converge
 
 
 def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
-    """How far the controlled quantity lies above the lowest foot, and its slope; t on branch j."""
+    """The controlled quantity above the lowest foot, and its slope; t on branch j."""
     value, slope = law.control_at(t, params)
     foot = params[FOOT + j]
     step = t - foot
     if params[TENSION] == 0.0:
         return value, slope
     lifted = value + params[DEPTH]
-    far = step > params[NEAR] * t and (foot > 0.0 or lifted > _LOST * params[DEPTH])
+    far = step > params[NEAR] * t and (foot > 0.0 or lifted > _CANCELLED * params[DEPTH])
     if far or law.kink(foot, t, params):
         return lifted, slope
     middle = foot + 0.5 * step
@@ -35,7 +35,7 @@ def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
 
 
 def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, params: Floats) -> float:
-    """The t on branch j, between low and high, which lies ``wanted`` above the lowest foot: Newton's method from t."""
+    """The t on branch j, between low and high, with ``control_above_fold`` = ``wanted``, by Newton's method from t."""
     foot, lift = params[FOOT + j], params[DEPTH] if params[TENSION] > 0.0 else 0.0
     for i in range(200):
         value, slope = law.control_above_fold(t, j, params)
@@ -46,10 +46,10 @@ def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, pa
         else:
             return t
         step = (value - wanted) / slope if slope > 0.0 else math.inf
-        if abs(step) <= _FINE * (t - foot) and abs(value - wanted) <= _FINE * (wanted + lift):
+        if abs(step) <= _RTOL_STEP * (t - foot) and abs(value - wanted) <= _RTOL_STEP * (wanted + lift):
             return t - step
         better = t - step
-        circling = i % 3 == 2 and i > _PATIENCE
+        circling = i % 3 == 2 and i > _FREE_STEPS
         if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
             if 0.0 < 4.0 * low < high < math.inf:  # a step up a steep power can lead hundreds of decades too far
@@ -72,11 +72,11 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
     rest = (value + lift) - wanted
     step = rest / slope
     away = max(abs(step), abs(rest) / (wanted + lift) * beyond)
-    return max(t - step, params[LAST] + _LEAST_WAY * beyond), away, params[DEPTH] / slope
+    return max(t - step, params[LAST] + _MIN_DISTANCE * beyond), away, params[DEPTH] / slope
 
 
 def converged(t: float, away: float, x: float, branch: float, params: Floats) -> bool:
-    """Whether a step from so far ``away`` has come to the state on branch ``branch``: one lies beyond the last foot."""
+    """Whether t is the state on ``branch`` after a step from a distance ``away``: true only beyond the last foot."""
     beyond = t - params[LAST]
     is_last = (branch == params[COUNT]) & (x > params[LAST_X])
-    return bool(is_last & (beyond > params[NEAR] * t) & (away <= _FINE * beyond))
+    return bool(is_last & (beyond > params[NEAR] * t) & (away <= _RTOL_STEP * beyond))

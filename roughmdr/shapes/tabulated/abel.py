@@ -17,51 +17,50 @@ def _gauss(count: int) -> tuple[Floats, Floats]:
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
-_SMALL = 0.02
-_FINE, _FINE_WEIGHTS = _gauss(4)  # enough for a small angle
-_WIDE, _WIDE_WEIGHTS = _gauss(14)  # enough for a right angle
+_SMALL_ANGLE = 0.02
+_NODES_SMALL, _WEIGHTS_SMALL = _gauss(4)  # enough for a small angle
+_NODES, _WEIGHTS = _gauss(14)  # enough for a right angle
 
 
 @njit
-def _t_of_q(knot: float, a: float, place: float, base: float) -> float:
-    """sqrt(a^2 - knot^2), a^2 = place^2 + base^2."""
-    return math.sqrt(place * place + (base - knot) * (base + knot) if knot <= base else (a - knot) * (a + knot))
+def _root(knot: float, a: float, q: float, base: float) -> float:
+    """Return sqrt(a^2 - knot^2) where a^2 = q^2 + base^2."""
+    return math.sqrt(q * q + (base - knot) * (base + knot) if knot <= base else (a - knot) * (a + knot))
 
 
 @njit
-def integrals(place: Floats, base: Floats, knots: Floats, coefficients: Floats) -> Floats:
-    """g, g' and ∫ x g' dx at each x = sqrt(place^2 + base^2) > 0, base a knot or 0, of f' = c0 + c1 s + c2 s^2 over
-    s = r - knot, the last piece without end.
+def integrals(q: Floats, base: Floats, knots: Floats, coefficients: Floats) -> Floats:
+    """Return g, g' and ∫ x g' dx, in columns, at each x = sqrt(q^2 + base^2) > 0, where base is a knot or 0.
 
-    Angles and s are formed without differences of numbers that are nearly equal; next to a knot, where g' begins like
-    the root of the way from it, x itself has too few digits.
+    The slope is f' = c0 + c1 s + c2 s^2 over s = r - knot, and the last piece has no end. Angles and s are formed
+    without differences of nearly equal numbers; next to a knot, where g' begins like the root of the distance from it,
+    x itself has too few digits.
     """
-    out = np.zeros((place.size, 3))
-    for i in range(place.size):
-        beside, begin = place[i], base[i]
-        a = math.sqrt(beside * beside + begin * begin)
+    out = np.zeros((q.size, 3))
+    for i in range(q.size):
+        a = math.sqrt(q[i] * q[i] + base[i] * base[i])
         for k in range(knots.size):
             knot = knots[k]
             if knot >= a:
                 break
-            q = _t_of_q(knot, a, beside, begin)
-            angle = math.atan2(q, knot)
+            root = _root(knot, a, q[i], base[i])
+            angle = math.atan2(root, knot)
             if k + 1 < knots.size and knots[k + 1] < a:
                 end = knots[k + 1]
-                q_end = _t_of_q(end, a, beside, begin)
-                sine = (end - knot) * (end + knot) * a * a / (end * q + knot * q_end)
-                angle = math.atan2(sine, q * q_end + end * knot)
-            nodes, weights = (_FINE, _FINE_WEIGHTS) if angle < _SMALL else (_WIDE, _WIDE_WEIGHTS)
+                root_end = _root(end, a, q[i], base[i])
+                sine = (end - knot) * (end + knot) * a * a / (end * root + knot * root_end)
+                angle = math.atan2(sine, root * root_end + end * knot)
+            nodes, weights = (_NODES_SMALL, _WEIGHTS_SMALL) if angle < _SMALL_ANGLE else (_NODES, _WEIGHTS)
             c0, c1, c2 = coefficients[k, 0], coefficients[k, 1], coefficients[k, 2]
             for j in range(nodes.size):
                 half = 0.5 * angle * nodes[j]
-                if angle < _SMALL:
+                if angle < _SMALL_ANGLE:
                     square = half * half
                     sine = half * (1.0 - square / 6.0 * (1.0 - square / 20.0))
                     cosine = 1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0))
                 else:
                     sine, cosine = math.sin(half), math.cos(half)
-                s = 2.0 * sine * (q * cosine - knot * sine)
+                s = 2.0 * sine * (root * cosine - knot * sine)
                 r = knot + s
                 slope = c0 + s * (c1 + s * c2)
                 weight = angle * weights[j]

@@ -1,17 +1,22 @@
-"""The MDR profile of a tabulated shape as pieces of polynomials, looked up.
+"""The functions of a tabulated profile, looked up in its params.
 
-A form holds [number of dips, dips (from, to) ..., number of pieces, their begins ..., the end, for each piece its
-knot, scale, middle, strain at its begin, the sums of the magnitudes of the coefficients of g and of ∫ x g' dx and the
-coefficients of g, g' and ∫ x g' dx, and for what lies beyond the end its steepness, a constant, the strain at the end
-and coefficients; then the number of knots and for each its r, f and the coefficients of f' over r - knot]. Over a piece
-these are polynomials in the place q = scale sqrt(a^2 - knot^2) - middle, in which they are smooth although g' has the
-kink of a root at every knot; beyond the end g - steepness a is one in 1/a^2.
+The params hold, one after another,
+- the number of softening intervals, and the beginning and end of each;
+- the number of pieces, where each begins, and where the last one ends;
+- for each piece HEAD numbers (its knot, the scale and the shift of u, the elastic integral at its beginning, the sums
+  of the magnitudes of the coefficients of g and of the reduced load), then the coefficients of g, of g' and of the
+  reduced load as polynomials in u = scale sqrt(a^2 - knot^2) - shift, in which they are smooth although g' begins like
+  a root at every knot;
+- for the far field beyond the last piece the steepness S, a constant, the elastic integral at its beginning and the
+  coefficients of g - S a in 1/a^2;
+- the number of knots of the spline, and for each its r, its f and the coefficients of f' in r - knot.
 """
 
 import math
 
 import numpy as np
 
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.profile import Params, Profile
 
@@ -25,95 +30,96 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
-def _piece(t: float, params: Params) -> int:
-    """Where the piece stands on which t lies; beyond the last the opposite of where the far field stands."""
-    first = 2 + 2 * int(params[0])
-    count = int(params[first - 1])
-    if t >= params[first + count]:
-        return -(first + count + 1 + PIECE * count)
+def beginnings(params: Params | Floats) -> tuple[int, int]:
+    """Return the offset of the beginnings of the pieces, and the number of pieces."""
+    offset = 2 + 2 * int(params[0])
+    return offset, int(params[offset - 1])
+
+
+def _last_at_or_below(value: float, params: Params, offset: int, step: int, count: int) -> int:
+    """Return the index of the last of ``count`` rising numbers, ``step`` apart, that is at most ``value``, else 0."""
     low, left = 0, count
     while left > 1:
         half = left // 2
-        low, left = (low + half if t >= params[first + low + half] else low), left - half
-    return first + count + 1 + PIECE * low
+        low, left = (low + half if value >= params[offset + step * (low + half)] else low), left - half
+    return low
 
 
-def _sum(place: float, begin: int, params: Params) -> float:
-    """The polynomial whose coefficients stand from ``begin`` on."""
-    square = place * place
-    even, odd = params[begin + DEGREE - 1], params[begin + DEGREE]
+def _find_piece(t: float, params: Params) -> int:
+    """Return the offset of the piece that t lies on; beyond the last one, minus the offset of the far field."""
+    offset, count = beginnings(params)
+    if t >= params[offset + count]:
+        return -(offset + count + 1 + PIECE * count)
+    return offset + count + 1 + PIECE * _last_at_or_below(t, params, offset, 1, count)
+
+
+def _polynomial(u: float, offset: int, params: Params) -> float:
+    """Return the polynomial in u whose coefficients begin at ``offset``."""
+    square = u * u
+    even, odd = params[offset + DEGREE - 1], params[offset + DEGREE]
     for i in range(DEGREE - 3, -1, -2):
-        even, odd = even * square + params[begin + i], odd * square + params[begin + i + 1]
-    return even + place * odd
+        even, odd = even * square + params[offset + i], odd * square + params[offset + i + 1]
+    return even + u * odd
 
 
-def _place_on(t: float, piece: int, params: Params) -> float:
+def _u(t: float, piece: int, params: Params) -> float:
     knot = params[piece]
     return params[piece + 1] * sqrt((t - knot) * (t + knot)) - params[piece + 2]
 
 
-def _far_sum(t: float, far: int, tilt: float, params: Params) -> float:
-    """sum of c_k t^(-2k) times 1, or -2 k (tilt 1), or 2 k/(2 k - 1) (tilt 2), over the terms k of the far field."""
+_VALUE, _SLOPE, _LOAD = 0, 1, 2
+
+
+def _far_sum(t: float, far: int, kind: int, params: Params) -> float:
+    """Return the sum of c_k t^(-2k) (for the value), times -2 k (slope) or 2 k/(2 k - 1) (reduced load)."""
     total, u = 0.0, 1.0 / t / t
     for k in range(DEGREE, -1, -1):
-        factor = 1.0 if tilt == 0.0 else (-2.0 * k if tilt == 1.0 else 2.0 * k / (2.0 * k - 1.0))
+        factor = 1.0 if kind == _VALUE else (-2.0 * k if kind == _SLOPE else 2.0 * k / (2.0 * k - 1.0))
         total = total * u + factor * params[far + 3 + k]
     return total
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
-    piece = _piece(t, params)
+    piece = _find_piece(t, params)
     if piece < 0:
         steepness = params[-piece]
-        slope = steepness + _far_sum(t, -piece, 1.0, params) / t
-        return t, 1.0, steepness * t + _far_sum(t, -piece, 0.0, params), slope
-    place = _place_on(t, piece, params)
-    return t, 1.0, _sum(place, piece + HEAD, params), _sum(place, piece + HEAD + 1 + DEGREE, params)
+        slope = steepness + _far_sum(t, -piece, _SLOPE, params) / t
+        return t, 1.0, steepness * t + _far_sum(t, -piece, _VALUE, params), slope
+    u = _u(t, piece, params)
+    return t, 1.0, _polynomial(u, piece + HEAD, params), _polynomial(u, piece + HEAD + 1 + DEGREE, params)
 
 
 def _reduced_load(t: float, params: Params) -> float:
-    piece = _piece(t, params)
+    piece = _find_piece(t, params)
     if piece < 0:
-        return 0.5 * params[-piece] * t * t + params[1 - piece] + t * _far_sum(t, -piece, 2.0, params)
-    return _sum(_place_on(t, piece, params), piece + HEAD + 2 + 2 * DEGREE, params)
-
-
-def _mdr_integral(t: float, params: Params) -> float:
-    return t * _mdr_profile(t, params)[2] - _reduced_load(t, params)
+        return 0.5 * params[-piece] * t * t + params[1 - piece] + t * _far_sum(t, -piece, _LOAD, params)
+    return _polynomial(_u(t, piece, params), piece + HEAD + 2 + 2 * DEGREE, params)
 
 
 def _term_sizes(t: float, params: Params) -> tuple[float, float]:
-    """At t on the tip, where there are three terms; else the most anywhere on the piece."""
-    piece = _piece(t, params)
+    """Return the sizes at t on the tip, where there are three terms; else the largest anywhere on the piece."""
+    piece = _find_piece(t, params)
     if piece < 0:
         return 0.0, 0.0
     if params[piece] > 0.0:
         return params[piece + 4], params[piece + 5]
-    g, push = 0.0, 0.0
+    g, load = 0.0, 0.0
     for k in range(3, 0, -1):
-        g, push = (g + abs(params[piece + HEAD + k])) * t, (push + abs(params[piece + HEAD + 2 * DEGREE + 3 + k])) * t
-    return g, push * t
+        g, load = (g + abs(params[piece + HEAD + k])) * t, (load + abs(params[piece + HEAD + 2 * DEGREE + 3 + k])) * t
+    return g, load * t
 
 
 def _roundings(params: Params) -> float:
-    """As they are tested; those of the slope next to a knot among them."""
+    """Return the roundings as tests find them; those of the slope next to a knot among them."""
     return 64.0
 
 
 def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
-    begins = 2 + 2 * int(params[0])
-    spline = begins + int(params[begins - 1]) * (1 + PIECE) + 1 + FAR
-    low, left = 0, int(params[spline])
-    while left > 1:
-        half = left // 2
-        low, left = (low + half if r >= params[spline + 1 + KNOT * (low + half)] else low), left - half
-    at = spline + 1 + KNOT * low
-    s, c0, c1, c2 = r - params[at], params[at + 2], params[at + 3], params[at + 4]
-    return params[at + 1] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)), c0 + s * (c1 + s * c2)
-
-
-def _t_of_radius(radius: float, width: float, params: Params) -> float:
-    return radius / width
+    offset, count = beginnings(params)
+    spline = offset + count * (1 + PIECE) + 1 + FAR
+    knot = spline + 1 + KNOT * _last_at_or_below(r, params, spline + 1, KNOT, int(params[spline]))
+    s, c0, c1, c2 = r - params[knot], params[knot + 2], params[knot + 3], params[knot + 4]
+    return params[knot + 1] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)), c0 + s * (c1 + s * c2)
 
 
 def _softening_count(params: Params) -> int:
@@ -125,8 +131,8 @@ def _softening_interval(index: int, params: Params) -> tuple[float, float]:
 
 
 def _kink(low: float, high: float, params: Params) -> bool:
-    """At a knot g' begins like a root: it is smooth only well away from it."""
-    first, last = _piece(low, params), _piece(high, params)
+    """Return whether there is a knot, where g' begins like a root, between low and high or just below low."""
+    first, last = _find_piece(low, params), _find_piece(high, params)
     if first < 0:
         return False
     knot = params[first]
@@ -134,37 +140,35 @@ def _kink(low: float, high: float, params: Params) -> bool:
 
 
 def _breakpoint_count(params: Params) -> int:
-    """At the begin of each piece but the first, and at the end."""
-    return int(params[1 + 2 * int(params[0])])
+    """Return the number of pieces: one begins at each breakpoint, and the last breakpoint is the end of the last."""
+    return beginnings(params)[1]
 
 
 def _breakpoint(index: int, params: Params) -> tuple[float, float]:
-    begins = 2 + 2 * int(params[0])
-    count = int(params[begins - 1])
-    begin = params[begins + index + 1]
-    return begin, params[begins + count + 1 + PIECE * min(index + 1, count - 1)]
+    offset, count = beginnings(params)
+    return params[offset + index + 1], params[offset + count + 1 + PIECE * min(index + 1, count - 1)]
 
 
-def strain_between(low: float, high: float, params: Params) -> float:
-    """2 ∫ g' ∫ x g' dx dx from low to high on one piece, over the fourth power of the place in it."""
+def elastic_integral_between(low: float, high: float, params: Params) -> float:
+    """Return 2 ∫ g' ∫ x g' dx dx from low to high on one piece, over the fourth root of the distance from low."""
     total = 0.0
     for i in range(_NODES.size):
         z = _NODES[i]
-        at = low + (high - low) * z * z * z * z
-        total += 8.0 * (high - low) * _WEIGHTS[i] * z * z * z * _mdr_profile(at, params)[3] * _reduced_load(at, params)
+        t = low + (high - low) * z * z * z * z
+        total += 8.0 * (high - low) * _WEIGHTS[i] * z * z * z * _mdr_profile(t, params)[3] * _reduced_load(t, params)
     return total
 
 
 def _elastic_integral(t: float, params: Params) -> float:
-    piece = _piece(t, params)
-    begins = 2 + 2 * int(params[0])
-    count = int(params[begins - 1])
+    piece = _find_piece(t, params)
+    offset, count = beginnings(params)
     if piece >= 0:
-        return params[piece + 3] + strain_between(params[begins + (piece - begins - count - 1) // PIECE], t, params)
-    total, low = params[2 - piece], params[begins + count]
+        begin = params[offset + (piece - offset - count - 1) // PIECE]
+        return params[piece + 3] + elastic_integral_between(begin, t, params)
+    total, low = params[2 - piece], params[offset + count]
     while low < t < math.inf:
         high = min(2.0 * low, t)
-        total += strain_between(low, high, params)
+        total += elastic_integral_between(low, high, params)
         low = high
     return total
 
@@ -172,12 +176,10 @@ def _elastic_integral(t: float, params: Params) -> float:
 PROFILE = Profile(
     _mdr_profile,
     _reduced_load,
-    _mdr_integral,
-    _t_of_radius,
     _f_and_slope,
-    _softening_count,
-    _softening_interval,
-    _kink,
+    softening_count=_softening_count,
+    softening_interval=_softening_interval,
+    kink=_kink,
     elastic_integral=_elastic_integral,
     breakpoint_count=_breakpoint_count,
     breakpoint=_breakpoint,

@@ -10,15 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import SharedProfile, radii
-from roughmdr.shapes.profile import Profile
+from roughmdr.shapes.base import SharedProfile, check_radii
 from roughmdr.shapes.tabulated import lookup
 
-_LEAST_POINTS = 3
-_CLOSEST = 1e-6  # of the last radius: nearer points leave no digits to the spline between them
-_LARGEST = 1e100  # the squares of radii and heights are floats
-_ROUNDING = 4 * np.finfo(float).eps  # of a chord's slope, from the rounding of the points
-_NOISE = 1e-9  # a slope of g that is below 0 by as little of the largest is rounding
+_MIN_POINTS = 3
+_MIN_SPACING = 1e-6  # of the last radius: nearer points leave no digits to the spline between them
+_MAX_LENGTH = 1e100  # [m], so that the squares of radii and heights are floats
+_RTOL_CHORD = 4 * np.finfo(float).eps  # of a chord's slope, from the rounding of the points
+_NOISE = 1e-9  # of the largest slope of g: one that is below 0 by less is rounding
 
 
 class Tabulated(SharedProfile):
@@ -26,16 +25,14 @@ class Tabulated(SharedProfile):
 
     The spline is the not-a-knot cubic, its slopes at the points kept between 0 and three times the lesser slope of the
     chords, and so that it is convex where the chords are (R. L. Dougherty, A. Edelman, J. M. Hyman, Math. Comp. 52
-    (1989) 471). ShapeError unless there are at least 3
-    points, r rises, f does not fall, and both begin at 0. OutOfRange where the profile is so concave that the contact
-    would not be a disc.
+    (1989) 471). ShapeError unless there are at least 3 points, r rises, f does not fall, and both begin at 0.
+    OutOfRange where the profile is so concave that the contact would not be a disc.
     """
 
-    name: ClassVar[str] = "tabulated"
+    name = "tabulated"
     units: ClassVar[dict[str, str]] = {"r": "m", "f": "m"}
-    along: ClassVar[str] = "point"
-    spellings: ClassVar[tuple[tuple[str, ...], ...]] = (("r", "f"),)
-    profile: ClassVar[Profile] = lookup.PROFILE
+    dimension = "point"
+    profile = lookup.PROFILE
 
     def __init__(self, r: ArrayLike, f: ArrayLike) -> None:
         self.radii, self.heights = _column("r", r), _column("f", f)
@@ -51,14 +48,6 @@ class Tabulated(SharedProfile):
         return {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
 
     @property
-    def columns(self) -> dict[str, Floats]:
-        return self.parameters
-
-    @classmethod
-    def of_columns(cls, columns: dict[str, Floats]) -> "Tabulated":
-        return cls(**columns)
-
-    @property
     def parameters(self) -> dict[str, Any]:
         return {"r": self.radii, "f": self.heights}
 
@@ -68,56 +57,62 @@ class Tabulated(SharedProfile):
 
     @cached_property
     def _units(self) -> tuple[float, float]:
-        """The powers of two next to the last r and f: dividing by them changes no bit."""
+        """The width and rise: the powers of two next to the last r and f, so that dividing by them changes no bit."""
         return float(2.0 ** np.frexp(self.radii[-1])[1]), float(2.0 ** np.frexp(self.heights[-1])[1])
+
+    def _exact_pieces(self) -> list[tuple[Fraction, ...]]:
+        """Return the knot and the coefficients of f' in r - knot of each piece, the last without end; in ``_units``.
+
+        Floats lose digits in the differences of nearly equal slopes where points lie close.
+        """
+        width, rise = self._units
+        columns = self.radii / width, self.heights / rise, self.knot_slopes * (width / rise)
+        points = list(zip(*([Fraction(value) for value in column.tolist()] for column in columns), strict=True))
+        pieces = []
+        for (begin, f_begin, left), (end, f_end, right) in pairwise(points):
+            h, chord = end - begin, (f_end - f_begin) / (end - begin)
+            pieces.append((begin, left, 2 * (3 * chord - 2 * left - right) / h, 3 * (left + right - 2 * chord) / h**2))
+        return [*pieces, (points[-1][0], points[-1][2], Fraction(0), Fraction(0))]
 
     @cached_property
     def _pieces(self) -> tuple[Floats, Floats]:
-        """Knots, and the coefficients of f' over r - knot for each piece, the last one without end; in ``_units``."""
-        width, rise = self._units
-        r, f, d = self.radii / width, self.heights / rise, self.knot_slopes * (width / rise)
-        exact = [[Fraction(value) for value in column.tolist()] for column in (r, f, d)]
-        coefficients = np.zeros((r.size, 3))
-        coefficients[:, 0] = d
-        # Differences of slopes that are nearly alike: in floats they lose as many digits as the points lie close.
-        for i, (begin, end) in enumerate(pairwise(zip(*exact, strict=True))):
-            h, left, right = end[0] - begin[0], begin[2], end[2]
-            chord = (end[1] - begin[1]) / h
-            coefficients[i, 1:] = 2 * (3 * chord - 2 * left - right) / h, 3 * (left + right - 2 * chord) / h**2
-        return r, coefficients
+        """The knots, and the coefficients, as floats."""
+        pieces = np.array(self._exact_pieces(), dtype=np.float64)
+        return np.ascontiguousarray(pieces[:, 0]), np.ascontiguousarray(pieces[:, 1:])
 
+    # By way of the given heights, which the params hold with their roundings summed up.
     def f(self, r: ArrayLike) -> Floats:
-        s, (c0, c1, c2), piece = self._at(r)
+        s, (c0, c1, c2), piece = self._locate(r)
         return np.asarray(self.heights[piece] + self._units[1] * s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)))
 
     def df(self, r: ArrayLike) -> Floats:
-        s, (c0, c1, c2), _ = self._at(r)
+        s, (c0, c1, c2), _ = self._locate(r)
         return np.asarray(self._units[1] / self._units[0] * (c0 + s * (c1 + s * c2)))
 
-    def _at(self, r: ArrayLike) -> tuple[Floats, Floats, NDArray[np.intp]]:
-        """r - knot and the coefficients of the piece that each r lies on, and its number."""
+    def _locate(self, r: ArrayLike) -> tuple[Floats, Floats, NDArray[np.intp]]:
+        """Return r - knot, the coefficients and the index of the piece that each r lies on."""
         knots, coefficients = self._pieces
-        r = radii("r", r) / self._units[0]
+        r = check_radii("r", r) / self._units[0]
         piece = np.searchsorted(knots[1:], r, side="right")
         return r - knots[piece], coefficients[piece].T.reshape(3, *r.shape), piece
 
     @cached_property
-    def _form(self) -> Floats:
+    def _params(self) -> Floats:
         from roughmdr.shapes.tabulated.build import tabulate
 
         return tabulate(*self._pieces)
 
     def nondimensional(self) -> tuple[float, float, Any]:
-        """About the last r and f, and the pieces in these units."""
-        return *self._units, self._form
+        """Return powers of two next to the last r and f as width and rise, and the pieces."""
+        return *self._units, self._params
 
     def _check_disc(self) -> None:
-        """OutOfRange where g falls: pressed without adhesion, the contact would gape inside."""
-        from roughmdr.shapes.tabulated.build import steepness
+        """Raise OutOfRange where g falls: pressed without adhesion, the contact would have a gap inside."""
+        from roughmdr.shapes.tabulated.build import sample_slope
 
         width, _ = self._units
         knots, coefficients = self._pieces
-        x, slope = steepness(knots, knots, coefficients)
+        x, slope = sample_slope(knots, knots, coefficients)
         falls = slope < -_NOISE * slope.max()
         if falls.any():
             raise OutOfRange(
@@ -126,34 +121,27 @@ class Tabulated(SharedProfile):
             )
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
-        """As for every shape, from the antiderivatives of each piece with 40 digits."""
+        """Return a, g and a g - G as ``ProfileShape`` does, here from the antiderivatives of each piece."""
         from mpmath import mp
 
         with mp.workdps(40):
-            a = mp.mpf(self._units[0]) * mp.mpf(t)
-            r, f, d = ([mp.mpf(float(v)) for v in column] for column in (self.radii, self.heights, self.knot_slopes))
-            g = push = begin = mp.mpf(0)
-            for k, knot in enumerate(r):
+            a, g, load, begin = mp.mpf(t), mp.mpf(0), mp.mpf(0), mp.mpf(0)
+            pieces = [[mp.mpf(v.numerator) / v.denominator for v in piece] for piece in self._exact_pieces()]
+            for (knot, c0, c1, c2), (following, *_) in zip(pieces, [*pieces[1:], [mp.inf]], strict=True):
                 if knot >= a:
                     break
-                last = k + 1 == len(r)
-                end = mp.pi / 2 if last or r[k + 1] >= a else mp.asin(r[k + 1] / a)
-                bend = twist = mp.mpf(0)
-                if not last:
-                    h = r[k + 1] - knot
-                    chord = (f[k + 1] - f[k]) / h
-                    bend = 2 * (3 * chord - 2 * d[k] - d[k + 1]) / h
-                    twist = 3 * (d[k] + d[k + 1] - 2 * chord) / h**2
-                powers = (d[k] - bend * knot + twist * knot**2, (bend - 2 * twist * knot) * a, twist * a**2)
+                end = mp.pi / 2 if following >= a else mp.asin(following / a)
+                powers = (c0 - c1 * knot + c2 * knot**2, (c1 - 2 * c2 * knot) * a, c2 * a**2)
                 sines = [_sine_integral(m, end) - _sine_integral(m, begin) for m in range(5)]
                 g += a * sum(c * sines[m] for m, c in enumerate(powers))
-                push += a**2 * sum(c * sines[m + 2] for m, c in enumerate(powers))
+                load += a**2 * sum(c * sines[m + 2] for m, c in enumerate(powers))
                 begin = end
-            return a, g, push
+            width, rise = self._units
+            return width * a, rise * g, width * rise * load
 
 
 def _sine_integral(power: int, angle: Any) -> Any:
-    """∫_0^angle sin^power, for power 0 to 4, of an mpmath number."""
+    """Return ∫_0^angle sin^power for an mpmath angle and a power from 0 to 4."""
     from mpmath import mp
 
     sine, cosine = mp.sin(angle), mp.cos(angle)
@@ -163,11 +151,12 @@ def _sine_integral(power: int, angle: Any) -> Any:
 
 
 def _column(name: str, values: ArrayLike) -> Floats:
+    """Return ``values`` as read-only floats; ShapeError unless they are finite and begin with 0."""
     try:
         column = np.array(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise ShapeError(f"tabulated: {name} is {values!r}; it must be a list of numbers") from None
-    if column.ndim != 1 or column.size < _LEAST_POINTS:
+    if column.ndim != 1 or column.size < _MIN_POINTS:
         raise ShapeError(f"tabulated: {name} has the shape {column.shape}; it must hold at least 3 numbers in a row")
     if not np.isfinite(column).all():
         where = int(np.argmin(np.isfinite(column)))
@@ -179,6 +168,7 @@ def _column(name: str, values: ArrayLike) -> Floats:
 
 
 def _check(r: Floats, f: Floats) -> None:
+    """Raise ShapeError where r and f are no profile."""
     if r.size != f.size:
         raise ShapeError(f"tabulated: r holds {r.size} numbers and f {f.size}; they must be equally many")
     for name, column, falls in (("r", r, np.diff(r) <= 0.0), ("f", f, np.diff(f) < 0.0)):
@@ -190,36 +180,35 @@ def _check(r: Floats, f: Floats) -> None:
     if f[-1] == 0.0:
         raise ShapeError("tabulated: f is 0 everywhere; that is a FlatPunch")
     for name, column in (("r", r), ("f", f)):
-        if not 1.0 / _LARGEST < column[-1] < _LARGEST:
+        if not 1.0 / _MAX_LENGTH < column[-1] < _MAX_LENGTH:
             raise ShapeError(f"tabulated: {name} ends at {column[-1]:g} m; it must end between 1e-100 and 1e100 m")
     nearest = int(np.argmin(np.diff(r)))
-    if not np.diff(r)[nearest] > _CLOSEST * r[-1]:
+    if not np.diff(r)[nearest] > _MIN_SPACING * r[-1]:
         raise ShapeError(
-            f"tabulated: r[{nearest + 1}] is {r[nearest + 1]:g} m, nearer to the point before than {_CLOSEST:g} of the "
-            "length of the table; its points must lie further apart"
+            f"tabulated: r[{nearest + 1}] is {r[nearest + 1]:g} m, nearer to the point before than {_MIN_SPACING:g} of "
+            "the length of the table; its points must lie further apart"
         )
 
 
 def _monotone_slopes(r: Floats, f: Floats) -> Floats:
-    """f' at the points: the not-a-knot cubic's, so limited that f never falls and is convex where the chords are."""
+    """Return f' at the points, of the not-a-knot cubic, limited so that f rises, and is convex where the chords are."""
     from scipy.interpolate import CubicSpline
 
-    # By powers of two, so that no bit changes.
-    r_unit, f_unit = (2.0 ** np.frexp(column[-1])[1] for column in (r, f))
+    r_unit, f_unit = (2.0 ** np.frexp(column[-1])[1] for column in (r, f))  # powers of two, so that no bit changes
     r, f = r / r_unit, f / f_unit
     chords = np.diff(f) / np.diff(r)
     before, after = np.append(-np.inf, chords[:-1]), np.append(chords[1:], np.inf)
     steepest = 3.0 * np.minimum(np.append(chords, np.inf), np.insert(chords, 0, np.inf))
     slopes = np.clip(np.asarray(CubicSpline(r, f, bc_type="not-a-knot")(r, 1)), 0.0, steepest)
-    rounding = _ROUNDING * (np.abs(f[1:]) + chords * r[1:]) / np.diff(r)
+    rounding = _RTOL_CHORD * (np.abs(f[1:]) + chords * r[1:]) / np.diff(r)
     slack = rounding + np.maximum(np.append(0.0, rounding[:-1]), np.append(rounding[1:], 0.0))
     convex = (before <= chords + slack) & (chords <= after + slack)
     if convex[0]:
         slopes[0] = min(slopes[0], chords[0])
     for i in np.flatnonzero(convex):
         # f'' >= 0 at both ends of the piece: 2 d_i + d_(i+1) <= 3 chord <= d_i + 2 d_(i+1).
-        most = min(3.0 * chords[i] - 2.0 * slopes[i], after[i])
-        least = max(0.5 * (3.0 * chords[i] - slopes[i]), chords[i])
-        slopes[i + 1] = np.clip(slopes[i + 1], min(least, most), most)
+        upper = min(3.0 * chords[i] - 2.0 * slopes[i], after[i])
+        lower = max(0.5 * (3.0 * chords[i] - slopes[i]), chords[i])
+        slopes[i + 1] = np.clip(slopes[i + 1], min(lower, upper), upper)
     slopes *= f_unit / r_unit
     return slopes

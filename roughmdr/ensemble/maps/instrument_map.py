@@ -12,12 +12,12 @@ from roughmdr.schema.units import unit_factor
 
 
 def read_instrument(path: Path, channel: str | None) -> RawMap:
-    """The channel of that name, or the file's default one; undefined points become NaN.
+    """Read the first channel of that name, or the file's default one; undefined points become NaN.
 
-    Of several channels of one name, the first. RoughmdrError where the file cannot be read or is no map of heights.
+    RoughmdrError where the file cannot be read or is not a map of heights.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what is in the file, or not installed, beside the map
+        warnings.simplefilter("ignore")  # of other contents of the file, or packages that are not installed
         try:
             from SurfaceTopography.IO import open_topography
         except ImportError:
@@ -27,7 +27,7 @@ def read_instrument(path: Path, channel: str | None) -> RawMap:
             ) from None
         try:
             with open_topography(str(path)) as reader:
-                return _content(reader, channel)
+                return _read_channel(reader, channel)
         except RoughmdrError:
             raise
         except Exception as error:
@@ -36,24 +36,24 @@ def read_instrument(path: Path, channel: str | None) -> RawMap:
             ) from error
 
 
-def _content(reader: Any, channel: str | None) -> RawMap:
-    chosen = reader.default_channel
-    if channel is not None:
+def _read_channel(reader: Any, name: str | None) -> RawMap:
+    channel = reader.default_channel
+    if name is not None:
         names = [each.name for each in reader.channels]
-        if channel not in names:
-            raise RoughmdrError(f"has no channel {channel!r}, but {list(dict.fromkeys(names))}")
-        chosen = reader.channels[names.index(channel)]
-    if chosen.dim != 2 or chosen.data_kind.value != "height":
-        what = "a line" if chosen.dim != 2 else chosen.data_kind.value
-        raise RoughmdrError(f"channel {chosen.name!r} holds {what}, not a map of heights")
-    sizes = chosen.physical_sizes
-    found = chosen.topography(**({} if sizes else {"physical_sizes": (1.0, 1.0)}))
-    height = np.ma.filled(found.heights(), np.nan)
-    unit = "Å" if found.unit == "A" else found.unit
+        if name not in names:
+            raise RoughmdrError(f"has no channel {name!r}, but {list(dict.fromkeys(names))}")
+        channel = reader.channels[names.index(name)]
+    if channel.dim != 2 or channel.data_kind.value != "height":
+        kind = "a line" if channel.dim != 2 else channel.data_kind.value
+        raise RoughmdrError(f"channel {channel.name!r} holds {kind}, not a map of heights")
+    sizes = channel.physical_sizes
+    topography = channel.topography(**({} if sizes else {"physical_sizes": (1.0, 1.0)}))
+    height = np.ma.filled(topography.heights(), np.nan)
+    unit = "Å" if topography.unit == "A" else topography.unit
     if sizes is None:
         return RawMap(height, unit)
     if unit is None:
         raise RoughmdrError("does not say in which unit it is; export it as text, where size and unit can be given")
     factor = float(unit_factor(unit, "m"))
     dx, dy = (float(side) * factor / points for side, points in zip(sizes, height.shape, strict=True))
-    return RawMap(height, unit, (dx, dy), found.is_periodic)
+    return RawMap(height, unit, (dx, dy), topography.is_periodic)

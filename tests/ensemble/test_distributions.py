@@ -15,7 +15,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
-from roughmdr.ensemble.random.families import known_families
+from roughmdr.ensemble.random.distribution_families import known_families
 from roughmdr.scene import read
 
 UM = 1e-6
@@ -27,7 +27,7 @@ NOT_AT_ZERO = "its mean is not at z = 0"
 
 @st.composite
 def families(draw: st.DrawFn) -> tuple[str, dict[str, float]]:
-    """A continuous distribution of scipy.stats with parameters of its own, wherever there is such a distribution."""
+    """A continuous distribution of scipy.stats with own parameters for which it is defined."""
     name = draw(st.sampled_from(FAMILIES))
     family = getattr(scipy.stats, name)
     names = [] if family.shapes is None else family.shapes.split(", ")
@@ -37,23 +37,23 @@ def families(draw: st.DrawFn) -> tuple[str, dict[str, float]]:
 
 
 def quiet(function: Any, *arguments: Any, **named: Any) -> Any:
-    """What a function of scipy returns, warn as it may."""
+    """Call a function of scipy without its warnings."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         return function(*arguments, **named)
 
 
-def contradicted(law: Any, own: tuple[float, ...], mean: float, variance: float) -> bool:
-    """Whether scipy's moments cannot be those of its own quantiles: all that lies beyond one counts at least as it."""
+def contradicted(family: Any, own: tuple[float, ...], mean: float, variance: float) -> bool:
+    """Return whether scipy's moments contradict its own quantiles (the inequalities of Markov and Chebyshev)."""
     for share in (1e-3, 1e-5, 1e-7, 1e-9):
-        for end in (quiet(law.ppf, share, *own), quiet(law.isf, share, *own)):
+        for end in (quiet(family.ppf, share, *own), quiet(family.isf, share, *own)):
             if math.isfinite(mean) and not share * (end - mean) ** 2 <= variance:
                 return True
-    return not quiet(law.support, *own)[0] <= mean <= quiet(law.support, *own)[1]
+    return not quiet(family.support, *own)[0] <= mean <= quiet(family.support, *own)[1]
 
 
 def generated(asperities: dict[str, Any], **options: int) -> tuple[Any, str]:
-    """The ensemble, and what is warned of."""
+    """The ensemble, and its warnings."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found = rm.generate(asperities, **options)
@@ -67,7 +67,7 @@ class Asked(NamedTuple):
     twin: Any
     below: float
     """The level at which it is cut off."""
-    off_centre: bool
+    mean_off_zero: bool
     wrong: bool
     """Whether scipy's moments cannot be right."""
 
@@ -75,10 +75,10 @@ class Asked(NamedTuple):
 def asked_for(family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float) -> Asked:
     """The family by some of its parameters; cut off at a low level where asked, so that radii are above 0."""
     name, own = family
-    law, height = getattr(scipy.stats, name), "height" in of
-    mean, variance = map(float, quiet(law.stats, *own.values(), moments="mv"))
+    scipy_family, height = getattr(scipy.stats, name), "height" in of
+    mean, variance = map(float, quiet(scipy_family.stats, *own.values(), moments="mv"))
     try:
-        wrong = contradicted(law, tuple(own.values()), mean, variance)
+        wrong = contradicted(scipy_family, tuple(own.values()), mean, variance)
     except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverse leads nowhere
         assume(False)
     middle, size = mean if math.isfinite(mean) else 0.0, math.sqrt(variance) if 0.0 < variance < math.inf else 1.0
@@ -91,7 +91,7 @@ def asked_for(family: tuple[str, dict[str, float]], by: str, of: str, unit: floa
         entry["loc"] = loc = place * unit
     elif "mean" in by:
         entry["mean"], loc = place * unit, place * unit - scale * middle
-    twin, below = quiet(law, *own.values(), loc=loc, scale=scale), 0.0
+    twin, below = quiet(scipy_family, *own.values(), loc=loc, scale=scale), 0.0
     if of == "radius cut off":
         entry["min"] = max(float(quiet(twin.ppf, 0.1)), 1e-3 * scale)
         below = float(quiet(twin.cdf, entry["min"]))
@@ -110,7 +110,7 @@ def asked_for(family: tuple[str, dict[str, float]], by: str, of: str, unit: floa
 def test_any_distribution_is_that_of_scipy(
     family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float
 ) -> None:
-    """By its quantiles, and by those of draws, as nearly as draws can tell."""
+    """Its quantiles are equal, and those of draws within their sampling error."""
     asked, height = asked_for(family, by, of, unit, place), "height" in of
     section = {**ASPERITIES, "height": "1 um", "radius": "50 um", "count": 400}
     if of == "height of the second":
@@ -123,7 +123,7 @@ def test_any_distribution_is_that_of_scipy(
         reasons = ["cannot be drawn from", "must be above 0", *(["no finite mean"] if asked.wrong else [])]
         assert any(reason in str(error) for reason in reasons)  # noqa: PT017
         assume(False)
-    population = read(scene(asperities=section, path={"separation": [0.0]})).asperities.law.populations[-1]
+    population = read(scene(asperities=section, path={"separation": [0.0]})).asperities.populations.members[-1]
     mine = (population.height if height else population.parameters["radius"]).quantile(LEVELS)
     near = 6.0 * np.sqrt(LEVELS * (1.0 - LEVELS) / 400)
     fractions = np.clip([LEVELS - near, LEVELS, LEVELS + near], 0.0, 1.0)
@@ -134,12 +134,12 @@ def test_any_distribution_is_that_of_scipy(
     assert (drawn >= least - tiny).all()
     assert (drawn <= most + tiny).all()
     if not asked.wrong:
-        assert (NOT_AT_ZERO in warned) == asked.off_centre
+        assert (NOT_AT_ZERO in warned) == asked.mean_off_zero
 
 
 @pytest.mark.parametrize("estimator", ["sampled", "stratified", "expected"])
 def test_the_force_is_that_of_scipys_heights(estimator: str) -> None:
-    """Of Hertzian contacts all in reach, by the moment of the heights above the flat, without loc."""
+    """The force of Hertzian contacts, all pressed in, from the moment of the heights above the flat, without loc."""
     a, size, radius, effective_modulus = 2.0, 1e-6, 50e-6, 4e6
     section = {**ASPERITIES, "radius": radius, "height": {"distribution": "gamma", "a": a, "scale": size}}
     found = rm.run(
@@ -169,8 +169,8 @@ OWN = {"distribution": "expon", "scale": "1 um"}
 SAID = [{"loc": 0.0}, {"mean": 0.0}, {"mean": "1 um"}]
 
 
-def test_whoever_leaves_the_place_of_heights_to_scipy_is_told(tmp_path: Path) -> None:
-    """By plan, run and generate; not by whoever says it, and not of radii or of heights that scipy centres."""
+def test_heights_without_a_location_are_warned_of(tmp_path: Path) -> None:
+    """By plan, run and generate; not where a location is given, nor for radii or heights that scipy centres."""
     table = scene(asperities={**ASPERITIES, "count": 20, "height": OWN}, batch={"realizations": 2})
     told = r"asperities\.height: expon .* loc = 0, and its mean is not at z = 0; say loc = 0 .*, or mean = 0"
     with pytest.warns(rm.LimitWarning, match=told):
@@ -191,7 +191,7 @@ def test_whoever_leaves_the_place_of_heights_to_scipy_is_told(tmp_path: Path) ->
         assert generated({**ASPERITIES, **changes}, seed=1)[1] == ""
 
 
-def test_in_a_sweep_it_is_said_once_with_the_number_of_cells() -> None:
+def test_a_sweep_warns_once_with_the_number_of_cells() -> None:
     table = scene(asperities={**ASPERITIES, "count": 20, "height": OWN}, batch={"realizations": 1})
     found = rm.run({**table, "sweep": {"asperities.height.distribution": ["normal", "expon", "rayleigh"]}})
     said = [line for line in found.attrs["warnings"].splitlines() if NOT_AT_ZERO in line]
@@ -200,7 +200,7 @@ def test_in_a_sweep_it_is_said_once_with_the_number_of_cells() -> None:
 
 
 @pytest.mark.parametrize("said", [{"loc": 0.0}, {}])
-def test_saying_so_changes_no_number(said: dict[str, float]) -> None:
+def test_an_explicit_loc_changes_no_number(said: dict[str, float]) -> None:
     """Results of a scene that says loc = 0 are those of one that leaves it out."""
     table = scene(asperities={**ASPERITIES, "count": 20, "height": {**OWN, **said}}, batch={"realizations": 2})
     plain = rm.run(scene(asperities={**ASPERITIES, "count": 20, "height": OWN}, batch={"realizations": 2}))
@@ -224,8 +224,8 @@ def test_a_scale_must_be_given() -> None:
         ({"distribution": "kappa4", "h": -0.5812889286827593, "k": 2.0}, False),
     ],
 )
-def test_moments_that_scipy_gives_where_there_are_none_are_not_believed(family: dict[str, Any], mean: bool) -> None:
-    """scipy says that the mean of 1/x is gamma(1 - 1/c), say, which is a number where the integral is infinite."""
+def test_wrong_moments_of_scipy_are_rejected(family: dict[str, Any], mean: bool) -> None:
+    """scipy gives gamma(1 - 1/c) as the mean of 1/x, for example, a number where the integral is infinite."""
     with pytest.raises(rm.SceneError, match="no finite mean and standard deviation"):
         rm.generate({**ASPERITIES, "height": {**family, "std": "1 um"}}, seed=1)
     height = read(scene(asperities={**ASPERITIES, "height": {**family, "scale": 1.0}}, path={"separation": [0.0]}))

@@ -1,4 +1,4 @@
-"""What is taken out of a height map, what gaps and edges do to it, and how well it resolves its summits."""
+"""Trends and short waves removed from height maps, the effect of gaps and edges, and the resolution of summits."""
 
 from functools import partial
 from pathlib import Path
@@ -15,13 +15,13 @@ from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.resolution import FEW, measures
+from roughmdr.ensemble.maps.map_statistics import FEW_POINTS, map_statistics
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import LimitWarning
 
 approx = partial(pytest.approx, abs=0.0)
 TRENDS = {"none": 0, "mean": 1, "plane": 3, "quadratic": 6}
-"""How many of the terms 1, x, y, x x, x y, y y each takes out."""
+"""How many of the terms 1, x, y, x x, x y, y y each removes."""
 
 
 def terms(nx: int, ny: int) -> np.ndarray:
@@ -64,7 +64,7 @@ def smoothed(surface: HeightMap, cutoff: float) -> np.ndarray:
 @pytest.mark.parametrize("gappy", [False, True])
 @pytest.mark.parametrize("unit", [1e-9, 1.0])
 def test_a_trend_is_removed_exactly(trend: str, gappy: bool, unit: float) -> None:
-    """What the fit takes out makes no difference, and nothing else is taken out; steep, and far from 0."""
+    """A trend makes no difference, however steep and far from 0, and nothing else is removed."""
     basis = terms(31, 42)[: TRENDS[trend]]
     rough = unit * np.random.default_rng(1).normal(size=(31, 42))
     rough[gaps(31, 42) if gappy else np.zeros((31, 42), dtype=bool)] = np.nan
@@ -92,8 +92,8 @@ def test_the_gaussian_passes_half_at_its_cutoff(ratio: float, spacings: float, u
     np.testing.assert_allclose(passed[inner], 2.0 ** -((cutoff / length) ** 2) * wave[inner], atol=2e-3)
 
 
-def test_the_filter_is_a_weighted_mean_of_what_there_is() -> None:
-    """Against the sum written out, at edges and in between gaps; a constant stays what it is."""
+def test_the_filter_is_a_weighted_mean_of_defined_points() -> None:
+    """Against the explicit sum, at edges and between gaps; a constant is unchanged."""
     height = np.random.default_rng(4).normal(size=(40, 30))
     height[gaps(40, 30)] = np.nan
     dx, dy, cutoff = 1.0, 1.3, 20.0
@@ -122,7 +122,7 @@ def test_a_periodic_map_is_cut_sharply() -> None:
 
 
 def rows(found: Ensemble, *, side: float) -> np.ndarray:
-    """Summits in one order, with their places around the cell."""
+    """Summits in one order, with their positions around the cell."""
     x, y = found.positions["x"], found.positions["y"]
     assert min(x.min(), y.min()) >= 0.0
     assert max(x.max(), y.max()) < side
@@ -131,7 +131,7 @@ def rows(found: Ensemble, *, side: float) -> np.ndarray:
 
 
 def test_a_periodic_map_has_no_edges() -> None:
-    """Rolled by any way, the same summits stand there, as far away as it was rolled."""
+    """A map rolled by any distance has the same summits, moved by that distance."""
     height = waves(64, 5, 32)
     first = rows(find_summits(HeightMap(height, 0.5, 0.5, periodic=True)), side=32.0)
     assert len(first) > find_summits(HeightMap(height, 0.5, 0.5)).height.size
@@ -155,7 +155,7 @@ def test_a_paraboloid_across_the_corner_of_a_periodic_map(corner: tuple[float, f
 
 
 def test_a_top_across_the_edge_of_a_periodic_map_stands_at_the_other_edge() -> None:
-    """Drops of 0 before, 1 behind and 0.5 beside: the fit peaks 0.83 of a spacing away."""
+    """Drops of 0 and 1 along one axis and 0.5 across: the fit peaks 0.83 of a spacing away."""
     height = np.full((5, 6), -9.0)
     height[1:4, 1:4] = [[-1e-9, -1e-9, -1e-9], [-0.5, 0.0, -0.5], [-1.0, -1.0, -1.0]]
     for rolled, places in ((height, ("x", "y")), (height.T, ("y", "x"))):
@@ -166,7 +166,7 @@ def test_a_top_across_the_edge_of_a_periodic_map_stands_at_the_other_edge() -> N
 
 
 def test_a_summit_needs_all_its_neighbours() -> None:
-    """Each of eight neighbours undefined in turn; a point further away, or none, does nothing to the fit."""
+    """Each of eight neighbours undefined in turn; one farther away, or none, does not change the fit."""
     x, y = np.arange(9.0)[:, None] - 4.2, np.arange(8.0)[None, :] - 3.1
     dome = 2e-6 - 1e-8 * (x * x + 4.0 * y * y)
     for i, j in np.ndindex(9, 8):
@@ -182,7 +182,7 @@ def test_a_summit_needs_all_its_neighbours() -> None:
         assert found.parameters["radius"][0] == approx(1e-12 / 4e-8, rel=1e-9)
         assert found.nominal_area == approx(71e-12, rel=1e-12)
         assert found.attrs["points_per_summit"] == 71
-        assert measures(surface)["undefined_share"] == 1 / 72
+        assert map_statistics(surface)["undefined_share"] == 1 / 72
 
 
 def test_height_and_slope_of_a_wave() -> None:
@@ -191,18 +191,18 @@ def test_height_and_slope_of_a_wave() -> None:
     wave = np.cos(2 * np.pi * np.arange(n) / n)[:, None] * np.ones((1, n)) * 1e-9
     slope = 2e-9 * np.sin(np.pi / n) / d / np.sqrt(2)
     for height in (wave, wave.T):
-        found = measures(HeightMap(height, d, d, periodic=True))
+        found = map_statistics(HeightMap(height, d, d, periodic=True))
         assert found["rms_height"] == approx(1e-9 / np.sqrt(2), rel=1e-12)
         assert found["rms_slope"] == approx(slope, rel=1e-12)
     plane = np.add.outer(3.0 * np.arange(9), 4.0 * np.arange(7))
     plane[2, 3] = np.nan
-    assert measures(HeightMap(plane, 1.0, 1.0))["rms_slope"] == approx(5.0, rel=1e-12)
+    assert map_statistics(HeightMap(plane, 1.0, 1.0))["rms_slope"] == approx(5.0, rel=1e-12)
 
 
 @pytest.mark.parametrize(("longest", "hurst"), [(16.5, 0.8), (128.0, 0.8), (128.0, 0.2)])
 def test_sixteen_points_a_wave_are_enough(longest: float, hurst: float) -> None:
     found = find_summits(HeightMap(waves(256, 16, longest, hurst), 1.0, 1.0, periodic=True))
-    assert found.attrs["points_per_summit"] > 5 * FEW
+    assert found.attrs["points_per_summit"] > 5 * FEW_POINTS
     assert found.attrs["misfit"] < 0.03
 
 
@@ -213,19 +213,19 @@ def test_noise_has_few_points_a_summit() -> None:
     assert found.attrs["misfit"] == approx(1.1, abs=0.1)
 
 
-def test_the_misfit_tells_noise_where_the_points_do_not() -> None:
+def test_the_misfit_shows_noise_that_the_points_do_not() -> None:
     """Noise of 1 % of the height doubles no count, and makes the summits half as sharp again."""
     clean = waves(256, 16, 128)
     found = find_summits(HeightMap(clean, 1.0, 1.0, periodic=True))
     noisy = find_summits(HeightMap(clean + 0.01 * waves(256, 0.1, 256, -1.0), 1.0, 1.0, periodic=True))
-    assert noisy.attrs["points_per_summit"] > 5 * FEW
+    assert noisy.attrs["points_per_summit"] > 5 * FEW_POINTS
     assert np.mean(1.0 / noisy.parameters["radius"]) > 1.3 * np.mean(1.0 / found.parameters["radius"])
     assert noisy.attrs["misfit"] > 0.5
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """With a map of few points a summit, and a resolved periodic one."""
+    """A folder with a map of few points per summit, and a resolved periodic one."""
     monkeypatch.chdir(tmp_path)
     np.save("coarse.npy", 1e-6 * waves(64, 2, 16, 0.2))
     at = (np.arange(128) + 0.5) * 1e-6
@@ -278,7 +278,7 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
         ("detrend", ["none", "quadratic"]),
     ],
 )
-def test_what_is_asked_of_a_map_can_be_swept(folder: Path, key: str, values: list[str]) -> None:
+def test_keys_of_a_map_can_be_swept(folder: Path, key: str, values: list[str]) -> None:
     asperities = {"source": "surface", "file": "coarse.npy", "size": "64 um"}
     swept = rm.run(scene(asperities=asperities, batch=None, sweep={f"asperities.{key}": values}))
     for i, value in enumerate(values):

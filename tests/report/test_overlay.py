@@ -14,7 +14,7 @@ from scipy import stats
 import roughmdr as rm
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.cli import main
-from roughmdr.report.comparison import Comparison, expected_law, named_laws
+from roughmdr.report.overlay import Overlay, overlay_expected, overlay_theory
 from roughmdr.scene import read
 from roughmdr.spectrum import SelfAffine
 
@@ -37,18 +37,18 @@ def asked(**changes: Any) -> Plan:
     return make_plan(read(scene(**(sections | changes))))
 
 
-def lines_of(found: Comparison, law: str, cell: int = 0) -> dict[str, np.ndarray]:
-    return {line.variable: line.values for line in found.lines if (line.law, line.cell) == (law, cell)}
+def lines_of(found: Overlay, law: str, cell: int = 0) -> dict[str, np.ndarray]:
+    return {line.variable: line.values for line in found.lines if (line.label, line.cell) == (law, cell)}
 
 
 def remarks_on(law: str, plan: Plan, names: list[str] = EVERY) -> list[str]:
     start = f"{law}: "
-    return [text.removeprefix(start) for text in named_laws(plan, names).remarks if text.startswith(start)]
+    return [text.removeprefix(start) for text in overlay_theory(plan, names).remarks if text.startswith(start)]
 
 
 def check(plan: Plan, law: str, theory: Callable[[str, np.ndarray], np.ndarray], rtol: float = 1e-9) -> None:
     """Hold the lines of a law to what ``theory`` says of a variable of its own at the plan's separations."""
-    lines, h = lines_of(named_laws(plan, EVERY), law), plan.cells[0].path.separation
+    lines, h = lines_of(overlay_theory(plan, EVERY), law), plan.cells[0].path.separation
     assert list(lines) == EVERY
     for name, own, factor in zip(EVERY, AS_IN_THEORY, TIMES, strict=True):
         values = factor * theory(own, h)
@@ -85,9 +85,9 @@ def test_maugis_too_where_the_tabor_number_is_small() -> None:
 def test_a_density_in_place_of_a_count_is_that_of_the_law() -> None:
     given = {key: value for key, value in SUMMITS.items() if key != "count"}
     lines = lines_of(
-        named_laws(asked(asperities=given | {"density": 3.0 * COUNT / AREA}), ["force"]), "greenwood_williamson"
+        overlay_theory(asked(asperities=given | {"density": 3.0 * COUNT / AREA}), ["force"]), "greenwood_williamson"
     )
-    once = lines_of(named_laws(asked(), ["force"]), "greenwood_williamson")
+    once = lines_of(overlay_theory(asked(), ["force"]), "greenwood_williamson")
     np.testing.assert_allclose(lines["force"], 3.0 * once["force"], rtol=1e-13)
 
 
@@ -105,7 +105,7 @@ def test_a_density_in_place_of_a_count_is_that_of_the_law() -> None:
 def test_named_law_and_expected_law_agree(adhesion: Any, height: dict[str, Any], heights: Any) -> None:
     name = "fuller_tabor" if adhesion else "greenwood_williamson"
     plan = asked(adhesion=adhesion, asperities=SUMMITS | {"height": height})
-    named, expected = lines_of(named_laws(plan, EVERY), name), lines_of(expected_law(plan, EVERY), "expected")
+    named, expected = lines_of(overlay_theory(plan, EVERY), name), lines_of(overlay_expected(plan, EVERY), "expected")
     for variable in EVERY:
         largest = np.abs(expected[variable]).max()
         np.testing.assert_allclose(named[variable], expected[variable], rtol=0.0, atol=1e-9 * largest)
@@ -122,15 +122,15 @@ def test_named_law_and_expected_law_agree(adhesion: Any, height: dict[str, Any],
 def test_the_elliptic_law_of_greenwood_is_the_expected_one_of_a_gaussian_surface() -> None:
     plan = asked(asperities=SURFACE)
     section = plan.cells[0].scene.asperities
-    rounded = section.expected_count / (section.law.density * section.nominal_area)
-    named, expected = named_laws(plan, EVERY), expected_law(plan, EVERY)
+    rounded = section.expected_count / (section.summits.density * section.nominal_area)
+    named, expected = overlay_theory(plan, EVERY), overlay_expected(plan, EVERY)
     for name, values in lines_of(expected, "expected").items():
         np.testing.assert_allclose(lines_of(named, "greenwood_elliptic")[name] * rounded, values, rtol=1e-8)
 
 
 def test_the_laws_of_a_gaussian_surface_by_hand() -> None:
     plan = asked(asperities=SURFACE)
-    found, h = named_laws(plan, ["force", "contact_fraction"]), plan.cells[0].path.separation
+    found, h = overlay_theory(plan, ["force", "contact_fraction"]), plan.cells[0].path.separation
     moments = {"effective_modulus": MODULUS, **SPECTRUM.moments._asdict()}
     bush = lines_of(found, "bush_gibson_thomas")
     pressure = rm.theory.bush_gibson_thomas(separation=h, **moments)
@@ -189,7 +189,7 @@ GW, FT, DMT = "greenwood_williamson", "fuller_tabor", "dmt_maugis"
         (FT, {}, "the scene has no adhesion"),
         (FT, {"adhesion": {**JKR, "model": "dugdale", "strength": 1e6}}, "of finite range, not that of JKR"),
         (FT, {"adhesion": {**JKR, "model": "auto", "strength": 1e3}}, "of finite range, not that of JKR"),
-        (FT, {"adhesion": JKR, "path": CUT_BACK}, "does not go straight in and straight out"),
+        (FT, {"adhesion": JKR, "path": CUT_BACK}, "the path is not one loading and one unloading"),
         (DMT, {}, "the scene has no adhesion"),
         (DMT, {"adhesion": JKR}, "neither strength nor range of the adhesion is given"),
         (DMT, {"adhesion": {**JKR, "strength": 1e9}}, "not below 0.1"),
@@ -198,7 +198,7 @@ GW, FT, DMT = "greenwood_williamson", "fuller_tabor", "dmt_maugis"
         (
             "persson_separation",
             {"asperities": {"source": "nayak", "patch": 1e-3, "m0": 1e-12, "m2": 1e-2, "m4": 1e9}},
-            "it needs a self-affine spectrum, the scene gives m0, m2 and m4",
+            "it needs a self-affine spectrum, but the scene gives m0, m2 and m4",
         ),
         (
             "persson_contact_fraction",
@@ -212,26 +212,26 @@ def test_a_law_that_does_not_apply_says_why(law: str, changes: dict[str, Any], r
     (remark,) = remarks_on(law, plan)
     assert remark.startswith("not drawn: ")
     assert reason in remark
-    assert not lines_of(named_laws(plan, EVERY), law)
+    assert not lines_of(overlay_theory(plan, EVERY), law)
 
 
 def test_auto_that_takes_jkr_is_as_jkr() -> None:
     path = {"separation": [4e-6, 1e-6]}
     plan = asked(adhesion={**JKR, "model": "auto", "strength": 1e12}, path=path)
-    taken = lines_of(named_laws(plan, ["force"]), FT)["force"]
-    jkr = lines_of(named_laws(asked(adhesion=JKR, path=path), ["force"]), FT)["force"]
+    taken = lines_of(overlay_theory(plan, ["force"]), FT)["force"]
+    jkr = lines_of(overlay_theory(asked(adhesion=JKR, path=path), ["force"]), FT)["force"]
     np.testing.assert_array_equal(taken, jkr)
 
 
 def test_a_law_says_which_variables_it_has_not() -> None:
-    assert remarks_on(GW, asked(), ["stiffness", "energy"]) == ["not drawn: it says nothing of stiffness, energy"]
-    assert list(lines_of(named_laws(asked(), ["stiffness", "force"]), GW)) == ["force"]
+    assert remarks_on(GW, asked(), ["stiffness", "energy"]) == ["not drawn: it gives no stiffness or energy"]
+    assert list(lines_of(overlay_theory(asked(), ["stiffness", "force"]), GW)) == ["force"]
 
 
 def test_the_expected_line_is_the_run_with_that_estimator() -> None:
     names = ["force", "stiffness", "dissipated_energy"]
     table = scene(output={"variables": names})
-    lines = lines_of(expected_law(make_plan(read(table)), names), "expected")
+    lines = lines_of(overlay_expected(make_plan(read(table)), names), "expected")
     run = rm.run(table | {"batch": {"estimator": "expected"}})
     for name in names:
         np.testing.assert_array_equal(lines[name], run[name].values[0])
@@ -245,7 +245,7 @@ def test_the_expected_line_is_the_run_with_that_estimator() -> None:
     ],
 )
 def test_where_there_is_no_expected_law(asperities: dict[str, Any], reason: str) -> None:
-    found = expected_law(asked(asperities=asperities), ["force"])
+    found = overlay_expected(asked(asperities=asperities), ["force"])
     assert not found.lines
     assert found.remarks[0].startswith(reason)
 
@@ -253,15 +253,15 @@ def test_where_there_is_no_expected_law(asperities: dict[str, Any], reason: str)
 def test_a_sweep_has_lines_of_every_cell_to_which_a_law_applies() -> None:
     works = [0.0, 0.02, WORK]
     plan = asked(adhesion=JKR, sweep={"adhesion.work": works})
-    found = named_laws(plan, ["force"])
-    assert sorted({(line.law, line.cell) for line in found.lines}) == [(FT, 1), (FT, 2), (GW, 0)]
+    found = overlay_theory(plan, ["force"])
+    assert sorted({(line.label, line.cell) for line in found.lines}) == [(FT, 1), (FT, 2), (GW, 0)]
     assert remarks_on(GW, plan, ["force"]) == [
         "drawn (in 1 of 3 cells)",
         "not drawn: the scene has adhesion (in 2 of 3 cells)",
     ]
-    last = lines_of(named_laws(asked(adhesion=JKR), ["force"]), FT)
+    last = lines_of(overlay_theory(asked(adhesion=JKR), ["force"]), FT)
     np.testing.assert_array_equal(lines_of(found, FT, 2)["force"], last["force"])
-    expected = expected_law(plan, ["force"])
+    expected = overlay_expected(plan, ["force"])
     assert [line.cell for line in expected.lines] == [0, 1, 2]
     assert expected.remarks == ["drawn"]
 
@@ -318,5 +318,5 @@ def test_a_result_that_is_not_of_its_scene_is_refused(
     change(rm.run(scene(batch=None, path=WAY))).to_netcdf(changed)
     done = roughmdr("plot", str(changed), "-o", str(picture), "--with-expected")
     assert done.exit_code == 2
-    assert "its separations are not those of the scene that it holds" in done.output
+    assert "its separations are not those of the scene in it" in done.output
     assert not picture.exists()

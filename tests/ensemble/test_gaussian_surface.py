@@ -1,4 +1,4 @@
-"""Summits of Gaussian surfaces: their law against quadrature and against Gaussian derivatives, and how it is drawn."""
+"""Summits of Gaussian surfaces: their distribution against quadrature and Gaussian derivatives, and how it is drawn."""
 
 import math
 from typing import Any
@@ -45,7 +45,7 @@ def expect(moment: Any) -> float:
     return float(math.sqrt(6.0 / math.pi) * 3.0 * (weights @ values @ weights))
 
 
-def test_the_moments_of_the_law() -> None:
+def test_moments_of_the_summits() -> None:
     m0, m2, m4 = MICRO.moments
     assert expect(lambda S, v: 1.0) == pytest.approx(1.0, rel=1e-13)
     S1, S2 = expect(lambda S, v: S), expect(lambda S, v: S * S)
@@ -61,8 +61,8 @@ def test_the_moments_of_the_law() -> None:
     assert MICRO.density == pytest.approx(m4 / (6.0 * math.pi * math.sqrt(3.0) * m2), rel=1e-15)
 
 
-def test_the_law_is_that_of_gaussian_derivatives_at_maxima() -> None:
-    """Nothing but covariances: (h, hxx, hyy, hxy) are normal, and maxima are met as often as the determinant says."""
+def test_summits_are_maxima_of_gaussian_derivatives() -> None:
+    """From covariances alone: (h, hxx, hyy, hxy) are normal, and the density of maxima goes as the determinant."""
     m0, m2, m4 = MICRO.moments
     covariance = np.array([[m0, -m2, -m2], [-m2, m4, m4 / 3.0], [-m2, m4 / 3.0, m4]])
     unit = np.sqrt(np.diag(covariance))
@@ -97,7 +97,7 @@ def test_mean_curvatures_are_the_inverse_of_their_distribution() -> None:
 
 
 @pytest.mark.parametrize("S", [9.5e-4, 0.03, 0.7, 0.71, 1.5, 4.0, 8.9, 40.0])
-def test_products_of_curvatures_are_the_inverse_of_theirs(S: float) -> None:
+def test_products_of_curvatures_are_the_inverse_of_their_distribution(S: float) -> None:
     product = product_of_curvatures(np.array(EXTREME), np.full(len(EXTREME), S))
     with mp.workdps(120):
         level = (mp.mpf(S) ** 2 - 1) * mp.exp(mp.mpf(S) ** 2) + 1
@@ -107,9 +107,9 @@ def test_products_of_curvatures_are_the_inverse_of_theirs(S: float) -> None:
 
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_the_density_of_height_is_the_integral_over_the_mean_curvature(alpha: float) -> None:
-    law, unit = of_alpha(alpha), math.sqrt(2.5)
+    summits, unit = of_alpha(alpha), math.sqrt(2.5)
     with mp.workdps(25):
-        tied = 1.5 / mp.mpf(law.moments.alpha)
+        tied = 1.5 / mp.mpf(summits.moments.alpha)
         width = mp.sqrt((1 - tied) / (3 - 2 * tied))
         for v in (1e-8, 0.3, 2.0, 30.0):
             for z in (-3.0, 0.2, 2.0, 6.0):
@@ -123,14 +123,14 @@ def test_the_density_of_height_is_the_integral_over_the_mean_curvature(alpha: fl
                 start = max(root, peak - 12 * width)
                 expected = mp.quad(joint, [start + k * width for k in (*range(8), 12, 16, 26)])
                 expected /= mp.exp(1.5 * v) * mp.erfc(mp.sqrt(1.5 * v)) * unit
-                assert float(law.height_density(z * unit, v)) == pytest.approx(float(expected), rel=1e-12)
+                assert float(summits.height_density(z * unit, v)) == pytest.approx(float(expected), rel=1e-12)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
-def test_densities_hold_everywhere(alpha: float) -> None:
-    law = of_alpha(alpha)
+def test_densities_are_finite_everywhere(alpha: float) -> None:
+    summits = of_alpha(alpha)
     z, v = np.linspace(-200.0, 200.0, 401)[:, None], np.concatenate([[0.0], np.geomspace(1e-300, 1e5, 200)])
-    density = law.height_density(z, v)
+    density = summits.height_density(z, v)
     assert density.shape == (401, 201)
     assert np.isfinite(density).all()
     assert (density >= 0.0).all()
@@ -138,25 +138,26 @@ def test_densities_hold_everywhere(alpha: float) -> None:
     total = quad(lambda root: 2.0 * root * product_density(root * root), 0.0, 12.0, epsabs=0.0)[0]
     assert total == pytest.approx(1.0, rel=1e-12)
     for product in (0.0, 0.5, 9.0):
-        centre = math.sqrt(2.5 * 1.5 / law.moments.alpha * product)
+        centre = math.sqrt(2.5 * 1.5 / summits.moments.alpha * product)
         ends = (centre - 12.0 * math.sqrt(2.5), centre + 12.0 * math.sqrt(2.5))
-        one = quad(law.height_density, *ends, args=(product,), points=[centre], limit=400)[0]
+        one = quad(summits.height_density, *ends, args=(product,), points=[centre], limit=400)[0]
         assert one == pytest.approx(1.0, rel=1e-7)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_summits_are_drawn_from_the_densities(alpha: float) -> None:
     """The fractions below each draw, of v and then of the height given v, are evenly spread (M. Rosenblatt, 1952)."""
-    law, (nodes, weights) = of_alpha(alpha), leggauss(300)
-    summits = law.draw(*np.random.default_rng(11).random((3, 3000)))
-    v = (law.radius(1.0) / summits.radius) ** 2
+    distribution, (nodes, weights) = of_alpha(alpha), leggauss(300)
+    summits = distribution.draw(*np.random.default_rng(11).random((3, 3000)))
+    v = (distribution.radius(1.0) / summits.radius) ** 2
 
     def fraction(least: np.ndarray, most: np.ndarray, density: Any) -> np.ndarray:
         half = 0.5 * (most - least)
         return np.asarray((density(least + half * (1.0 + nodes[:, None])) * weights[:, None]).sum(axis=0) * half)
 
     of_root = fraction(np.zeros_like(v), np.sqrt(v), lambda root: 2.0 * root * product_density(root**2))
-    of_height = fraction(np.full_like(v, -8.0 * math.sqrt(2.5)), summits.height, lambda z: law.height_density(z, v))
+    lowest = np.full_like(v, -8.0 * math.sqrt(2.5))
+    of_height = fraction(lowest, summits.height, lambda z: distribution.height_density(z, v))
     for name, fractions in (("v", of_root), ("height", of_height)):
         assert scipy.stats.kstest(fractions, "uniform").pvalue > 0.01, name
     assert abs(scipy.stats.spearmanr(of_root, of_height).statistic) < 4.0 / math.sqrt(3000)
@@ -206,21 +207,21 @@ def test_seeds_realizations_and_longer_draws() -> None:
         assert set(few.parameters["radius"]) < set(many.parameters["radius"])
 
 
-def test_evenly_spread_draws_are_nearer_to_the_law() -> None:
+def test_stratified_draws_are_nearer_to_the_distribution() -> None:
     one = section(patch="0.5 mm")
-    law, plain = one.law, one.law.sigma / math.sqrt(one.count)
-    curvature = quad(lambda root: 2.0 * root * product_density(root**2) / law.radius(root**2), 0.0, 12.0)[0]
+    summits, plain = one.summits, one.summits.sigma / math.sqrt(one.count)
+    curvature = quad(lambda root: 2.0 * root * product_density(root**2) / summits.radius(root**2), 0.0, 12.0)[0]
     for realization in range(3):
         made = one.ensemble(1, realization, stratified=True)
-        assert abs(made.height.mean() - law.mean) < 0.2 * plain
+        assert abs(made.height.mean() - summits.mean) < 0.2 * plain
         assert np.mean(1.0 / made.parameters["radius"]) == pytest.approx(curvature, rel=2e-3)
 
 
-def test_a_part_of_a_large_ensemble() -> None:
-    part = section().sampled(100)
+def test_an_ensemble_limited_to_a_count() -> None:
+    part = section().limited_to(100)
     assert part.expected_count == part.ensemble(1, 0).height.size == 100.0
     assert part.sigma == section().sigma
-    assert section().sampled(10**8).expected_count == section().expected_count
+    assert section().limited_to(10**8).expected_count == section().expected_count
 
 
 def changed(table: dict[str, Any], **changes: Any) -> dict[str, Any]:
@@ -252,12 +253,12 @@ def changed(table: dict[str, Any], **changes: Any) -> dict[str, Any]:
         ({"source": "nayak", "patch": 1.0}, "asperities: takes m0, m2 and m4, or hurst"),
     ],
 )
-def test_what_is_no_surface_is_refused(table: dict[str, Any], says: str) -> None:
+def test_impossible_surfaces_are_refused(table: dict[str, Any], says: str) -> None:
     with pytest.raises(rm.SceneError, match=says):
         rm.generate(table, seed=1)
 
 
-def test_all_that_is_wrong_is_said_at_once() -> None:
+def test_all_faults_are_reported_at_once() -> None:
     with pytest.raises(rm.SceneError) as error:
         rm.generate({**WAVES, "m0": "1 um^2", "short_wave": "1 mm", "rms_height": "-1 um"}, seed=1)
     wrong = {fault.key for fault in error.value.faults}

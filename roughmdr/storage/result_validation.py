@@ -1,6 +1,6 @@
-"""The arrays and attributes that make a file a result: checked once, where it is read, so that nothing else asks.
+"""Validation of a result file when it is read, so that no other code has to check what a result holds.
 
-Anyone may have changed the file. A result may hold more than is listed here; nothing here may be of another kind.
+Anyone may have changed the file. A result may hold more than is listed here; what is listed must be of its kind.
 """
 
 from collections.abc import Iterator
@@ -9,25 +9,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.schema.toml_text import table_of
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN
 
-_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
-_MORE_TEXTS = ("accuracy", "warnings", "versions", "checksum")
-_ALWAYS = ("status", "run_time", "numerical_error")
-_OF_RUNS = {
+_REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
+_OPTIONAL_TEXTS = ("accuracy", "warnings", "versions", "checksum")
+_REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
+_RUN_KINDS = {
     **dict.fromkeys(("run_time", "numerical_error", "tabor_number", "edge_slope", "profile_extent"), "f"),
     **dict.fromkeys(("status", "adhesion_law"), "i"),
 }
-_OF_CELLS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i"}
-"""Kinds of numbers: f and i as NumPy has them."""
+_CELL_KINDS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i"}
+"""NumPy's kind of each variable over runs and over cells: f floating-point, i integer."""
 _STATISTICS = ("mean", "sem", "min", "max")
 _BRANCHES = ("loading", "unloading")
 
 
-def fault_in(data: Labelled) -> str:
-    """Why arrays are no result; empty where they are one."""
+def find_fault(data: Labelled) -> str:
+    """Return why these arrays are no result; empty if they are one."""
     for faults in (_missing, _attributes, _dimensions, _arrays, _pairs, _curves, _numbers):
         if fault := next(faults(data), ""):
             return fault
@@ -35,19 +35,23 @@ def fault_in(data: Labelled) -> str:
 
 
 def _missing(data: Labelled) -> Iterator[str]:
-    needed = (("separation", "branch"), data.coordinates), (_ALWAYS, data.variables), ((*_TEXTS, "seed"), data.attrs)
-    if missing := [name for names, held in needed for name in names if name not in held]:
-        yield f"it holds no {', '.join(missing)}"
+    required = (
+        (("separation", "branch"), data.coordinates),
+        (_REQUIRED_VARIABLES, data.variables),
+        ((*_REQUIRED_TEXTS, "seed"), data.attrs),
+    )
+    if missing := [name for names, present in required for name in names if name not in present]:
+        yield f"it has no {', '.join(missing)}"
 
 
 def _attributes(data: Labelled) -> Iterator[str]:
-    for name in (*_TEXTS, *_MORE_TEXTS):
+    for name in (*_REQUIRED_TEXTS, *_OPTIONAL_TEXTS):
         if name in data.attrs and not _is_text(data.attrs[name]):
             yield f"the attribute {name} is no text"
     if not isinstance(data.attrs["seed"], int | np.integer):
         yield "the attribute seed is no whole number"
     try:
-        scene = table_of(data.attrs["scene"])
+        scene = parse_toml(data.attrs["scene"])
     except ValueError as error:
         yield f"its scene cannot be read: not valid TOML: {error}"
         return
@@ -63,56 +67,56 @@ def _dimensions(data: Labelled) -> Iterator[str]:
         yield "a dimension has no length"
     runs = data.variables["status"].dims
     if "step" in runs or "realization" in runs[:-1] or len(set(runs)) < len(runs):
-        yield f"status lies over {', '.join(runs)}; it must lie over swept keys, each once, and realization"
+        yield f"status has the dimensions {', '.join(runs)}; it must have the swept keys, each once, and realization"
     if "realization" in data.sizes and "realization" not in runs:
-        yield "status does not lie over realization"
+        yield "status lacks the dimension realization"
     if "realization" not in data.sizes and "realization_count" not in data.variables:
         yield "it has neither a dimension realization nor a realization_count"
 
 
 def _arrays(data: Labelled) -> Iterator[str]:
     runs, cells = data.variables["status"].dims, _cells(data)
-    for declared, dims in ((_OF_RUNS, runs), (_OF_CELLS, cells)):
+    for declared, dims in ((_RUN_KINDS, runs), (_CELL_KINDS, cells)):
         for name in declared.keys() & data.variables.keys():
-            yield from _misfit(name, data.variables[name], dims, declared[name])
+            yield from _mismatches(name, data.variables[name], dims, declared[name])
     for name, dims in (("cell_key", cells), ("remark", runs), ("branch", ("step",))):
         if name in data.coordinates:
-            yield from _misfit(name, data.coordinates[name], dims, "text")
+            yield from _mismatches(name, data.coordinates[name], dims, "text")
     separation = data.coordinates["separation"]
     if [dim for dim in cells if dim in separation.dims] != list(separation.dims[:-1]):
-        yield f"separation lies over {', '.join(separation.dims)}; it must lie over swept keys and step"
-    yield from _misfit("separation", separation, (*separation.dims[:-1], "step"), "f")
+        yield f"separation has the dimensions {', '.join(separation.dims)}; it must have swept keys and step"
+    yield from _mismatches("separation", separation, (*separation.dims[:-1], "step"), "f")
     for name, array in data.coordinates.items():
         if name not in AUXILIARY_COORDINATES and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"
 
 
 def _pairs(data: Labelled) -> Iterator[str]:
-    """Find what lacks its counterpart."""
+    """Find variables that lack their counterpart."""
     if ("tabor_number" in data.variables) != ("adhesion_law" in data.variables):
-        yield "it holds one of tabor_number and adhesion_law without the other"
+        yield "it has one of tabor_number and adhesion_law without the other"
     if (data.variables["status"].values == FAILED).any() and "remark" not in data.coordinates:
         yield "runs failed, and no remark says why"
 
 
 def _curves(data: Labelled) -> Iterator[str]:
-    """Of the variables: one at least, over all runs and steps, with all its statistics if with one."""
-    over, found = (*data.variables["status"].dims, "step"), False
+    """Find curves of the wrong kind: at least one is needed, over runs and steps, with all statistics or none."""
+    dims, found = (*data.variables["status"].dims, "step"), False
     for name in CURVE_VARIABLES:
-        several = [f"{name}_{what}" for what in _STATISTICS]
-        missing = [part for part in several if part not in data.variables]
-        if missing and several[0] not in missing:
-            yield f"it holds {several[0]} but no {', '.join(missing)}"
-        for part in (name, *several):
+        statistics = [f"{name}_{statistic}" for statistic in _STATISTICS]
+        missing = [part for part in statistics if part not in data.variables]
+        if missing and statistics[0] not in missing:
+            yield f"it has {statistics[0]} but no {', '.join(missing)}"
+        for part in (name, *statistics):
             if part in data.variables:
                 found = True
-                yield from _misfit(part, data.variables[part], over, "f")
+                yield from _mismatches(part, data.variables[part], dims, "f")
     if not found:
-        yield f"it holds none of {', '.join(CURVE_VARIABLES)}"
+        yield f"it has none of {', '.join(CURVE_VARIABLES)}"
 
 
 def _numbers(data: Labelled) -> Iterator[str]:
-    """Find numbers that no run writes, now that arrays are of the right kind and in the right place."""
+    """Find values that no run writes; arrays are known to have the right kinds and dimensions."""
     status = data.variables["status"].values
     if not np.isin(status, (DONE, FAILED, NOT_RUN)).all():
         yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
@@ -136,22 +140,22 @@ def _numbers(data: Labelled) -> Iterator[str]:
             if not _is_text(meanings):
                 yield f"{name} has no flag_meanings"
             elif not ((array.values >= 0) & (array.values < len(str(meanings).split()))).all():
-                yield f"{name} holds a number that is none of its flags"
+                yield f"{name} has a value that is none of its flags"
 
 
 def _cells(data: Labelled) -> tuple[str, ...]:
     return tuple(dim for dim in data.variables["status"].dims if dim != "realization")
 
 
-def _misfit(name: str, array: Array, dims: tuple[str, ...], kind: str) -> Iterator[str]:
+def _mismatches(name: str, array: Array, dims: tuple[str, ...], kind: str) -> Iterator[str]:
     if array.dims != dims:
-        lies, must = (", ".join(each) or "nothing" for each in (array.dims, dims))
-        yield f"{name} lies over {lies}; it must lie over {must}"
+        actual, expected = (", ".join(each) or "none" for each in (array.dims, dims))
+        yield f"{name} has the dimensions {actual}; it must have {expected}"
     if not (_is_texts(array.values) if kind == "text" else array.values.dtype.kind == kind):
-        yield f"{name} is of type {array.values.dtype}; it must be {_KINDS[kind]}"
+        yield f"{name} is of type {array.values.dtype}; it must be {_KIND_NAMES[kind]}"
 
 
-_KINDS = {"text": "texts", "f": "floating-point numbers", "i": "whole numbers"}
+_KIND_NAMES = {"text": "texts", "f": "floating-point numbers", "i": "whole numbers"}
 
 
 def _is_texts(values: NDArray[Any]) -> bool:
@@ -159,5 +163,5 @@ def _is_texts(values: NDArray[Any]) -> bool:
 
 
 def _is_text(value: object) -> bool:
-    """Whether it is one that can be written again."""
+    """Return whether a value is a text that can be written as UTF-8."""
     return isinstance(value, str) and value.encode(errors="replace").decode() == value

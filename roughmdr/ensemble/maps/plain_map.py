@@ -1,4 +1,4 @@
-"""Height maps that are numbers and nothing else: rows along x, columns along y, as text or as NumPy writes them."""
+"""Height maps that are plain numbers: rows along x, columns along y, as text or as NumPy writes them."""
 
 from pathlib import Path
 from typing import Any
@@ -13,13 +13,13 @@ _DELIMITERS = (";", ",", "\t")
 
 
 def read_npy(path: Path, channel: str | None) -> RawMap:
-    """The array of a .npy file; RoughmdrError where it is none, or would run code to be read."""
+    """Read the array of a .npy file; RoughmdrError where it is none, or would run code to be read."""
     _refuse_channel(channel)
     return RawMap(_array(_load(path)))
 
 
 def read_npz(path: Path, channel: str | None) -> RawMap:
-    """The array ``channel`` of a .npz file, or height, or the only one; RoughmdrError where that is not one."""
+    """Read the array ``channel`` of a .npz file, or height, or the only one; RoughmdrError where there is none."""
     arrays = _load(path)
     if not isinstance(arrays, np.lib.npyio.NpzFile):
         raise RoughmdrError("not an .npz file; it may be an .npy file under another name")
@@ -35,9 +35,9 @@ def read_npz(path: Path, channel: str | None) -> RawMap:
 
 
 def read_text(path: Path, channel: str | None) -> RawMap:
-    """A text of numbers in rows, parted by blanks, tabs, commas or semicolons, # before comments; "nan" is undefined.
+    """Read rows of numbers separated by blanks, tabs, commas or semicolons; # begins a comment, "nan" is undefined.
 
-    RoughmdrError where it is no such text.
+    RoughmdrError where the file is not such a text.
     """
     _refuse_channel(channel)
     try:
@@ -64,14 +64,10 @@ def _load(path: Path) -> Any:
     try:
         return np.load(path, allow_pickle=False)
     except Exception as error:
-        raise RoughmdrError(f"cannot be read by NumPy: {_first_sentence(error)}") from error
+        raise RoughmdrError(f"cannot be read by NumPy: {str(error).partition('. ')[0]}") from error
 
 
 def _array(value: Any) -> NDArray[Any]:
     if not isinstance(value, np.ndarray):
         raise RoughmdrError("not an .npy file; it may be an .npz file under another name")
     return value
-
-
-def _first_sentence(error: Exception) -> str:
-    return str(error).partition(". ")[0]

@@ -1,4 +1,4 @@
-"""A named law, as it is put beside a result."""
+"""The form of a theory curve."""
 
 from collections.abc import Callable
 from typing import NamedTuple, get_args
@@ -11,19 +11,16 @@ from roughmdr.theory.equal_summits import Variable
 
 
 class TheoryCurve(NamedTuple):
-    """What a law says of a scene, and of which variables."""
+    """A theory as it is drawn over a result."""
 
-    over: Callable[[Cell, Variable], Floats]
-    """A variable at each step of a cell, NaN where the law says nothing.
-
-    RoughmdrError, with the reason, where it does not apply.
-    """
+    evaluate: Callable[[Cell, Variable], Floats]
+    """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
     variables: tuple[Variable, ...] = get_args(Variable)
     note: str = ""
-    """In what it differs from what the scene asks for."""
+    """How the theory differs from the scene."""
 
 
 def check_no_adhesion(scene: Scene) -> None:
-    """RoughmdrError where the scene has adhesion."""
+    """Raise RoughmdrError if the scene has adhesion."""
     if scene.work > 0.0:
         raise RoughmdrError("the scene has adhesion")

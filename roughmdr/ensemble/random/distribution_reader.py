@@ -1,0 +1,172 @@
+"""Read a distribution as a scene gives it: a plain quantity, or a table with the name of a family and parameters."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_families import ALIASES, Family, find_family, known_families
+from roughmdr.errors import RoughmdrError
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.wording import close_matches
+
+_COMMON = ("loc", "scale", "mean", "std", "min", "max")
+"""Parameters of every family, in the unit of the quantity."""
+_LOCATION = ("loc", "mean", "std")  # std with the default mean
+_MIN_FRACTION = 1e-200  # that a truncated distribution keeps: less has no digits left
+_MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # of a family: far beyond, scipy can crash the whole process
+
+
+@dataclass(frozen=True)
+class DistributionReader:
+    """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
+
+    The parameters are scipy's (the family's own, loc, scale), with which the distribution is scipy's, loc = 0 by
+    default; or mean and std, to which it is moved and scaled. ``mean`` is the default mean of those that have a std.
+    ``scale`` has no default: a length of 1 m is never meant. ``min`` and ``max`` truncate what the others describe.
+    Raises RoughmdrError, with the names that are allowed, where the entry cannot be read.
+    """
+
+    dimension: str
+    mean: float | None = None
+    positive: bool = False
+    """Whether every value that can be drawn must be above 0."""
+
+    def __call__(self, value: object) -> Distribution:
+        """Return the distribution in SI."""
+        if not isinstance(value, dict):
+            return self._check_sign(Distribution("", (), quantity(value, self.dimension), 0.0))
+        try:
+            return self._read_cached(tuple((key, type(entry), entry) for key, entry in value.items()))
+        except TypeError:  # an entry that cannot be hashed
+            return self._check_sign(self._from_table(value))
+
+    @lru_cache(maxsize=256)  # noqa: B019 - the cells of a sweep read the same ones over and over
+    def _read_cached(self, entries: tuple[tuple[str, type, object], ...]) -> Distribution:
+        return self._check_sign(self._from_table({key: entry for key, _, entry in entries}))
+
+    def _check_sign(self, distribution: Distribution) -> Distribution:
+        if self.positive and not distribution.smallest > 0.0:
+            raise RoughmdrError(
+                f"can be as low as {distribution.smallest:.3g}; it must be above 0 (lognormal, for one, always is)"
+            )
+        return distribution
+
+    def parameters(self, value: object) -> list[str]:
+        """Return the names of the parameters that an entry can have."""
+        given = value.get("distribution") if isinstance(value, dict) else None
+        family = find_family(ALIASES.get(given, given)) if isinstance(given, str) else None
+        return [*(family.parameters if family else ()), *_COMMON]
+
+    def parameter(self, name: str) -> Quantity:
+        """Return the reader of one parameter of the table."""
+        above = 0.0 if name in ("std", "scale") else None
+        return Quantity(self.dimension if name in _COMMON else DIMENSIONLESS, above=above)
+
+    def _number(self, name: str, value: object) -> float:
+        try:
+            return self.parameter(name)(value)
+        except RoughmdrError as error:
+            raise EntryError(name, value, str(error)) from None
+
+    def _from_table(self, value: dict[str, object]) -> Distribution:
+        table = dict(value)
+        given = table.pop("distribution", None)
+        if given is None:
+            for meant in close_matches("distribution", table):
+                raise EntryError(meant, table[meant], "unknown key; did you mean 'distribution'?")
+            raise RoughmdrError('needs a distribution by name, as in { distribution = "normal", std = ... }')
+        if not isinstance(given, str):
+            raise EntryError("distribution", given, 'must be a name, like "normal"')
+        name = ALIASES.get(given, given)
+        family = find_family(name)
+        if family is None:
+            message = f"not known{_suggestion(given)}; any continuous one of scipy.stats will do"
+            raise EntryError("distribution", given, message)
+        allowed = self.parameters(value)
+        for key, entry in table.items():
+            if key not in allowed:
+                raise EntryError(key, entry, f"{given} has no such parameter; it takes {', '.join(allowed)}")
+        numbers = {key: self._number(key, entry) for key, entry in table.items()}
+        low, high = numbers.pop("min", -math.inf), numbers.pop("max", math.inf)
+        try:
+            location_given = not numbers.keys().isdisjoint(_LOCATION)
+            distribution = Distribution(name, *_located(family, given, numbers, self.mean), low, high, location_given)
+            _check_truncation(distribution, given)
+            ends = distribution.smallest, distribution.largest
+        except RoughmdrError:
+            raise
+        except (ArithmeticError, RuntimeError, ValueError) as error:  # of scipy, where its inverse does not converge
+            raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
+        if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
+            raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
+        return distribution
+
+
+def _check_truncation(distribution: Distribution, given: str) -> None:
+    low, high = distribution.min, distribution.max
+    if not distribution.truncated:
+        return
+    if not low < high:
+        raise EntryError("max", high, f"must be above min, {low:g}")
+    if not distribution.kept_fraction >= _MIN_FRACTION:
+        raise RoughmdrError(f"{given} has next to nothing between min, {low:g}, and max, {high:g}")
+
+
+def _located(
+    family: Family, given: str, numbers: dict[str, float], default_mean: float | None
+) -> tuple[tuple[float, ...], float, float]:
+    """Return the family's own parameters, loc and scale, from mean and std where those are given."""
+    mean, std = numbers.get("mean"), numbers.get("std")
+    if std is not None and "scale" in numbers:
+        raise RoughmdrError(f"{given} takes std or scale, not both")
+    if mean is not None and "loc" in numbers:
+        raise RoughmdrError(f"{given} takes mean or loc, not both")
+    if given == "lognormal" and "s" not in numbers:
+        parameters, loc, scale = _lognormal(mean, std)
+    else:
+        parameters = _own_parameters(family, given, numbers)
+        unit_mean, unit_variance = family.moments(*parameters)
+        if std is not None and mean is None and "loc" not in numbers:
+            mean = default_mean
+        scale = numbers["scale"] if std is None else std / math.sqrt(unit_variance)
+        loc = numbers.get("loc", 0.0) if mean is None else mean - scale * unit_mean
+    if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
+        raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
+    return parameters, loc, scale
+
+
+def _lognormal(mean: float | None, std: float | None) -> tuple[tuple[float, ...], float, float]:
+    """Return s, loc and scale from mean and std."""
+    if mean is None or std is None:
+        raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
+    if not mean > 0.0:
+        raise EntryError("mean", mean, "must be above 0 in a lognormal distribution")
+    variance = math.log1p((std / mean) ** 2)
+    return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
+
+
+def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tuple[float, ...]:
+    missing = [name for name in family.parameters if name not in numbers]
+    if missing:
+        allowed = ", ".join((*family.parameters, *_COMMON))
+        raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {allowed}")
+    if "std" not in numbers and "scale" not in numbers:
+        raise RoughmdrError(f"{given} needs a std or a scale")
+    parameters = {name: numbers[name] for name in family.parameters}
+    for name, value in parameters.items():
+        if value and not _MIN_PARAMETER <= abs(value) <= _MAX_PARAMETER:
+            raise EntryError(name, value, f"must be 0, or {_MIN_PARAMETER:g} to {_MAX_PARAMETER:g} in magnitude")
+    if not family.is_defined(*parameters.values()):
+        raise RoughmdrError(f"{given} is not defined for {_listed(parameters)}")
+    return tuple(parameters.values())
+
+
+def _listed(numbers: dict[str, float]) -> str:
+    return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
+
+
+def _suggestion(name: str) -> str:
+    meant = close_matches(name, [*ALIASES, *known_families()], count=3)
+    return f"; did you mean {' or '.join(map(repr, meant))}?" if meant else ""

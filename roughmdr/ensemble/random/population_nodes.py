@@ -1,0 +1,119 @@
+"""Quadrature nodes of populations: random shape parameters at the scores of a rule, and the heights with them."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from roughmdr.ensemble.nodes import HEIGHT_END, Heights, Nodes, Rule, UpperTail, fraction_above
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.population import Population, Populations
+from roughmdr.numerics.arguments import Floats
+
+# Normal scores at which edges may lie: on each side the farthest of the first where the family's inverse is finite, and
+# above it those of the second that matter, if the upper tail is heavy.
+_LIGHT_TAIL_ENDS = (HEIGHT_END, 8.0, 6.5, 5.0)
+_HEAVY_TAIL_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)
+_BULK = 3.0  # normal scores between which most heights lie: 99.7 %
+_QUARTILE = 0.6745  # normal score of the upper quartile
+_MAX_FORCE_EXPONENT = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
+_NEGLIGIBLE_FORCE = 1e-16  # of the force that the bulk bears
+_NEXT_TO_LOC = 1e-14  # of the scale
+_RESOLUTION = (
+    2.0**-48
+)  # of a height, or of the scale of the distribution: the smallest width of a distribution of heights
+_MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
+
+
+def heights_of(distribution: Distribution) -> Heights:
+    """Return heights of this distribution, whatever the shape parameters."""
+    relative = distribution.relative_to_loc
+    edges, scale, tail = _edges(relative.from_scores, relative.scale)
+    return Heights(relative.density, relative.fractions, edges, scale, tail, distribution.loc)
+
+
+def heights_given(distribution: Distribution, score: float, correlation: float) -> Heights:
+    """Return the heights that go with a normal score of another quantity, by a normal copula."""
+    relative = distribution.relative_to_loc
+    mean, spread = correlation * score, math.sqrt((1.0 - correlation) * (1.0 + correlation))
+
+    def from_scores(scores: Floats) -> Floats:
+        return relative.from_scores(mean + spread * scores)
+
+    def fractions(y: Floats) -> tuple[Floats, Floats]:
+        from scipy.special import ndtr
+
+        scores = (relative.scores(y) - mean) / spread
+        return np.asarray(ndtr(scores)), np.asarray(ndtr(-scores))
+
+    def density(y: Floats) -> Floats:
+        scores = relative.scores(y)
+        with np.errstate(all="ignore"):
+            ratio = np.exp(0.5 * scores**2 - 0.5 * ((scores - mean) / spread) ** 2) / spread
+        return np.where(np.isfinite(scores), relative.density(y) * ratio, 0.0)
+
+    edges, scale, tail = _edges(from_scores, relative.scale)
+    return Heights(density, fractions, edges, scale, tail, distribution.loc)
+
+
+def _edges(from_scores: Callable[[Floats], Floats], unit: float) -> tuple[tuple[float, ...], float, UpperTail]:
+    """Return edges [m], scale [m] and upper tail of the heights y [m] at normal scores.
+
+    ``unit`` is the scale of their distribution [m].
+    """
+    low_bulk, lower, median, upper, bulk = from_scores(np.array([-_BULK, -_QUARTILE, 0.0, _QUARTILE, _BULK])).tolist()
+    narrowest = _RESOLUTION * max(unit, abs(median))  # heights that go with an extreme parameter may all be equal
+    # The highest count, where most heights are next to a pole.
+    scale = max(upper - lower, (bulk - median) / _BULK, narrowest)
+    ends = np.array(_LIGHT_TAIL_ENDS)
+    low = next((y for y in from_scores(-ends).tolist() if math.isfinite(y)), low_bulk)
+    at_ends = zip(_LIGHT_TAIL_ENDS, from_scores(ends).tolist(), strict=True)
+    score, high = next(((t, y) for t, y in at_ends if math.isfinite(y)), (_BULK, bulk))
+    if high - low < narrowest:
+        return (low - narrowest, high + narrowest), narrowest, UpperTail(fraction_above(score), 0.0)
+    if 0.0 < low < _NEXT_TO_LOC * scale:  # a pole may be at loc, and no float as near to it as some heights
+        low = 0.0
+    edges, before = [low, low_bulk, bulk, high], (_BULK, bulk)
+    if low < 0.0 < high:
+        edges.append(0.0)  # where families with an inner pole have it
+    for farther, y in zip(_HEAVY_TAIL_ENDS, from_scores(np.array(_HEAVY_TAIL_ENDS)).tolist(), strict=True):
+        if score < HEIGHT_END or not _bears_force(score, high / scale) or not high < y < _MAX_HEIGHT * scale:
+            break
+        before, (score, high) = (score, high), (farther, y)
+        edges.append(y)
+    heavy = 0.0 < before[1] < high and _bears_force(score, high / scale)
+    xi = math.log(high / before[1]) / math.log(fraction_above(before[0]) / fraction_above(score)) if heavy else 0.0
+    return tuple(sorted(set(edges))), scale, UpperTail(fraction_above(score), xi)
+
+
+def _bears_force(score: float, ratio: float) -> bool:
+    """Return whether heights above a normal score may add to a mean force; there they are ``ratio`` times the scale."""
+    if ratio <= 0.0:
+        return False
+    return math.log(fraction_above(score)) + _MAX_FORCE_EXPONENT * math.log(ratio) >= math.log(_NEGLIGIBLE_FORCE)
+
+
+def nodes_of(populations: Populations, rule: Rule) -> Nodes:
+    """Return nodes at the scores of a rule for each random shape parameter of each population."""
+    parts = [_nodes_of_one(populations, population, rule) for population in populations.members]
+    names = populations.members[0].parameters
+    return Nodes(
+        np.concatenate([part.weights for part in parts]),
+        {name: np.concatenate([part.parameters[name] for part in parts]) for name in names},
+        tuple(heights for part in parts for heights in part.heights),
+    )
+
+
+def _nodes_of_one(populations: Populations, population: Population, rule: Rule) -> Nodes:
+    names, order = population.random_parameters, rule.scores.size
+    indices = np.indices((order,) * len(names)).reshape(len(names), order ** len(names))
+    weights = population.fraction * np.prod(rule.weights[indices], axis=0)
+    scores = dict(zip(names, rule.scores[indices], strict=True))
+    parameters = {
+        name: entry.from_scores(scores.get(name, np.zeros(weights.size)))
+        for name, entry in population.parameters.items()
+    }
+    if populations.correlated in scores:
+        at_score = {t: heights_given(population.height, t, populations.score_correlation) for t in rule.scores}
+        return Nodes(weights, parameters, tuple(at_score[t] for t in scores[populations.correlated]))
+    return Nodes(weights, parameters, (heights_of(population.height),) * weights.size)

@@ -1,0 +1,104 @@
+"""Curves drawn over a result: the expected law of its scene, and the theory curves that apply to it."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.batch.plan import Cell, Plan, make_plan, simulate_realization
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.report.plot_data import EXPECTED, OverlayLine, separations
+from roughmdr.report.theory_curves import THEORY_CURVES, TheoryCurve
+from roughmdr.scene import read
+from roughmdr.schema.wording import count_by_cell
+from roughmdr.storage.labelled import Labelled
+from roughmdr.theory.equal_summits import Variable
+
+# Variables of a result: the theory's variable, and whether it is per unit of nominal area.
+_THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
+    "force": ("pressure", True),
+    "contact_area": ("contact_fraction", True),
+    "contact_count": ("contact_density", True),
+    "pressure": ("pressure", False),
+    "contact_fraction": ("contact_fraction", False),
+}
+_SEPARATION_RTOL = 1e-9  # of the largest separation
+
+
+class Overlay(NamedTuple):
+    """Lines to draw, and remarks on them."""
+
+    lines: list[OverlayLine]
+    remarks: list[str]
+    """Whether lines are drawn, and if not why."""
+
+
+def plan_of_result(file: Path, result: Labelled) -> Plan:
+    """Return the plan of the scene in the result ``file``.
+
+    SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
+    """
+    plan, stored = make_plan(read(file)), separations(result)
+    planned = np.array([cell.path.separation for cell in plan.cells])
+    if (
+        stored.size != planned.size
+        or np.abs(stored.reshape(planned.shape) - planned).max() > _SEPARATION_RTOL * np.abs(planned).max()
+    ):
+        raise StoreError(f"{file}: its separations are not those of the scene in it")
+    return plan
+
+
+def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
+    """Return the expected law of each cell in these variables."""
+
+    def evaluate(cell: Cell) -> dict[str, Floats]:
+        if reason := cell.scene.asperities.reason_against("expected"):
+            raise RoughmdrError(reason)
+        return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
+
+    return _evaluate_cells(plan, EXPECTED, "", evaluate)
+
+
+def overlay_theory(plan: Plan, names: list[str]) -> Overlay:
+    """Return the theory curves in each cell to which they apply, in those of the variables that they give.
+
+    Remarks begin with the name of the theory curve.
+    """
+    lines, remarks = [], []
+    for label, curve in THEORY_CURVES.items():
+        overlay = _evaluate_cells(plan, label, curve.note, _evaluator(curve, names))
+        lines += overlay.lines
+        remarks += [f"{label}: {remark}" for remark in overlay.remarks]
+    return Overlay(lines, remarks)
+
+
+def _evaluate_cells(plan: Plan, label: str, note: str, evaluate: Callable[[Cell], dict[str, Floats]]) -> Overlay:
+    lines, remarks = [], []
+    for number, cell in enumerate(plan.cells):
+        try:
+            variables = evaluate(cell)
+        except RoughmdrError as error:
+            remarks.append(f"not drawn: {error}")
+            continue
+        remarks.append(f"drawn{note and f'; {note}'}")
+        lines += [OverlayLine(label, name, number, cell.path.separation, values) for name, values in variables.items()]
+    return Overlay(lines, count_by_cell(remarks, len(plan.cells)))
+
+
+def _evaluator(curve: TheoryCurve, names: list[str]) -> Callable[[Cell], dict[str, Floats]]:
+    """Return a function that evaluates a theory curve in a cell; RoughmdrError if it gives none of the variables."""
+    given = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
+    given = {name: (variable, per_area) for name, (variable, per_area) in given.items() if variable in curve.variables}
+
+    def evaluate(cell: Cell) -> dict[str, Floats]:
+        if not given:
+            raise RoughmdrError(f"it gives no {' or '.join(names)}")
+        values = {variable: curve.evaluate(cell, variable) for variable in {variable for variable, _ in given.values()}}
+        area = cell.scene.asperities.nominal_area
+        if area is None:
+            raise AssertionError("theory curves apply to random asperities, which are on a patch")
+        return {name: values[variable] * (area if per_area else 1.0) for name, (variable, per_area) in given.items()}
+
+    return evaluate

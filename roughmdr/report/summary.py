@@ -1,0 +1,210 @@
+"""Summaries of plans, results and ensembles, for the command line."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.result.layout import (
+    cell_label,
+    cells_of,
+    done_of,
+    estimator_of,
+    held_variables,
+    realizations_of,
+    swept_sizes,
+)
+from roughmdr.result.pull_off import PullOff, pull_off_force
+from roughmdr.schema.wording import format_bytes, format_seconds, printable
+from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import FAILED
+
+if TYPE_CHECKING:
+    from roughmdr.batch.estimate import Estimate
+    from roughmdr.batch.plan import Plan
+
+_MAX_CELLS = 30
+
+
+def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
+    """Return what a run will do, how long it will take and how much memory."""
+    steps, output = plan.cells[0].path.separation.size, plan.scene.output
+    lines = [
+        ("scene", printable(plan.scene.title)),
+        ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
+        *_required_accuracy(plan),
+        ("output", f"{', '.join(output.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
+        ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
+        ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
+        ("memory", _memory(estimate)),
+    ]
+    lines += [*_indent("warning", tuple(plan.warnings)), *_indent("cannot run", estimate.failures)]
+    return _format_table([*lines, *_indent("left out", plan.left_out)])
+
+
+def _memory(estimate: "Estimate") -> str:
+    total, resident = format_bytes(estimate.memory), format_bytes(estimate.resident)
+    too_much = estimate.memory - estimate.resident > estimate.room
+    warning = f"; it can get only {format_bytes(estimate.room)} more" if too_much else ""
+    return f"about {total}, of which {resident} for Python and its packages{warning}"
+
+
+def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
+    """Yield what [accuracy] requires."""
+    accuracy = plan.scene.accuracy
+    if accuracy is not None:
+        text = f"standard error at most {accuracy.relative:g} of the largest mean force, method {accuracy.method!r};"
+        yield "accuracy", text
+        yield "", f"realisations are added to each cell until it is met, up to {accuracy.max_realizations};"
+        yield "", "time, memory and tasks are those of the runs above"
+
+
+def describe_result(result: Labelled, elapsed: float | None = None) -> str:
+    """Return what a result holds; ``elapsed`` [s] is the time of the whole run."""
+    attrs = result.attrs
+    realizations, steps = realizations_of(result), result.sizes["step"]
+    lines = [
+        ("computed", f"{printable(attrs['title'])}: {_sizes(swept_sizes(result), realizations, steps)}"),
+        ("variables", ", ".join(held_variables(result))),
+        *_pull_off(result),
+        *_contacts_at_ends(result),
+        *_adhesion(result),
+        *_indent("accuracy", tuple(attrs.get("accuracy", "").splitlines())),
+        *_indent("failed", tuple(describe_failed(result).splitlines())),
+        *_indent("warning", tuple(attrs.get("warnings", "").splitlines())),
+        ("run time", _run_time(result, elapsed)),
+        ("error", _error(result)),
+    ]
+    return _format_table([*lines, *_indent("left out", tuple(attrs["left_out"].splitlines()))])
+
+
+def describe_ensemble(ensemble: Labelled) -> str:
+    """Return the number of asperities and, if they are from a height map, how well it resolves them."""
+    attrs = ensemble.attrs
+    lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
+    if "points_per_summit" in attrs:
+        cut = f", without waves below {attrs['cutoff']:.4g} m" if "cutoff" in attrs else ""
+        lines += [
+            ("map", f"{attrs['patch_x']:.4g} m x {attrs['patch_y']:.4g} m, {attrs['undefined_share']:.2%} undefined"),
+            ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
+            ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
+            ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
+            ("", "each is a paraboloid through a point above its eight neighbours, fitted to these"),
+            ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
+        ]
+    return _format_table([*lines, *_indent("warning", tuple(attrs.get("warnings", "").splitlines()))])
+
+
+def describe_origin(result: Labelled, size: float) -> str:
+    """Return seed, versions, history and scene of a result of ``size`` bytes."""
+    attrs = result.attrs
+    lines = [
+        ("size", format_bytes(size)),
+        ("seed", str(attrs["seed"])),
+        ("made by", f"{attrs['source']}; {attrs['packages']}"),
+        ("history", attrs["history"]),
+    ]
+    return _format_table([*lines, *_indent("scene", tuple(attrs["scene"].strip().splitlines()))])
+
+
+def _values(result: Labelled, name: str) -> np.ndarray:
+    return result.variables[name].values
+
+
+def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
+    parts = [f"{size} {name}" for name, size in swept.items()]
+    return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
+
+
+def _run_time(result: Labelled, elapsed: float | None) -> str:
+    work = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
+    return work if elapsed is None else f"{format_seconds(elapsed)}; {work}, over all workers"
+
+
+def _error(result: Labelled) -> str:
+    errors = _values(result, "numerical_error")[done_of(result)]
+    if not errors.size:
+        return "not known: no run was computed"
+    return f"numerical error at most {errors.max():.1e} of the largest force"
+
+
+def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield the pull-off force of each cell, and how it is defined."""
+    if "force" not in held_variables(result):
+        return
+    if "unloading" not in result.coordinates["branch"].values:
+        yield "pull-off", "none: the path has no unloading"
+        return
+    pull_off = pull_off_force(result)
+    cells = cells_of(result)
+    forces = [_force(pull_off, cell) for cell in cells[:_MAX_CELLS]]
+    width = max(map(len, forces))
+    for number, (force, cell) in enumerate(zip(forces, cells, strict=False)):
+        yield "" if number else "pull-off", f"{force:<{width}}  {cell_label(result, cell)}".rstrip()
+    if len(cells) > _MAX_CELLS:
+        yield "", f"... and {len(cells) - _MAX_CELLS} more cells"
+    if "force" not in result.variables:
+        definition = "largest tension of the mean curve during unloading ± its standard error there"
+    elif estimator_of(result) == "expected":
+        definition = "lowest point of the expected law; realisations detach contact by contact and go a little deeper"
+    elif realizations_of(result) == 1:
+        definition = "largest tension during unloading; one realisation has no standard error"
+    else:
+        definition = "largest tension of each realisation during unloading, or 0: mean ± standard error"
+    yield "", f"({definition}; in brackets: its change between steps of the path)"
+
+
+def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
+    mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
+    tensile = int(pull_off.tensile[cell])
+    if tensile == 0:
+        return "none: never tensile" if pull_off.curves[cell] else "not known: no run was computed"
+    spread = "" if math.isnan(error) else f" ± {error:.2g} N"
+    share = "" if tensile == pull_off.curves[cell] else f", {tensile} of {pull_off.curves[cell]} tensile"
+    return f"{mean:.4g} N{spread} [{pull_off.change[cell]:.1g} N]{share}"
+
+
+def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield which adhesion models were used, if the Tabor number is known."""
+    if {"tabor_number", "adhesion_law"} <= set(result.variables):
+        model = result.variables["adhesion_law"]
+        names = model.attrs["flag_meanings"].split()
+        values = model.values[done_of(result)]
+        counts = ", ".join(f"{names[i]} in {int((values == i).sum())}" for i in np.unique(values))
+        tabor = _values(result, "tabor_number")
+        if np.isfinite(tabor).any():
+            yield "adhesion", f"{counts} of {values.size}; smallest Tabor number {np.nanmin(tabor):.3g}"
+
+
+def describe_failed(result: Labelled) -> str:
+    """Return how many runs failed, and why the first did; empty if none did."""
+    status = _values(result, "status")
+    failed = status == FAILED
+    if not failed.any():
+        return ""
+    counted = "runs" if "realization" in result.sizes else "cells"
+    reason = ""
+    if "remark" in result.coordinates:
+        reason = f" ({printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
+    return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; the same command computes them again"
+
+
+def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield a note if the path begins or ends in contact; counts below a half, of expected laws, are no contact."""
+    name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
+    if name not in result.variables:
+        return
+    count = result.variables[name].values
+    first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))
+    if first or last:
+        total = f"{int(done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
+        yield "note", f"in contact at the first step in {first}, at the last in {last} of {total}"
+
+
+def _indent(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:
+    return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
+
+
+def _format_table(lines: list[tuple[str, str]]) -> str:
+    return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)

@@ -1,0 +1,169 @@
+"""The scene: its sections together, what must agree between them, and what follows from them."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import tomli_w
+from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
+
+from roughmdr.ensemble import Asperities
+from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.scene.path import FlatPath
+from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, Material, Output
+from roughmdr.scene.sweep import Sweep
+from roughmdr.schema.faults import mismatch
+from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.schema.units import effective_modulus
+
+_NEGLIGIBLE = 0.01  # of the required error
+
+
+def _check_title(value: object) -> str:
+    if not isinstance(value, str) or not value.isprintable():
+        raise RoughmdrError("must be a text on one line, of characters that can be printed")
+    return value
+
+
+class Scene(Section):
+    """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
+
+    title: Annotated[str, BeforeValidator(_check_title)]
+    seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
+    material: Material
+    counter: Body | None = None
+    adhesion: AdhesionSection | None = None
+    asperities: Asperities
+    path: FlatPath
+    output: Output = Output()
+    batch: Batch = Batch()
+    accuracy: Accuracy | None = None
+    sweep: InstanceOf[Sweep] = Sweep()
+
+    _table: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _file: Path | None = PrivateAttr(default=None)
+    _cells: "tuple[Scene, ...]" = PrivateAttr(default=())
+
+    @classmethod
+    def of(
+        cls,
+        table: dict[str, Any],
+        file: Path | None,
+        validated: dict[str, Any] | None = None,
+        cells: "tuple[Scene, ...]" = (),
+    ) -> "Scene":
+        """Validate a table, read from ``file`` unless that is None; pydantic's ValidationError if it is no scene.
+
+        ``validated`` are sections that need no validation any more, ``cells`` the scenes that its sweep makes of it.
+        """
+        scene = cls.model_validate(table | (validated or {}))
+        scene._table, scene._file, scene._cells = table, file, cells
+        return scene
+
+    @property
+    def cells(self) -> "tuple[Scene, ...]":
+        """Scenes of the sweep's cells, the last swept key fastest; the scene itself if it has no sweep."""
+        return self._cells or (self,)
+
+    @model_validator(mode="after")
+    def _sections_agree(self) -> "Scene":
+        if self.counter is not None and self.material.effective_modulus is not None:
+            raise mismatch("counter", "does not go with material.effective_modulus, which holds both bodies already")
+        try:
+            _ = self.effective_modulus
+        except OutOfRange as error:
+            raise mismatch("material.modulus", str(error)) from None
+        self._check_batch()
+        self._check_accuracy()
+        if self.batch.estimator == "expected" and self.batch.realizations > 1:
+            raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
+        if not self.asperities.is_random:
+            return self
+        if fault := self.path.sigma_fault(self.asperities.sigma):
+            raise mismatch("path.separation", fault)
+        exponent = self.asperities.min_exponent
+        if self.work > 0.0 and not exponent > 0.5:
+            key = "terms" if self.asperities.shared_profile is not None else "exponent"
+            raise mismatch(f"asperities.{key}", f"can be as low as {exponent:g}; with adhesion it must be above 0.5")
+        return self
+
+    def _check_batch(self) -> None:
+        estimator, source = self.batch.estimator, self.asperities.source
+        if not self.asperities.is_random and self.batch.realizations > 1:
+            raise mismatch("batch.realizations", f"must be 1 with source {source!r}: nothing in it is random")
+        if estimator != "sampled" and (reason := self.asperities.reason_against(estimator)):
+            raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
+
+    def _check_accuracy(self) -> None:
+        if self.accuracy is None:
+            return
+        if not self.asperities.is_random:
+            raise mismatch("accuracy", f"does not go with source {self.asperities.source!r}: nothing in it is random")
+        if "estimator" in self.batch.model_fields_set:
+            raise mismatch("batch.estimator", "is chosen by accuracy.method if there is an [accuracy]")
+        maximum, method = self.accuracy.max_realizations, self.accuracy.method
+        if self.batch.realizations > maximum:
+            raise mismatch("batch.realizations", f"must be at most accuracy.max_realizations, {maximum}")
+        if method != "auto" and (reason := self.asperities.reason_against(method)):
+            raise mismatch("accuracy.method", f"cannot be {method!r}: {reason}")
+
+    @property
+    def estimators(self) -> tuple[str, ...]:
+        """Estimators to choose from: one, or with accuracy.method "auto" one that draws and, if possible, "expected".
+
+        Stratified draws need fewer realisations, but their number of asperities is rounded, which must be negligible.
+        """
+        if self.accuracy is None:
+            return (self.batch.estimator,)
+        if self.accuracy.method != "auto":
+            return (self.accuracy.method,)
+        count = self.asperities.expected_count
+        is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
+        drawn = "stratified" if is_whole else "sampled"
+        return (drawn,) if self.asperities.reason_against("expected") else (drawn, "expected")
+
+    @property
+    def effective_modulus(self) -> float:
+        """E* [Pa] (H 43)."""
+        material = self.material
+        if material.effective_modulus is not None:
+            return material.effective_modulus
+        if material.modulus is None or material.poisson is None:
+            raise AssertionError("validated above")
+        if self.counter is None:
+            return effective_modulus(material.modulus, material.poisson)
+        return effective_modulus(material.modulus, material.poisson, self.counter.modulus, self.counter.poisson)
+
+    @property
+    def work(self) -> float:
+        """Work of adhesion [J/m^2]; 0 without adhesion."""
+        return 0.0 if self.adhesion is None else self.adhesion.work
+
+    @property
+    def adhesion_model(self) -> Adhesion:
+        """Adhesion model with its parameters."""
+        return Adhesion() if self.adhesion is None else self.adhesion.adhesion_model
+
+    @property
+    def file(self) -> Path | None:
+        """File that the scene was read from, None if from none."""
+        return self._file
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files that a run of the scene reads, its own included."""
+        own = () if self._file is None else (self._file,)
+        return (*own, *{file for cell in self.cells for file in cell.asperities.inputs})
+
+    @property
+    def toml(self) -> str:
+        """The scene as it was given, in TOML."""
+        return tomli_w.dumps(_without_none(self._table))
+
+
+def _without_none(table: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: _without_none(value) if isinstance(value, dict) else value
+        for key, value in table.items()
+        if value is not None
+    }

@@ -1,0 +1,93 @@
+"""Checks of files before they are used: an input must be a regular file or an open pipe, an output replaceable."""
+
+import contextlib
+import os
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from roughmdr.errors import RoughmdrError, StoreError
+
+TEMPORARY_PREFIX = ".roughmdr."
+
+
+def check_regular_file(path: Path) -> None:
+    """Raise RoughmdrError, naming what is there instead, unless ``path`` is a regular file or a link to one."""
+    mode = _mode(path)
+    if stat.S_ISDIR(mode):
+        raise RoughmdrError("is a folder; expected a file")
+    if not stat.S_ISREG(mode):
+        raise RoughmdrError("is not a regular file; expected one")
+
+
+def is_open_pipe(path: Path) -> bool:
+    """Return whether ``path`` is a pipe that this process was given, such as /dev/stdin or /dev/fd/63.
+
+    A named pipe does not count: opening it may block for ever. RoughmdrError if nothing is there.
+    """
+    if not stat.S_ISFIFO(_mode(path)):
+        return False
+    target = Path(os.path.realpath(path))
+    return not target.exists() or target.parent == Path("/dev/fd")
+
+
+def _mode(path: Path) -> int:
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        raise RoughmdrError("no such file") from None
+    except OSError as error:
+        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
+    except ValueError as error:  # no file can have such a name
+        raise RoughmdrError(f"cannot be read: {error}") from None
+
+
+def destination(path: Path) -> Path:
+    """Return the file that writing to ``path`` replaces: for a link its final target, even if that does not exist yet.
+
+    Everything that belongs to an output is kept beside the destination, so that it is found with and without the link.
+    StoreError if links form a circle.
+    """
+    with convert_os_errors(path):
+        if not path.is_symlink():
+            return path
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise StoreError(f"{path}: is a link in a circle of links, which leads to no file")
+        return target
+
+
+def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
+    """Raise StoreError if no file can be put at ``path``, or if that would replace one of the inputs."""
+    target = destination(path)
+    label = f"{path}" if target == path else f"{path} (a link to {target})"
+    try:
+        if target.is_dir():
+            raise StoreError(f"{label}: is a folder; the output must be a file")
+        if target.exists() and not target.is_file():
+            raise StoreError(f"{label}: is not a regular file; the output must be one")
+        if target.exists() and any(other.exists() and target.samefile(other) for other in inputs):
+            raise StoreError(f"{label}: is an input; the output must be another file")
+        if not target.parent.is_dir():
+            raise StoreError(f"{label}: the folder {target.parent} does not exist")
+        if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
+            raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
+        descriptor, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, dir=target.parent)
+    except OSError as error:
+        raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
+    os.close(descriptor)
+    Path(name).unlink()
+
+
+def _is_utf8(path: Path) -> bool:
+    return str(path).encode(errors="replace").decode() == str(path)
+
+
+@contextlib.contextmanager
+def convert_os_errors(path: Path) -> Iterator[None]:
+    """Convert an OSError raised inside to a StoreError that names ``path``."""
+    try:
+        yield
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None

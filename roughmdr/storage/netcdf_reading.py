@@ -1,0 +1,110 @@
+"""Reading netCDF files, whoever wrote them; what cannot be read is refused with a RoughmdrError.
+
+If memory runs out while HDF5 converts strings, it frees memory that it never had, and the process dies. So memory to
+work with is checked beforehand, and strings are read a few at a time.
+"""
+
+import math
+import threading
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import EllipsisType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.storage.file_checks import check_regular_file
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.memory import check_memory
+from roughmdr.variables import AUXILIARY_COORDINATES
+
+if TYPE_CHECKING:
+    import netCDF4
+
+LOCK = threading.Lock()
+"""Held by every call of the library, which crashes when two threads are in it."""
+WORKING_MEMORY = 2**26
+"""Bytes that the library needs at most while it handles a block of an array."""
+_BLOCK_SIZE = 2**16  # elements of an array handed to the library at a time
+
+
+def read_netcdf(path: Path) -> Labelled:
+    """Return a whole file; RoughmdrError if it cannot be read."""
+    with _open(path) as file:
+        file.set_auto_mask(False)
+        return _read_arrays(file)
+
+
+def read_attribute(path: Path, name: str) -> str:
+    """Return one attribute of a file; RoughmdrError if it cannot be read, or is missing, or is no string."""
+    with _open(path) as file:
+        value = file.getncattr(name) if name in file.ncattrs() else None
+    if not isinstance(value, str):
+        raise RoughmdrError(f"it has no {name}" if value is None else f"the attribute {name} is no text")
+    return value
+
+
+def read_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the dimensions of each array of a file; RoughmdrError if it cannot be read."""
+    with _open(path) as file:
+        return {name: variable.dimensions for name, variable in file.variables.items()}
+
+
+@contextmanager
+def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
+    import netCDF4
+
+    check_regular_file(path)
+    check_memory(WORKING_MEMORY, "to read a file")
+    try:
+        # Warnings tell of types and packings that netCDF4 does not support: such variables are left out or left packed.
+        with LOCK, warnings.catch_warnings(action="ignore"), netCDF4.Dataset(path) as file:
+            yield file
+    except Exception as error:  # a damaged or foreign file can make the library raise anything
+        raise RoughmdrError(f"not a netCDF file that can be read ({error})") from None
+
+
+def _read_arrays(file: "netCDF4.Dataset") -> Labelled:
+    arrays, coordinates = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
+    for name, variable in file.variables.items():
+        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        named = attrs.pop("coordinates", "")
+        coordinates |= set(named.split()) if isinstance(named, str) else set()
+        attrs.pop("_FillValue", None)
+        arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
+        if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
+            raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
+    return Labelled(
+        {name: array for name, array in arrays.items() if name not in coordinates},
+        {name: array for name, array in arrays.items() if name in coordinates},
+        {key: file.getncattr(key) for key in file.ncattrs()},
+    )
+
+
+def _read_values(variable: "netCDF4.Variable[Any]") -> np.ndarray[Any, Any]:
+    """Return the values of a variable; equal strings share one object."""
+    if variable.dtype is not str:
+        return np.asarray(variable[...])
+    values, seen = np.empty(variable.shape, dtype=object), dict[str, str]()
+    for block in blocks(variable.shape):
+        texts = np.asarray(variable[block], dtype=object)
+        values[block] = np.array([seen.setdefault(text, text) for text in texts.flat], object).reshape(texts.shape)
+    return values
+
+
+def blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice | EllipsisType, ...]]:
+    """Yield indices that split an array into blocks of a limited number of elements."""
+    row = math.prod(shape[1:])
+    if not shape:
+        yield (...,)
+    elif row > _BLOCK_SIZE:
+        for first in range(shape[0]):
+            for rest in blocks(shape[1:]):
+                yield slice(first, first + 1), *rest
+    else:
+        rows = _BLOCK_SIZE // max(row, 1)
+        for first in range(0, shape[0], rows):
+            yield slice(first, first + rows), ...

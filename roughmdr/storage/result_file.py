@@ -1,0 +1,69 @@
+"""Result files: their provenance, reading them, and the check that an output is replaced only by its own kind."""
+
+import platform
+from datetime import UTC, datetime
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_reading import read_dimensions, read_netcdf
+from roughmdr.storage.result_validation import find_fault
+
+_PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
+_MAGIC_BYTES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
+_SVG_HEAD = 4096  # bytes, within which an SVG has its root element
+
+
+def provenance(title: str, command: str) -> dict[str, str]:
+    """Return the attributes that name the command and the versions that made a file."""
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    source, packages = _versions()
+    return {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "source": source,
+        "history": f"{now}: {command}",
+        "packages": packages,
+    }
+
+
+@cache
+def _versions() -> tuple[str, str]:
+    """Return the version of roughmdr and those of its dependencies; the look-up takes as long as a small scene."""
+    versions = [f"python {platform.python_version()}", *(f"{name} {version(name)}" for name in _PACKAGES)]
+    return f"roughmdr {version('roughmdr')}", ", ".join(versions)
+
+
+def read_result(path: Path) -> Labelled:
+    """Return a result file, loaded; StoreError if it is none."""
+    try:
+        data = read_netcdf(path)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if fault := find_fault(data):
+        raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
+    return data
+
+
+def check_same_kind(path: Path, kind: str) -> None:
+    """Raise StoreError if there is a file at ``path`` that is no ``kind``: "png", "pdf", "svg" or "ensemble"."""
+    if path.exists() and not (_is_ensemble(path) if kind == "ensemble" else _is_picture(path, kind)):
+        raise StoreError(f"{path}: exists already and is no {kind}: give another output, or --fresh to replace it")
+
+
+def _is_picture(path: Path, kind: str) -> bool:
+    try:
+        with path.open("rb") as file:
+            head = file.read(_SVG_HEAD)
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
+    return b"<svg" in head if kind == "svg" else head.startswith(_MAGIC_BYTES[kind])
+
+
+def _is_ensemble(path: Path) -> bool:
+    try:
+        return read_dimensions(path).get("height") == ("asperity",)
+    except RoughmdrError:
+        return False
