@@ -23,7 +23,7 @@ test-all: test
 	$(BIN)/python -m pytest -n auto -m large
 
 studies: setup
-	@$(BIN)/python pipelines/studies.py -o results/studies
+	@$(BIN)/python pipelines/all_studies.py -o results/studies
 
 lint: setup
 	$(BIN)/ruff check .

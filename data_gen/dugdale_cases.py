@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from mpmath import mp
-from precise_cohesion import Cohesion
-from precise_profiles import Parameters, Profile, knot_slopes, profile_of
+from oracles.dugdale import Cohesion
+from oracles.multiprecision import mp
+from oracles.profiles import Parameters, Profile, knot_slopes, profile_of
 
 _UNEVEN = (0.0, 0.11, 0.2, 0.37, 0.45, 0.7, 0.81, 1.0, 1.3, 1.45, 1.8, 2.4)
 _CONICAL = tuple(x * x if x < 0.5 else x - 0.25 for x in _UNEVEN)

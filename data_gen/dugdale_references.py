@@ -8,21 +8,25 @@ shapes. A row is a state of equilibrium; "answers" names the controls under whic
 with the state's distance to the fold of its branch, over that of the pull-off to 0.
 """
 
+import itertools
+import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
 from dugdale_cases import CASES, Case, few
-from mpmath import mp
-from precise_asperity import bracket, root
-from precise_cohesion import State
-from precise_curve import CONTROLS, WORKING, Curve, Place
-from precise_profiles import ENERGY_WORKING, Number, profile_of
-from precise_punch import Punch
-from precise_springs import sums
+from oracles.dugdale import FIELDS, Cohesion, State
+from oracles.dugdale_curve import CONTROLS, WORKING, Curve, Place
+from oracles.dugdale_punch import Punch
+from oracles.multiprecision import Number, bracket, digits, mp, root, tanh_sinh
+from oracles.profiles import profile_of
 from references import text
 
 MAUGIS_WRITTEN = 30
+SPRINGS_DIGITS, SPRINGS_STEPS = 30, 28
 WRITTEN = 25
 LAMBDAS = (1e-3, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.93, 0.95, 1.0, 1.2, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1e3)
 RADII = (0.01, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0)
@@ -31,11 +35,6 @@ LIFTED = (0.4, 0.75, 0.95)
 ENERGIES = {"tabulated": 1}
 """How many states of a case have their energy stated; else 2."""
 TINY, SLOPPY, STEP = mp.mpf(10) ** -28, mp.mpf(10) ** -20, mp.mpf(10) ** -14
-
-
-def digits(number: Number, count: int) -> str:
-    """``number`` to so many digits."""
-    return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))
 
 
 def agree(one: Number, other: Number, relative: Number) -> None:
@@ -59,22 +58,22 @@ def maugis_equations(lam: Number, A: Number) -> tuple[Number, Number, Number]:
 
 
 def written(state: State, answers: dict[str, Number], count: int) -> dict[str, Any]:
-    """A state as a row of a table."""
-    names = {"cohesive_radius": state.c, "indentation": state.delta, "force": state.force, "stiffness": state.stiffness}
-    exact = mp.mpf(float(state.a)) == state.a
-    row: dict[str, Any] = {"contact_radius": float(state.a) if exact else digits(state.a, count)}
-    row |= {name: digits(number, count) for name, number in names.items()}
+    """Return a state as a row of a table."""
+    row: dict[str, Any] = numbers_of(state, count)
+    if mp.mpf(float(state.a)) == state.a:
+        row["contact_radius"] = float(state.a)
+    row["stiffness"] = digits(state.stiffness, count)
     return {**row, "answers": {control: float(mp.nstr(X, 3)) for control, X in answers.items()}}
 
 
+def numbers_of(state: State, count: int) -> dict[str, str]:
+    """Return radii, indentation and force by their names."""
+    return {name: digits(getattr(state, field), count) for name, field in FIELDS.items()}
+
+
 def ends(curve: Curve | Punch, count: int) -> dict[str, dict[str, str]]:
-    """The two pull-offs."""
-    found = {}
-    for control in CONTROLS:
-        off = curve.pull_off(control)
-        names = {"contact_radius": off.a, "cohesive_radius": off.c, "indentation": off.delta, "force": off.force}
-        found[control] = {name: digits(number, count) for name, number in names.items()}
-    return found
+    """Return the two pull-offs."""
+    return {control: numbers_of(curve.pull_off(control), count) for control in CONTROLS}
 
 
 def maugis(lam: float) -> dict[str, Any]:
@@ -141,11 +140,52 @@ def radii(case: Case, size: float) -> list[float]:
 
 def energy(curve: Curve, state: State) -> Number:
     """U [J], once the state is what the definitions say."""
-    with mp.workdps(ENERGY_WORKING):
-        found = sums(curve.exact, state)
+    found = spring_sums(curve.exact, state)
     agree(found.force, state.force, SLOPPY)
     agree(found.gap, curve.exact.range, SLOPPY)
     return found.energy
+
+
+class SpringSums(NamedTuple):
+    """P [N], the gap [m] at c and the energy U [J]."""
+
+    force: Number
+    gap: Number
+    energy: Number
+
+
+def spring_sums(cohesion: Cohesion, state: State) -> SpringSums:
+    """Sum over u1 = delta - g(x) for x < a and -beta sqrt(c^2 - x^2) for a < x < c, with g by quadrature.
+
+    U = E* ∫_0^c u1^2 dx - w pi a^2 - ∫_a^c (w - sigma0 gap(r)) 2 pi r dr, of which the last, by exchange of the order,
+    is pi w (c^2 - a^2) - 4 sigma0 ∫_a^c [g(x) - delta + u1(x)] sqrt(c^2 - x^2) dx.
+    """
+    a, c, delta, beta = state.a, state.c, state.delta, cohesion.beta
+    straight, weighted, squared, pull = mp.mpf(0), mp.mpf(0), mp.mpf(0), mp.mpf(0)
+    for x, dx in _nodes(cohesion, mp.mpf(0), a):
+        u = delta - cohesion.profile.mdr(x)[0]
+        straight += dx * u
+        weighted += dx * u / mp.sqrt((c - x) * (c + x))
+        squared += dx * u * u
+    for x, dx in _nodes(cohesion, a, c):
+        height = mp.sqrt((c - x) * (c + x))
+        u = -beta * height
+        straight += dx * u
+        weighted -= dx * beta
+        squared += dx * u * u
+        pull += dx * (cohesion.profile.mdr(x)[0] - delta + u) * height
+    energy = cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
+    return SpringSums(
+        2 * cohesion.effective_modulus * straight, cohesion.height(c) - delta + 2 / mp.pi * weighted, energy
+    )
+
+
+def _nodes(cohesion: Cohesion, lo: Number, hi: Number) -> Iterator[tuple[Number, Number]]:
+    """Yield nodes and weights from ``lo`` to ``hi`` [m], dense on both sides of each kink."""
+    edges = [lo, *(b for b in cohesion.profile.kinks if lo < b < hi), hi]
+    for left, right in itertools.pairwise(edges):
+        for x, weight in tanh_sinh(SPRINGS_DIGITS, SPRINGS_STEPS):
+            yield left + (right - left) * x, (right - left) * weight
 
 
 def punch_rows(punch: Punch) -> list[dict[str, Any]]:

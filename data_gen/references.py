@@ -2,26 +2,28 @@
 
     python data_gen/references.py -o tests/data --shape cone --shape sphere
 
-Nothing here knows a closed form of g or G. A shape is its slope f'(r) alone, and with r = a cos(psi)
-g(a) = a ∫ f' dpsi and G(a) = a^2 ∫ f' sin(psi)^2 dpsi over 0 < psi < pi/2, split wherever f' has a kink (H 17).
-The inputs are doubles, written so that they read back to the last bit; the answers are the exact ones of these doubles.
+Nothing here knows g or G of a shape. A shape is its slope f'(r) alone, piecewise a sum of powers, and with r = a
+cos(psi) g(a) = a ∫ f' dpsi and G(a) = a^2 ∫ f' sin(psi)^2 dpsi over 0 < psi < pi/2, piece by piece (H 17). The
+asperities of ``reference_cases.json`` cover at random what double precision can hold; ``width`` and ``rise`` [m] are
+the lengths in which their rows without adhesion are measured. The inputs are doubles, written so that they read back to
+the last bit; the results are the exact ones of these doubles.
 """
 
 import json
 import multiprocessing
+import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
-from mpmath import mp
-from precise_asperity import ENERGY_WRITTEN, WRITTEN, Asperity
-from precise_profiles import ENERGY_WORKING, Number, profile_of
-from reference_cases import CASES, Case, Draw, few
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
+from oracles.jkr import ENERGY_WRITTEN, WRITTEN, Asperity
+from oracles.multiprecision import Number, digits, mp
+from oracles.profiles import Parameters, knot_slopes, profile_of
 
 WORKING = 100
 """Digits carried. Next to a corner fold a - b may be 1e-32 of b, so far more than the 40 that are written."""
-SPHERE_WORKING = 70
-"""The sphere has no corner, but many nodes."""
 DISTANCES = {
     "indentation": (1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.9, 1.0, 3.0, 30.0, 1001.0),
     "force": (1e-12, 1e-6, 1e-2, 1.0, 10.0, 1001.0),
@@ -29,28 +31,42 @@ DISTANCES = {
 """X = 1 - control/pull-off: 0 at the fold, 1 where the control is 0."""
 ENERGY_DISTANCES = (1e-3, 1.0, 30.0)
 DECADES = {"indentation": (-8.0, -5.0, -2.0, -0.5, 0.4, 3.0), "force": (-8.0, -4.0, -1.0, 0.5, 3.0)}
-"""Without adhesion: powers of ten of the shape's own rise, and of modulus * width * rise."""
+"""Without adhesion: powers of ten of the rise, and of effective_modulus * width * rise."""
 ENERGY_DECADES = (-2.0, 0.4)
+CASES: dict[str, list[dict[str, Any]]] = json.loads(Path(__file__).with_name("reference_cases.json").read_text())
 
 
-def digits(number: Number, count: int = WRITTEN) -> str:
-    """``number`` to so many digits."""
-    return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))
+class Case(NamedTuple):
+    """One asperity."""
+
+    shape: str
+    parameters: Parameters
+    effective_modulus: float
+    work: float
+    width: float
+    rise: float
+
+    @property
+    def slopes(self) -> list[float] | None:
+        """The slopes at the knots of a table."""
+        return knot_slopes(self.parameters["r"], self.parameters["f"]) if self.shape == "tabulated" else None
 
 
 def values(case: Case, control: str, pull_off: Number) -> list[tuple[float, bool]]:
-    """The control's values [m or N] of a case's rows, and whether the row also states the energy."""
+    """Return the controls [m or N] of the rows of a case, and whether each row also states the energy."""
     if case.work > 0.0:
         distances = DISTANCES[control]
         exact = [(float(pull_off * (1 - mp.mpf(X))), X in ENERGY_DISTANCES) for X in distances]
         return [(value, energy and control == "indentation") for value, energy in exact]
     unit = case.rise if control == "indentation" else case.effective_modulus * case.width * case.rise
-    return [(few(unit * 10.0**u), u in ENERGY_DECADES and control == "indentation") for u in DECADES[control]]
+    return [
+        (float(f"{unit * 10.0**u:.6g}"), u in ENERGY_DECADES and control == "indentation") for u in DECADES[control]
+    ]
 
 
 def table(case: Case) -> dict[str, Any]:
-    """All that is written about one case."""
-    with mp.workdps(SPHERE_WORKING if case.shape == "sphere" else WORKING):
+    """Return the entry of one case."""
+    with mp.workdps(WORKING):
         entry: dict[str, Any] = {"parameters": case.parameters}
         if case.slopes is not None:
             entry["slopes"] = case.slopes
@@ -66,7 +82,7 @@ def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     lost = -mp.sqrt(2 * mp.pi * b * work / effective_modulus)
     end = {"contact_radius": b, "indentation": lost, "force": k * lost}
     if work > 0:
-        written = {name: digits(number) for name, number in end.items()}
+        written = {name: digits(number, WRITTEN) for name, number in end.items()}
         entry["pull_off"] = {"displacement": written, "force": written}
     rows = []
     for control in DISTANCES:
@@ -81,7 +97,7 @@ def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
-    """The rows of every other shape; fills in the pull-off of ``entry``."""
+    """Return the rows of every other shape; fills in the pull-off of ``entry``."""
     asperity = Asperity(
         profile_of(case.shape, case.parameters, case.slopes), case.effective_modulus, case.work, case.width
     )
@@ -92,7 +108,7 @@ def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
         wanted = values(case, control, least.value)
         if case.work > 0.0:
             state = asperity.state(least.lo)
-            end = {name: digits(state[name]) for name in ("contact_radius", "indentation", "force")}
+            end = {name: digits(state[name], WRITTEN) for name in ("contact_radius", "indentation", "force")}
             entry.setdefault("pull_off", {})["displacement" if control == "indentation" else "force"] = end
             outer = branches[-1].value
             if outer > least.value:  # either side of the jump inwards
@@ -103,21 +119,20 @@ def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
                 continue
             work_done = None
             if energy:
-                with mp.workdps(ENERGY_WORKING):
-                    work_done = asperity.energy(found["contact_radius"], found["indentation"])
+                work_done = asperity.energy(found["contact_radius"], found["indentation"])
             rows.append(row(control, value, found, work_done))
     return rows
 
 
 def row(control: str, value: float, state: dict[str, Number], energy: Number | None) -> dict[str, Any]:
-    """One line of a table."""
+    """Return one line of a table."""
     line: dict[str, Any] = {"control": control, "value": value}
-    line |= {name: digits(number) for name, number in state.items()}
+    line |= {name: digits(number, WRITTEN) for name, number in state.items()}
     return line if energy is None else {**line, "energy": digits(energy, ENERGY_WRITTEN)}
 
 
 def text(shape: str, entries: list[dict[str, Any]]) -> str:
-    """The JSON of one shape, a row a line."""
+    """Return the JSON of one shape, a row a line."""
     blocks = []
     for entry in entries:
         head = json.dumps({name: value for name, value in entry.items() if name != "rows"})[:-1]
@@ -137,7 +152,7 @@ def main(output: Path, shapes: tuple[str, ...], workers: int) -> None:
     output.mkdir(parents=True, exist_ok=True)
     with multiprocessing.Pool(workers) as pool:
         pending = {
-            shape: pool.map_async(table, CASES[shape](shape, Draw(shape)), chunksize=1)
+            shape: pool.map_async(table, [Case(shape, **case) for case in CASES[shape]], chunksize=1)
             for shape in dict.fromkeys(shapes or CASES)
         }
         for shape, result in pending.items():

@@ -3,12 +3,12 @@
 import json
 from pathlib import Path
 
-import adhesion_range as study
 import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+from figures import adhesion_range as study
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
@@ -340,7 +340,7 @@ def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
 
 
 def test_the_study_goes_from_dmt_to_jkr(tmp_path: Path) -> None:
-    result = study.adhesion_range(count=300, points=3)
+    result = study.measure(quick=True)
     force = -result.pull_off_force / (np.pi * study.WORK * study.RADIUS)
     assert result.tabor.to_numpy() == pytest.approx([1e-3, 1.0, 1e3])
     assert force.sel(control="force").to_numpy()[[0, 2]] == pytest.approx([2.0, 1.5], rel=1e-3)

@@ -2,14 +2,16 @@
 
 import math
 
-import asperity_error
 import numpy as np
 import pytest
 import xarray as xr
-from exact_contact import Exact
-from random_asperities import DRAW, found
+from oracles.exact_contact import ExactContact
+from oracles.jkr_power_law import JkrPowerLaw
+from oracles.multiprecision import mp
 from scenes import ensemble
-from twins import Twin, mp
+from studies.asperity_error import measure as asperity_error
+from studies.asperity_error.asperities import DRAW
+from studies.asperity_error.judge import random_error
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
@@ -31,12 +33,12 @@ SHAPES: dict[str, Shape] = {
 
 def true_error(shape: Shape, work: float, data: xr.Dataset, law: xr.Dataset) -> float:
     """The largest error of the force over its largest magnitude; all asperities alike, held as the law counts them."""
-    twin = Twin(shape, E, work)
+    oracle = JkrPowerLaw(shape, E, work)
     worst, largest = mp.mpf(0), mp.mpf(0)
     for step in range(law.sizes["step"]):
         h = mp.mpf(float(law.separation[step]))
         held = data.height.to_numpy()[: int(law.contact_count[step])]
-        force = mp.fsum(twin.force(twin.radius("indentation", mp.mpf(z) - h)) for z in held.tolist())
+        force = mp.fsum(oracle.force(oracle.radius("indentation", mp.mpf(z) - h)) for z in held.tolist())
         worst, largest = max(worst, abs(force - float(law.force[step]))), max(largest, abs(force))
     return float(worst / largest)
 
@@ -107,7 +109,7 @@ def test_what_no_float_can_hold_is_refused() -> None:
 
 def outside(kind: str, adhesive: bool, seeds: range) -> list[tuple[object, object]]:
     """The asperities whose true error is beyond the stated one."""
-    judged = [found(kind, adhesive, seed) for seed in seeds]
+    judged = [random_error(kind, adhesive, seed) for seed in seeds]
     return [(asperity, one) for asperity, one in judged if not one.error <= one.stated]
 
 
@@ -126,7 +128,7 @@ def test_the_stated_error_of_very_many_random_asperities_holds(group: asperity_e
 
 def of_one(shape: Shape, effective_modulus: float, work: float, indentation: float) -> tuple[float, float, float]:
     """True and stated error of a sum over one asperity, over its force, and that of the asperity alone."""
-    exact = Exact(shape, effective_modulus, work)
+    exact = ExactContact(shape, effective_modulus, work)
     columns = {"exponent": ("term", list(shape.terms)), "terms": ("term", list(shape.terms.values()))}
     data = xr.Dataset({"height": ("asperity", [0.0]), **columns}, attrs={"shape": shape.name})
     law = rm.load_separation(
@@ -166,7 +168,7 @@ def test_a_steep_series_without_adhesion_is_found_to_the_last_digit_of_its_value
     shape = rm.PowerSeries({100.0: 1.0, 150.0: 1.0})
     for indentation in np.geomspace(1e-3, 1e2, 40):
         contact = rm.indent(shape, effective_modulus=E, indentation=float(indentation))
-        exact = Exact(shape, E, 0.0)
+        exact = ExactContact(shape, E, 0.0)
         t = exact.state(mp.mpf(float(indentation)), float(contact.contact_radius), mp.mpf(0), mp.inf)
         assert abs(float(contact.force) / exact.force(t) - 1) < 400 * 2.0**-53
 
@@ -176,13 +178,13 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
     """Below n = 0.768 k falls along a part of the branch; where k or P is 0, their terms are not."""
     e = 2.0 * exponent - 1.0
     shape = rm.PowerLaw(exponent=exponent, width=1e-6, rise=1e-8)
-    twin = Twin(shape, 1e9, 1e-3)
-    fold = twin.fold("indentation")
+    oracle = JkrPowerLaw(shape, 1e9, 1e-3)
+    fold = oracle.fold("indentation")
     k = []
     for log_tau in [*np.linspace(0.01, 4.0, 60) / e, math.log(3.0) / e, math.log(2.0 * exponent + 2.0) / e]:
         a = fold * mp.exp(2 * mp.mpf(log_tau))
-        k.append(float(twin.stiffness(a) / a))
-        indentation = float(twin.indentation(a))
+        k.append(float(oracle.stiffness(a) / a))
+        indentation = float(oracle.indentation(a))
         if not abs(indentation) < 1e290:
             continue
         columns = Columns(*(np.array([number]) for number in (1e-6, 1e-8, exponent)))
@@ -191,7 +193,7 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
             choose("power_law", Adhesion(1e-3), columns[2]), np.zeros(1), columns, 1e9, Adhesion(1e-3), h,
             staircase(h), {totals.FORCE, totals.ERROR},
         )  # fmt: skip
-        exact = twin.force(twin.radius("indentation", mp.mpf(indentation)))
+        exact = oracle.force(oracle.radius("indentation", mp.mpf(indentation)))
         assert abs(total[totals.FORCE, -1] - exact) <= total[totals.ERROR, -1]
         assert total[totals.ERROR, -1] > 0.0
 
@@ -215,7 +217,7 @@ def test_the_stated_error_of_a_sum_of_unlike_asperities_holds() -> None:
                 depth = float(mp.mpf(height) - mp.mpf(h))
                 a = float(rm.indent(shape, effective_modulus=1e8, work=1e-2, indentation=depth).contact_radius)
                 width, _, params = shape.nondimensional()
-                own = Exact(shape, 1e8, 1e-2)
+                own = ExactContact(shape, 1e8, 1e-2)
                 begin = shape.profile.t_of_radius(a, width, [params])
                 exact += own.force(own.state(mp.mpf(height) - mp.mpf(h), begin, mp.mpf(0), mp.inf))
             largest = abs(float(law.force[0]))

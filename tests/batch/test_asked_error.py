@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from accuracy import SCENES, law_of_force, realizations_taken
 from batches import interrupted
 from click.testing import CliRunner
 from scenes import ASPERITIES, scene
+from studies.accuracy.measure import SCENES, force_samples, realizations_taken
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
@@ -437,8 +437,8 @@ def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path:
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_is_met_and_little_is_wasted(name: str) -> None:
     """Of 100 runs 95 come to the error that was asked for; half of them with few more than the fewest realisations."""
-    law = law_of_force(name, 8000)
-    taken = realizations_taken(law, law.error_of(500), seeds=100)
+    samples = force_samples(name, 8000)
+    taken = realizations_taken(samples, samples.true_error(500), seeds=100)
     assert np.mean(taken >= 500) >= 0.95
     assert np.median(taken) < 1.25 * 500
     assert np.quantile(taken, 0.95) < 1.4 * 500
@@ -448,9 +448,9 @@ def test_the_study_follows_the_rule_that_runs_follow() -> None:
     """The number of realisations of a run is what the study finds for the run's own force."""
     table = {**SCENES["JKR, 40 asperities"], "accuracy": {"relative": 0.03, "method": "sampled"}}
     found = go(table)
-    law = law_of_force("JKR, 40 asperities", int(found.realization_count))
-    np.testing.assert_array_equal(law.force, found.force)
-    assert law.taken(np.arange(len(law.force)), 0.03) == int(found.realization_count)
+    samples = force_samples("JKR, 40 asperities", int(found.realization_count))
+    np.testing.assert_array_equal(samples.force, found.force)
+    assert samples.stop_as_a_batch(np.arange(len(samples.force)), 0.03) == int(found.realization_count)
 
 
 @pytest.mark.parametrize("count", [16, 50, 300, 4000])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.stats
 import xarray as xr
-from plain_expected import Rough
+from oracles.expected_paraboloids import Rough
 from scenes import ASPERITIES, SCENE, scene
 
 import roughmdr as rm

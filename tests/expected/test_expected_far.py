@@ -9,11 +9,11 @@ import math
 import numpy as np
 import pytest
 import scipy.stats
-from all_distributions import Scene, draw, families, judge
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from plain_probability import mean_of_correlated, mean_of_heights, mean_of_radii
+from oracles.quantile_means import mean_of_correlated, mean_of_heights, mean_of_radii
+from studies.all_distributions import Scene, draw, families, judge
 
 import roughmdr as rm
 from roughmdr.ensemble.random.distribution import Distribution

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
-import stated_error as study
 import xarray as xr
-from stated_error_scenes import ESTIMATORS, scene
+from stated_error import STUDY
+from studies.stated_error import judge as study
+from studies.stated_error.report import report
+from studies.stated_error.scenes import ESTIMATORS, scene
 
 ONE_OF_EACH = (0, 2, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
 
@@ -13,9 +15,9 @@ ONE_OF_EACH = (0, 2, 9, 10)  # expected, sampled with JKR's and with adhesion of
 def judge_random_scenes(count: int) -> None:
     """Check that the stated error is a bound in so many scenes, of which none is refused."""
     drawn = [scene(number) for number in range(count)]
-    result = study.judgement(drawn, [study.judge(one) for one in drawn])
+    result = study.as_dataset(drawn, [study.judge(one) for one in drawn])
     assert result.attrs["refused"] == 0
-    assert result.honest.all(), study.tell(result)
+    assert result.honest.all(), report(result)
     assert set(result.estimator.to_numpy()) == set(ESTIMATORS)
     ordinary = result.stated_error.groupby(result.estimator).median()
     assert (ordinary < 1e-10).all(), "the bound is useless"
@@ -34,8 +36,8 @@ def test_the_stated_error_of_many_scenes_is_honest() -> None:
 def test_the_study_is_carried_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By two processes, into files."""
     monkeypatch.setattr(study, "QUICK", 12)
-    said = study.STUDY.carry_out(tmp_path, quick=True)
-    assert "in 100.0 % of 12 random scenes" in said
+    told = STUDY.carry_out(tmp_path, quick=True)
+    assert "in 100.0 % of 12 random scenes" in told
     with xr.open_dataset(tmp_path / "stated_error.nc") as result:
         assert result.sizes["scene"] == 12
         assert result.honest.all()
@@ -62,8 +64,8 @@ def test_a_force_that_almost_jumps_has_a_reference() -> None:
 def test_scenes_beyond_their_bound_are_listed() -> None:
     drawn = [scene(number) for number in range(4)]
     judged = [study.Judged(1e-15, 1e-13), study.Judged(1e-12, 1e-13), study.Judged(0.0, 0.0), study.Judged(0, 0, "no")]
-    said = study.tell(study.judgement(drawn, judged))
-    assert "in 66.7 % of 3 random scenes" in said
-    assert "1 more were refused" in said
-    assert "scene 1:" in said
-    assert "scene 0:" not in said
+    told = report(study.as_dataset(drawn, judged))
+    assert "in 66.7 % of 3 random scenes" in told
+    assert "1 more were refused" in told
+    assert "scene 1:" in told
+    assert "scene 0:" not in told

@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from judgement import answers_at, judge, natural_scales, representable
-from twins import PowerShape, Real, Twin, mp
+from oracles.jkr_power_law import JkrPowerLaw, PowerShape
+from oracles.multiprecision import Number, mp
+from oracles.promises import judge, natural_scales, numbers_at, representable
 
 import roughmdr as rm
 
@@ -21,14 +22,14 @@ class Case(NamedTuple):
     work: float
 
     @property
-    def twin(self) -> Twin:
-        return Twin(*self)
+    def exact(self) -> JkrPowerLaw:
+        return JkrPowerLaw(*self)
 
 
 def draw(rng: np.random.Generator, kind: str, adhesive: bool) -> Case:
     width, rise = (10.0 ** rng.uniform(-10.0, 0.0, 2)).tolist()
     exponent = 0.5 + 10.0 ** rng.uniform(-2.0, 2.2999)
-    coefficient = Twin(rm.PowerLaw(exponent=exponent, width=width, rise=rise), 1.0, 0.0).g_at_1
+    coefficient = JkrPowerLaw(rm.PowerLaw(exponent=exponent, width=width, rise=rise), 1.0, 0.0).g_at_1
     if kind == "paraboloid":
         shape = rm.Paraboloid(radius=width)
     elif kind == "cone":
@@ -40,16 +41,16 @@ def draw(rng: np.random.Generator, kind: str, adhesive: bool) -> Case:
     return Case(shape, 10.0 ** rng.uniform(3.0, 13.0), 10.0 ** rng.uniform(-9.0, 1.0) if adhesive else 0.0)
 
 
-def control_values(rng: np.random.Generator, twin: Twin, control: str, width: float) -> list[Real]:
+def control_values(rng: np.random.Generator, exact: JkrPowerLaw, control: str, width: float) -> list[Number]:
     """At 1 - value/value at the fold (without adhesion: value/value at a = width) log-uniform in 1e-12 to 1e3."""
-    law = twin.force if control == "force" else twin.indentation
-    fold = twin.fold("force" if control == "force" else "indentation")
+    law = exact.force if control == "force" else exact.indentation
+    fold = exact.fold("force" if control == "force" else "indentation")
     distances = [mp.mpf(10) ** x for x in rng.uniform(-12.0, 3.0, VALUES)]
-    values = [law(fold) * (1 - X) if twin.work else law(mp.mpf(width)) * X for X in distances]
+    values = [law(fold) * (1 - X) if exact.work else law(mp.mpf(width)) * X for X in distances]
     if control != "contact_radius":
         return values
-    stable = [twin.radius("indentation", value) for value in values]
-    return [*stable, fold * mp.mpf(rng.random())] if twin.work else stable
+    stable = [exact.radius("indentation", value) for value in values]
+    return [*stable, fold * mp.mpf(rng.random())] if exact.work else stable
 
 
 @pytest.mark.parametrize("control", CONTROLS)
@@ -60,24 +61,24 @@ def test_every_output_is_as_accurate_as_promised(kind: str, adhesive: bool, cont
     refused = 0
     for _ in range(CASES):
         case = draw(rng, kind, adhesive)
-        twin = case.twin
+        exact = case.exact
         width = 10.0 ** rng.uniform(-10.0, 0.0) if kind != "power_law" else case.shape.width or 1.0
-        exact_values = control_values(rng, twin, control, width)
+        exact_values = control_values(rng, exact, control, width)
         answers = exact_values
         if control != "contact_radius":
-            answers = [twin.radius(control, value) for value in exact_values]
+            answers = [exact.radius(control, value) for value in exact_values]
         values = [float(value) for value in exact_values]
         try:
             contact = rm.indent(
                 case.shape, effective_modulus=case.effective_modulus, work=case.work, **{control: values}
             )
         except rm.OutOfRange:
-            needed = [*natural_scales(twin), *(number for a in answers for number in answers_at(twin, a))]
+            needed = [*natural_scales(exact), *(number for a in answers for number in numbers_at(exact, a))]
             assert not representable(needed), case
             refused += 1
             continue
         for i in range(len(values)):
             got = {name: float(contact[name][i]) for name in contact.variables}
-            for name, judged in judge(twin, control, got).items():
+            for name, judged in judge(exact, control, got).items():
                 assert judged.excess <= 1.0, (case, name, judged, got)
     assert refused < CASES / 2

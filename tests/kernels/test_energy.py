@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from oracles.jkr_power_law import JkrPowerLaw
+from oracles.multiprecision import Number, mp
 from test_accuracy import SHAPES, draw
-from twins import Real, Twin, mp
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
@@ -21,11 +22,11 @@ def energy(contact: Contact, state: float) -> float:
     return float(contact.force * contact.depth[0] * value)
 
 
-def springs(twin: Twin, a: Real) -> tuple[Real, Real]:
+def springs(exact: JkrPowerLaw, a: Number) -> tuple[Number, Number]:
     """E* ∫_0^a (delta - g)^2 dx, by the expanded square, and pi w a^2."""
-    delta, g = twin.indentation(a), twin.g(a)
-    square = delta**2 - 2 * delta * g / (twin.n + 1) + g**2 / (2 * twin.n + 1)
-    return twin.effective_modulus * a * square, mp.pi * twin.work * a**2
+    delta, g = exact.indentation(a), exact.g(a)
+    square = delta**2 - 2 * delta * g / (exact.n + 1) + g**2 / (2 * exact.n + 1)
+    return exact.effective_modulus * a * square, mp.pi * exact.work * a**2
 
 
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
@@ -42,12 +43,12 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
         distance = 10.0 ** rng.uniform(-12.0, 3.0)
         state = apply(contact.law.state, np.array([distance]), contact.params)
         elastic, surface = springs(
-            case.twin, mp.mpf(contact.radius) * apply(contact.law.radius, state, contact.params)[0]
+            case.exact, mp.mpf(contact.radius) * apply(contact.law.radius, state, contact.params)[0]
         )
         if not all(mp.mpf("1e-299") < abs(part) < mp.mpf("1e299") for part in (elastic, surface or elastic)):
             continue
         # a itself is a float, and goes into U with the power 2 n + 1.
-        allowed = (2 * case.twin.n + 4) * mp.mpf("1e-15") * (elastic + surface)
+        allowed = (2 * case.exact.n + 4) * mp.mpf("1e-15") * (elastic + surface)
         assert abs(energy(contact, state[0]) - (elastic - surface)) <= allowed, (case, distance)
         compared += 1
 

@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from twins import Real, mp
+from oracles.multiprecision import Number, mp
 
 from roughmdr.numerics import double_double as extended
 
@@ -28,11 +28,11 @@ def pairs(lowest: float, highest: float) -> st.SearchStrategy[Pair]:
     return st.builds(lambda hi, t: extended.two_sum(hi, t * math.ulp(hi)), floats(lowest, highest), tails())
 
 
-def value(pair: Pair) -> Real:
+def value(pair: Pair) -> Number:
     return mp.fadd(*pair, exact=True)
 
 
-def relative_error(got: Pair, exact: Real) -> float:
+def relative_error(got: Pair, exact: Number) -> float:
     error = abs(value(got) - exact)
     return float(error / abs(exact)) if error else 0.0
 

@@ -5,9 +5,10 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-import one_asperity as study
 import pytest
 import xarray as xr
+from figures import one_asperity as study
+from figures.one_asperity_pictures import PICTURES
 from scipy.optimize import brentq
 from scipy.special import digamma, gamma
 
@@ -23,7 +24,7 @@ E, W = study.MODULUS, study.WORK
 
 @pytest.fixture(scope="module")
 def result() -> xr.Dataset:
-    return study.one_asperity(points=41)
+    return study.measure(quick=True)
 
 
 def kappa(n: np.ndarray) -> np.ndarray:
@@ -132,7 +133,7 @@ def test_every_number_has_a_unit_and_a_name_and_goes_to_a_file(result: xr.Datase
     write_netcdf(Labelled.of(result), tmp_path / "one_asperity.nc")
     with xr.open_dataset(tmp_path / "one_asperity.nc") as read:
         xr.testing.assert_equal(read.load(), result)
-    for draw in study.PICTURES.values():
+    for draw in PICTURES.values():
         draw(result).savefig(tmp_path / "one.png", dpi=50)
         assert (tmp_path / "one.png").stat().st_size > 5000
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from random_scenes_judge import COMPUTED, Defect, check
-from random_scenes_laws import excursions
 from scenes import ASPERITIES, scene
+from studies.random_scenes.curves import returns
+from studies.random_scenes.judge import COMPUTED, Defect, check
 
 import roughmdr as rm
 from roughmdr.scene import read
@@ -110,11 +110,11 @@ def test_the_judge_sees_what_is_wrong(results: dict[str, xr.Dataset], name: str)
         check(planted(results[which]), read(SCENES[which]))
 
 
-def test_excursions_are_pairs_of_steps_at_the_same_place() -> None:
-    way = np.array([2.0, 1.0, 2.0, 4.0, 2.0, 3.0, 1.0])
+def test_returns_are_pairs_of_steps_at_the_same_separation() -> None:
+    path = np.array([2.0, 1.0, 2.0, 4.0, 2.0, 3.0, 1.0])
     # Before and after the flat was lower only; after and before it was higher only; none where it was both.
-    assert excursions(way) == [(0, 2), (4, 2), (6, 1)]
-    assert excursions(np.array([2.0, 1.0, 3.0, 2.0])) == []
+    assert returns(path) == [(0, 2), (4, 2), (6, 1)]
+    assert returns(np.array([2.0, 1.0, 3.0, 2.0])) == []
 
 
 @pytest.mark.slow

@@ -5,21 +5,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import stability
 import xarray as xr
-from stability_cases import AXES, Case, design
-from stability_verdicts import (
+from stability import STUDY
+from studies.stability.cases import AXES, Case, design
+from studies.stability.judge import (
     CONTROLS,
     REFUSED,
     RIGHT,
     WRONG,
-    CohesiveReference,
-    PlainReference,
+    DugdaleReference,
     Reference,
-    on_answers,
     on_error,
+    on_results,
     verdicts,
 )
+from studies.stability.measure import FULL
+from studies.stability.picture import draw
 
 import roughmdr as rm
 
@@ -41,7 +42,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def told(folder: Path) -> str:
-    return stability.STUDY.carry_out(folder, quick=True)
+    return STUDY.carry_out(folder, quick=True)
 
 
 @pytest.fixture(scope="module")
@@ -81,16 +82,16 @@ def test_the_study_is_told_and_drawn(result: xr.Dataset, told: str) -> None:
     assert "No answer is wrong." in told
     for law in result.law.to_numpy():
         assert f"| {law} |" in told
-    assert len(stability.draw(result).axes) >= len(AXES) ** 2
+    assert len(draw(result).axes) >= len(AXES) ** 2
 
 
 def test_the_ends_of_every_axis_are_among_the_cases() -> None:
-    cases = design(stability.FULL["jkr"])
+    cases = design(FULL["jkr"])
     for name, axis in AXES.items():
         values = np.array([getattr(case, name) for case in cases])
         assert values.min() == axis.low, name
         assert values.max() == axis.high, name
-        np.testing.assert_allclose([axis.place(part) for part in axis.part(values)], values, rtol=1e-9)
+        np.testing.assert_allclose([axis.at(part) for part in axis.fraction(values)], values, rtol=1e-9)
 
 
 @pytest.mark.parametrize("law", ["elastic", "jkr", "dugdale"])
@@ -102,13 +103,13 @@ def contact(law: str, control: str) -> tuple[Reference, dict[str, float]]:
     """The first asperity of the everyday case, exactly and as roughmdr has it."""
     shape, numbers = (
         MILD.shapes()[0],
-        {"effective_modulus": MILD.stiffness, "work": 0.0 if law == "elastic" else MILD.work},
+        {"effective_modulus": MILD.effective_modulus, "work": 0.0 if law == "elastic" else MILD.work},
     )
-    reference: Reference = PlainReference(shape, **numbers)
+    reference: Reference = Reference(shape, **numbers)
     model = {}
     if law == "dugdale":
         numbers["strength"] = MILD.tabor / rm.tabor(shape, **numbers, strength=1.0)
-        reference, model = CohesiveReference(shape, **numbers), {"adhesion": "dugdale"}
+        reference, model = DugdaleReference(shape, **numbers), {"adhesion": "dugdale"}
     found = rm.indent(shape, **numbers, **model, **{control: float(reference.value(control, MILD.distance))})
     return reference, {str(name): float(found[name]) for name in found.variables}
 
@@ -118,12 +119,12 @@ def contact(law: str, control: str) -> tuple[Reference, dict[str, float]]:
 def test_an_answer_that_is_a_little_off_is_wrong(law: str, control: str) -> None:
     reference, got = contact(law, control)
     right = reference.judge(control, got)
-    assert on_answers(right).outcome == RIGHT
+    assert on_results(right).outcome == RIGHT
     for name in got:
         allowed = [judged.allowed for what, judged in right.items() if what.removeprefix("backward ") == name]
         if name != control and allowed:
             for planted in (got[name] * (1.0 + 30.0 * max(allowed)), math.nan):
-                verdict = on_answers(reference.judge(control, {**got, name: planted}))
+                verdict = on_results(reference.judge(control, {**got, name: planted}))
                 assert verdict.outcome == WRONG, (name, planted, verdict)
 
 

@@ -4,13 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import studies
-import work_precision
-import work_precision_tip
 import xarray as xr
 from click.testing import CliRunner
-from work_precision_points import QUANTITIES, Method, Point
-from work_precision_rough import SURFACES, law
+from studies import all_studies
+from studies.work_precision import measure
+from studies.work_precision.measure import cheapest, points_of
+from studies.work_precision.points import QUANTITIES, Method, Point
+from studies.work_precision.report import TARGETS, report
+from studies.work_precision.surface import SURFACES, simulate
+from studies.work_precision.tip import DEPTHS
 
 
 @pytest.fixture(scope="module")
@@ -18,8 +20,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the studies leave behind, of which one fails."""
     folder = tmp_path_factory.mktemp("studies")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(studies, "NAMES", ("no_such_study", "work_precision"))
-        done = CliRunner().invoke(studies.main, ["-o", str(folder), "--quick"])
+        patch.setattr(all_studies, "NAMES", ("no_such_study", "work_precision"))
+        done = CliRunner().invoke(all_studies.main, ["-o", str(folder), "--quick"])
     assert done.exit_code == 1
     assert "failed: no_such_study" in done.output
     return folder
@@ -41,7 +43,7 @@ def test_a_study_that_fails_keeps_no_other_from_the_report(folder: Path) -> None
 
 def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:
     """Errors [point, quantity] and evaluations of a method."""
-    own = result.isel(point=np.flatnonzero((result.scene == scene) & (result.method == method)))
+    own = points_of(result, scene=scene, method=method)
     return own.error.to_numpy(), own.evaluations.to_numpy()
 
 
@@ -55,7 +57,7 @@ TIP, HERTZ, JKR = "paraboloid, JKR", "Hertz, lognormal radii", "JKR, equal radii
 def test_closed_forms_are_exact_with_an_evaluation_for_each_state(result: xr.Dataset) -> None:
     error, evaluations = points(result, TIP, "closed forms")
     assert (error < 1e-12).all()
-    assert evaluations == [work_precision_tip.DEPTHS.size + 1]
+    assert evaluations == [DEPTHS.size + 1]
 
 
 def test_springs_come_nearer_in_proportion_to_their_number(result: xr.Dataset) -> None:
@@ -91,15 +93,13 @@ def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Data
     error, evaluations = points(result, scene, "expected")
     known = error[~np.isnan(error)]
     assert (known < 1e-11).all()
-    assert evaluations[0] < law(SURFACES[scene], "sampled").evaluations
+    assert evaluations[0] < simulate(SURFACES[scene], "sampled").evaluations
 
 
 def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
     for scene in (HERTZ, JKR):
         for method in ("sampled", "stratified", "auto"):
-            own = result.isel(
-                point=np.flatnonzero((result.scene == scene) & (result.method == f"{method}, error asked for"))
-            )
+            own = points_of(result, scene=scene, method=f"{method}, error asked for")
             assert (own.error.sel(quantity="force") <= 2.0 * own.setting).all()  # of two runs each
 
 
@@ -107,8 +107,8 @@ def test_the_cheapest_comes_to_the_error_and_is_no_dearer_than_any_other(result:
     found = 0
     for scene in (TIP, HERTZ, JKR):
         for quantity in QUANTITIES:
-            for error in work_precision.TARGETS:
-                best = work_precision.cheapest(result, scene, quantity, error)
+            for error in TARGETS:
+                best = cheapest(result, scene, quantity, error)
                 if best is None:
                     continue
                 found += 1
@@ -117,20 +117,20 @@ def test_the_cheapest_comes_to_the_error_and_is_no_dearer_than_any_other(result:
                 assert float(best.error.sel(quantity=quantity)) <= error
                 assert float(best.seconds) == float(own.seconds[enough.to_numpy()].min())
     assert found >= 24
-    assert work_precision.cheapest(result, TIP, "force", 0.0) is None
+    assert cheapest(result, TIP, "force", 0.0) is None
 
 
 def test_a_method_joins_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
     """That gives exact numbers for nothing, and so is the cheapest at once."""
 
-    def points_of(scene: object, exact: object, quick: bool) -> list[Point]:
+    def exact_for_nothing(scene: object, exact: object, quick: bool) -> list[Point]:
         return [Point(1.0, (0.0, 0.0, 0.0), 0.0, 0.0)]
 
-    part = work_precision.PARTS[0]._replace(methods=(Method("an oracle", "-", points_of), *part_methods()))
-    monkeypatch.setattr(work_precision, "PARTS", (part,))
-    told = work_precision.tell(work_precision.study(True))
+    part = measure.PARTS[0]._replace(methods=(Method("an oracle", "-", exact_for_nothing), *part_methods()))
+    monkeypatch.setattr(measure, "PARTS", (part,))
+    told = report(measure.measure(True))
     assert f"| {TIP} | an oracle: 0 ms (0) | an oracle" in told
 
 
 def part_methods() -> tuple[Method, ...]:
-    return tuple(method for method in work_precision.PARTS[0].methods if method.name == "closed forms")
+    return tuple(method for method in measure.PARTS[0].methods if method.name == "closed forms")

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from exact_contact import mp, profile
-from random_asperities import DRAW
+from oracles.exact_contact import profile
+from oracles.multiprecision import mp
+from studies.asperity_error.asperities import DRAW
 
 import roughmdr as rm
 from roughmdr.numerics.jit import compiled
@@ -36,7 +37,8 @@ def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
                 continue
             point = exact(mp.mpf(float(t)))
             terms = magnitude(t, numbers) if magnitude is not None else (g, pushed)
-            for got, true, size in ((g, point.g / rise, terms[0]), (pushed, point.push / rise / width, terms[1])):
+            load = point.reduced_load / rise / width
+            for got, true, size in ((g, point.g / rise, terms[0]), (pushed, load, terms[1])):
                 error = float(abs(got - true)) / max(got, size) * 2.0**53
                 worst = max(worst, error)
                 assert error <= roundings(numbers), (shape, t)

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from twins import Real, kappa, mp
+from oracles.jkr_power_law import kappa
+from oracles.multiprecision import Number, mp
 
 import roughmdr as rm
 from roughmdr.shapes.kappa import kappa as kappa_of_package
@@ -25,7 +26,7 @@ SHAPES = [
 ]
 
 
-def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Real) -> Real:
+def slope(shape: rm.Paraboloid | rm.Cone | rm.PowerLaw, r: Number) -> Number:
     given = {name: mp.mpf(value) for name, value in shape.parameters.items()}
     if "radius" in given:
         return r / given["radius"]
@@ -49,7 +50,7 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
         for i, x in enumerate(mp.mpf(x) for x in radii(shape)):
             steepest = slope(shape, x)
 
-            def relative(s: Real, x: Real = x, steepest: Real = steepest) -> Real:
+            def relative(s: Number, x: Number = x, steepest: Number = steepest) -> Number:
                 return slope(shape, x * s) / steepest
 
             # r = x sin(angle) takes the root out of both integrands.
@@ -65,7 +66,7 @@ def test_profiles_are_the_integrals_of_the_slope(shape: rm.Paraboloid | rm.Cone 
 
 
 b, S, R = 3e-7, 0.4, 2e-5
-EDGES: list[tuple[Any, Callable[[Real], Real], Callable[[Real], Real]]] = [
+EDGES: list[tuple[Any, Callable[[Number], Number], Callable[[Number], Number]]] = [
     (rm.TruncatedCone(S, b), lambda r: S * max(r - b, 0), lambda r: S * (r > b)),
     (rm.TruncatedParaboloid(R, b), lambda r: max(r**2 - mp.mpf(b) ** 2, 0) / (2 * R), lambda r: r / R * (r > b)),
     (rm.RoundedCone(S, b), lambda r: S * (r**2 / (2 * b) if r < b else r - b / 2), lambda r: S * min(r / b, 1)),
@@ -82,7 +83,7 @@ EDGES: list[tuple[Any, Callable[[Real], Real], Callable[[Real], Real]]] = [
 
 @pytest.mark.parametrize(("shape", "f", "slope"), EDGES, ids=lambda value: getattr(value, "name", ""))
 def test_profiles_are_right_next_to_an_edge_and_far_from_it(
-    shape: Any, f: Callable[[Real], Real], slope: Callable[[Real], Real]
+    shape: Any, f: Callable[[Number], Number], slope: Callable[[Number], Number]
 ) -> None:
     near = b * (1.0 + np.array([-1e-3, -1e-9, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1]))
     radii = np.concatenate([b * 10.0 ** np.arange(-6.0, 7.0), near])

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import springs as study
 import xarray as xr
+from figures import springs as study
+from figures.springs_pictures import PICTURES
 from scipy.special import gamma
 
 import roughmdr as rm
@@ -251,7 +252,7 @@ def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch
 
 def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "SHAPES", {name: study.SHAPES[name] for name in ("flat punch", "paraboloid")})
-    result = study.study(quick=True)
+    result = study.measure(quick=True)
     drawn = result.sel(stage="last contact")
     stretch = math.sqrt(2 * math.pi * study.WORK / study.MODULUS)
     held = result.spring_end.to_numpy()[result.stage.to_numpy() == "last contact"][0]
@@ -265,6 +266,6 @@ def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     write_netcdf(Labelled.of(result), tmp_path / "springs.nc")
     with xr.open_dataset(tmp_path / "springs.nc") as read:
         xr.testing.assert_equal(read.load(), result)
-    for draw in study.PICTURES.values():
+    for draw in PICTURES.values():
         draw(result).savefig(tmp_path / "one.png", dpi=30)
         assert (tmp_path / "one.png").stat().st_size > 3000

@@ -1,0 +1,1 @@
+"""The figures of the documents: each file measures and draws one."""

@@ -1,0 +1,1 @@
+"""Slow and plain references, each independent of the formulas and the kernels of ``roughmdr`` that it checks."""

@@ -1,0 +1,153 @@
+"""One asperity of any profile with JKR adhesion or without: its branches, its folds and its states, exactly."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from oracles.multiprecision import Number, bracket, mp, root, tanh_sinh
+from oracles.profiles import Profile
+
+WRITTEN = 40
+ENERGY_WRITTEN = 25
+FOLD_LEVEL = {"indentation": 1.0, "force": 3.0}
+"""2 a g'/dl(a) at the folds under each control."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Contact radii lo < a < hi [m], hi None for infinity, over which the control grows from ``value`` at lo."""
+
+    lo: Number
+    hi: Number | None
+    value: Number
+
+
+class Asperity:
+    """One asperity on a half-space of ``effective_modulus`` [Pa], with ``work`` of adhesion [J/m2] or 0."""
+
+    def __init__(self, profile: Profile, effective_modulus: float, work: float, width: float) -> None:
+        self.profile = profile
+        self.effective_modulus = mp.mpf(effective_modulus)
+        self.work = mp.mpf(work)
+        self.width = mp.mpf(width)
+        """Length [m] from which searches begin."""
+
+    def dl(self, a: Number) -> Number:
+        """Return the stretch [m] at which a spring at ``a`` detaches (H 44)."""
+        return mp.sqrt(2 * mp.pi * a * self.work / self.effective_modulus)
+
+    def state(self, a: Number) -> dict[str, Number]:
+        """Return indentation [m], force [N] and stiffness [N/m] at contact radius ``a`` [m] (H 32, 33, 40, 41)."""
+        g, slope, G = self.profile.mdr(a)
+        dl = self.dl(a)
+        k = 2 * self.effective_modulus * a
+        if self.work > 0 and slope != dl / (2 * a):
+            k = 2 * self.effective_modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
+        force = 2 * self.effective_modulus * (a * g - G - a * dl)
+        return {"contact_radius": a, "indentation": g - dl, "force": force, "stiffness": k}
+
+    def growth(self, a: Number) -> Number:
+        """Return 2 a g'(a)/dl(a): a grows with the indentation where this is above 1, with the force where above 3."""
+        return 2 * a * self.profile.mdr(a)[1] / self.dl(a)
+
+    def energy(self, a: Number, indentation: Number) -> Number:
+        """Return U = E* ∫_0^a (delta - g)^2 dx - pi w a^2 [J]."""
+        edges = [mp.mpf(0), *(b for b in self.profile.kinks if b < a), a]
+        total = mp.mpf(0)
+        for lo, hi in itertools.pairwise(edges):
+            if hi <= self.profile.flat:
+                total += (hi - lo) * indentation**2
+                continue
+            for x, weight in tanh_sinh(ENERGY_WRITTEN + 10, 28):
+                total += (hi - lo) * weight * (indentation - self.profile.mdr(lo + (hi - lo) * x)[0]) ** 2
+        return self.effective_modulus * total - mp.pi * self.work * a**2
+
+    def branches(self, control: str) -> list[Branch]:
+        """Return the branches that are stable under ``control``, from the innermost to the outermost."""
+        if self.work == 0:
+            return [Branch(self.profile.flat, self.profile.end, mp.mpf(0))]
+        starts: list[Number] = []
+        stops: list[Number] = []
+        for rising, at in self._turning_points(FOLD_LEVEL[control]):
+            (starts if rising else stops).append(at)
+        ends = [*stops, self.profile.end]
+        if len(ends) != len(starts) or any(stop <= start for start, stop in zip(starts, stops, strict=False)):
+            raise ArithmeticError("minima and maxima do not alternate")
+        return [Branch(a, end, self.state(a)[control]) for a, end in zip(starts, ends, strict=True)]
+
+    def _turning_points(self, level: float) -> Iterator[tuple[bool, Number]]:
+        """Yield where ``growth`` crosses ``level``, from the smallest radius up: (upwards or not, radius)."""
+        kinks = self.profile.kinks
+        if not kinks:  # convex and without kinks: sqrt(a) g' grows for ever, so there is one
+            yield True, self._only_turning_point(level)
+            return
+        stretch_at_1 = math.sqrt(2.0 * math.pi * float(self.work / self.effective_modulus))
+        corners = [b for b, _ in self.profile.corners]
+        last, last_radius = -1.0, mp.mpf(0)
+        for base, end in zip([mp.mpf(0), *kinks], [*kinks, None], strict=True):
+            scale = float(base or kinks[0])
+            low, high = 1e-26 * scale, (1e26 * scale if end is None else float(end - base) * (1.0 - 1e-9))
+            offsets = np.geomspace(low, high, 2000)
+            if end is not None:
+                offsets = np.union1d(offsets, np.linspace(0.0, high, 400)[1:])
+            slope = self.profile.rough_slope(float(base), offsets)
+            if np.min(slope) < -1e-12 * np.max(slope):
+                raise ArithmeticError("g falls somewhere")
+            values = 2.0 * np.sqrt(float(base) + offsets) * slope / stretch_at_1 - level
+            for value, offset in zip(values, offsets, strict=True):
+                radius = base + mp.mpf(float(offset))
+                if (value > 0.0) != (last > 0.0):
+                    yield bool(value > 0.0), self._turning_point(level, base, last_radius, radius, corners)
+                last, last_radius = float(value), radius
+        if last <= 0.0:
+            raise ArithmeticError("the outermost branch lies beyond the search")
+
+    def _only_turning_point(self, level: float) -> Number:
+        """Return the only fold, found by doubling steps in the logarithm of a, or of a/(R - a) for a sphere."""
+
+        def radius(y: Number) -> Number:
+            end: Number = self.profile.end
+            return self.width * mp.exp(y) if end is None else end / (1 + mp.exp(-y))
+
+        def above(y: Number) -> Number:
+            return mp.log(self.growth(radius(y)) / mp.mpf(level))
+
+        return radius(root(above, *bracket(above)))
+
+    def _turning_point(self, level: float, base: Number, lo: Number, hi: Number, corners: list[Number]) -> Number:
+        """Return the crossing between the radii ``lo`` and ``hi`` [m]; only the latter is surely beyond ``base``."""
+        if lo <= base:
+            if base in corners:
+                return base
+            return root(lambda a: self.growth(a) - level, lo, hi)
+        start, stop = mp.log(lo - base), mp.log(hi - base)
+        return base + mp.exp(root(lambda y: self.growth(base + mp.exp(y)) - level, start, stop))
+
+    def solve(self, branches: list[Branch], control: str, value: float) -> dict[str, Number] | None:
+        """Return the state of largest radius with ``control`` = ``value``; None where a sphere's a is nearly R."""
+        exact = mp.mpf(value)
+        branch = [each for each in branches if each.value < exact][-1]
+        rise = exact - branch.value
+        start = branch.lo or self.width
+
+        def radius(y: Number) -> Number:
+            if branch.hi is None:
+                return branch.lo + start * mp.exp(y)
+            return branch.lo + (branch.hi - branch.lo) / (1 + mp.exp(-y))
+
+        def above(y: Number) -> Number:
+            # Next to a fold, next to a corner and far out this is nearly linear in y.
+            return mp.log((self.state(radius(y))[control] - branch.value) / rise)
+
+        if self.profile.end is not None:  # next to R the poles spoil the quadrature
+            top = mp.log(mp.mpf(10) ** 9)
+            if above(top) < 0:
+                return None
+        a = radius(root(above, *bracket(above)))
+        state = self.state(a)
+        if abs(state[control] - exact) > mp.mpf(10) ** (-WRITTEN - 10) * max(abs(exact), rise):
+            raise ArithmeticError(f"{control} {value!r} was not met")
+        return {**state, control: exact}

@@ -1,0 +1,86 @@
+"""The curves of a result, cell by cell, with their tolerances, and the steps at which the flat returns to a height."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+
+DONE, _EXPECTED = 0, 2
+ROUNDING = 1e-12
+"""Of a sum, as the kernels are tested."""
+FORCES = ("force", "pressure")
+
+
+class Curves(NamedTuple):
+    """The curves of one cell."""
+
+    scene: Scene
+    separation: Floats
+    """[step]"""
+    values: dict[str, Floats]
+    """[row, step]: each realisation that is done, or mean, least and greatest."""
+    error: Floats
+    """[row], over the largest force."""
+    realizations: bool
+    """Whether each row is one realisation."""
+    expected: bool
+    """Whether it is the expected curve, whose error is that of an integral."""
+
+    @property
+    def attracts_at_a_distance(self) -> bool:
+        """Whether there may be a force without contact."""
+        return self.scene.work > 0.0 and "dugdale" in self.scene.adhesion_model.candidates
+
+    def tolerance(self, name: str) -> Floats:
+        """Return by how much values may be off: [row, 1]."""
+        largest = np.abs(self.values[name]).max(axis=1, keepdims=True)
+        if name in FORCES or self.expected:
+            return np.asarray(np.maximum(self.error[:, None], ROUNDING if name not in FORCES else 0.0) * largest)
+        return np.asarray(ROUNDING * largest)
+
+
+def curves_of(result: xr.Dataset, scene: Scene) -> Iterator[Curves]:
+    """Yield the curves of each cell, in the order of the cells."""
+    sizes = scene.sweep.sizes
+    separation = result.variables["separation"]
+    over = [result.sizes[name] if name in separation.dims else 1 for name in (*sizes, "step")]
+    path = np.broadcast_to(separation.values.reshape(over), (*sizes.values(), result.sizes["step"]))
+    names = scene.output.variables
+    for index, cell in zip(np.ndindex(*sizes.values()), scene.cells, strict=True):
+
+        def values(name: str, index: tuple[int, ...] = index) -> Floats:
+            return np.asarray(result.variables[name].values[index])
+
+        expected = cell.batch.estimator == "expected"
+        if "accuracy_method" in result:
+            expected = int(values("accuracy_method")) == _EXPECTED
+        error, done = values("numerical_error"), values("status") == DONE
+        if scene.output.keep == "curves":
+            curves, error = {name: values(name)[done] for name in names}, error[done]
+        else:
+            rows = ("mean", "min", "max") if done else ()
+            error, steps = np.repeat(error, len(rows)), result.sizes["step"]
+            curves = {name: np.array([values(f"{name}_{row}") for row in rows]).reshape(-1, steps) for name in names}
+        yield Curves(cell, path[index], curves, error, not expected and scene.output.keep == "curves", expected)
+
+
+def returns(separation: Floats) -> list[tuple[int, int]]:
+    """Return pairs of steps at the same separation between which the flat was lower only.
+
+    Pairs between which it was higher only are swapped.
+    """
+    last: dict[float, int] = {}
+    pairs = []
+    for step, h in enumerate(separation.tolist()):
+        if h in last:
+            between = separation[last[h] : step]
+            if (between <= h).all():
+                pairs.append((last[h], step))
+            elif (between >= h).all():
+                pairs.append((step, last[h]))
+        last[h] = step
+    return pairs

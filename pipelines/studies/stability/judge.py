@@ -1,0 +1,211 @@
+"""The questions asked in a case of the stability study under each adhesion model, judged right, refused or wrong."""
+
+import math
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from oracles.dugdale_power_law import DugdalePowerLaw
+from oracles.jkr_power_law import JkrPowerLaw
+from oracles.multiprecision import Number, mp
+from oracles.promises import Judged, Results, judge, judge_dugdale, natural_scales, numbers_at, representable
+
+import roughmdr as rm
+from studies.stability.cases import Case
+
+MODELS = ("elastic", "jkr", "dugdale")
+OUTCOMES = RIGHT, REFUSED, WRONG = ("right", "refused", "wrong")
+CONTROLS = ("indentation", "force", "contact_radius")
+_TINY = 1e-300  # in place of no force at all
+
+
+class Reference:
+    """One asperity without adhesion or with JKR adhesion, with 60 digits."""
+
+    def __init__(self, shape: rm.PowerLaw, effective_modulus: float, work: float) -> None:
+        self.jkr, self.width = JkrPowerLaw(shape, effective_modulus, work), shape.nondimensional()[0]
+
+    def depth(self) -> Number:
+        """Return how far it is pulled before it detaches [m], 0 without adhesion."""
+        return -self.jkr.indentation(self.jkr.fold("indentation"))
+
+    def value(self, control: str, distance: float) -> Number:
+        """Return the control at a distance to the fold; a radius may be of another state where none is stable."""
+        jkr, branch = self.jkr, "force" if control == "force" else "indentation"
+        if jkr.work:
+            value = jkr.under(branch, jkr.fold(branch)) * (1 - mp.mpf(distance))
+        else:
+            value = jkr.under(branch, mp.mpf(self.width)) * distance
+        return jkr.radius(branch, value) if control == "contact_radius" else value
+
+    def numbers(self, control: str, value: Number) -> list[Number]:
+        """Return what floats must hold of the result."""
+        a = value if control == "contact_radius" else self.jkr.radius(control, value)
+        return [*natural_scales(self.jkr), *numbers_at(self.jkr, a)]
+
+    def judge(self, control: str, got: Results) -> dict[str, Judged]:
+        """Return the errors and what is allowed."""
+        return judge(self.jkr, control, got)
+
+    def contact(self, indentation: Number) -> tuple[Number, Number]:
+        """Return contact radius [m] and force [N] in a slow retraction."""
+        a = self.jkr.radius("indentation", indentation)
+        return a, self.jkr.force(a)
+
+
+class DugdaleReference(Reference):
+    """One asperity with Dugdale adhesion, with 60 digits."""
+
+    def __init__(self, shape: rm.PowerLaw, effective_modulus: float, work: float, strength: float) -> None:
+        super().__init__(shape, effective_modulus, work)
+        self.dugdale = DugdalePowerLaw(shape, effective_modulus, work, strength)
+
+    def depth(self) -> Number:
+        return -self.dugdale.pull_off("indentation").delta
+
+    def value(self, control: str, distance: float) -> Number:
+        branch = "force" if control == "force" else "indentation"
+        value = self.dugdale.pull_off(branch).under(branch) * (1 - mp.mpf(distance))
+        if control != "contact_radius":
+            return value
+        return self.dugdale.retracted(branch, value).a or self.dugdale.pull_off("force").a
+
+    def numbers(self, control: str, value: Number) -> list[Number]:
+        exact = self.dugdale
+        state = exact.at_radius(value) if control == "contact_radius" else exact.retracted(control, value)
+        folds = [exact.pull_off(control) for control in ("indentation", "force")]
+        radii = [each.c for each in (state, *folds)] + [each.a for each in (state, *folds) if each.a > 0]
+        controls = [number for fold in folds for number in (fold.delta, fold.force)]
+        return [*radii, *(r * r for r in radii), *controls, state.stiffness]
+
+    def judge(self, control: str, got: Results) -> dict[str, Judged]:
+        return judge_dugdale(self.dugdale, control, got)
+
+    def contact(self, indentation: Number) -> tuple[Number, Number]:
+        state = self.dugdale.retracted("indentation", indentation)
+        return state.a, state.force
+
+
+class Verdict(NamedTuple):
+    """The judgement on one question."""
+
+    outcome: str
+    judged: Judged = Judged(0.0, 1.0)
+    """The worst of the results."""
+    reason: str = ""
+    """Why it was refused or is wrong."""
+
+
+def on_results(judged: dict[str, Judged]) -> Verdict:
+    """Return "right" where all results are within what is allowed."""
+    if not judged:
+        return Verdict(RIGHT)
+    name, worst = max(judged.items(), key=lambda item: math.inf if math.isnan(item[1].excess) else item[1].excess)
+    if worst.excess <= 1.0:
+        return Verdict(RIGHT, worst)
+    return Verdict(WRONG, worst, f"{name} is off by {worst.error:.2g}, allowed {worst.allowed:.2g}")
+
+
+def on_error(error: Exception, numbers: list[Number]) -> Verdict:
+    """Return "refused" only where floats do not hold all the numbers of the exact result."""
+    if not isinstance(error, rm.RoughmdrError):
+        return Verdict(WRONG, reason=f"{type(error).__name__}: {error}")
+    if representable(numbers):
+        return Verdict(WRONG, reason=f"refused without need: {error}")
+    return Verdict(REFUSED, reason=_without_numbers(str(error)))
+
+
+def _without_numbers(message: str) -> str:
+    return re.sub(r"-?(\d|inf)\S*", "...", re.sub(r" \(.*?\)", "", re.split("[:;]", message)[0]))
+
+
+def verdicts(case: Case, model: str) -> list[Verdict]:
+    """Judge all questions: each asperity under each control, and their sum along a loading and unloading path."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)  # steep slopes have right results too
+        return list(_verdicts(case, model))
+
+
+def _verdicts(case: Case, model: str) -> Iterator[Verdict]:
+    dugdale = model == "dugdale"
+    shapes = case.shapes()[: 2 if dugdale else None]  # its reference is slow
+    given: dict[str, Any] = {
+        "effective_modulus": case.effective_modulus, "work": 0.0 if model == "elastic" else case.work
+    }  # fmt: skip
+    if dugdale:
+        try:
+            given["strength"] = case.tabor / rm.tabor(shapes[0], **given, strength=1.0)
+        except Exception as error:
+            yield on_error(error, natural_scales(JkrPowerLaw(shapes[0], **given)))
+            return
+    references = [(DugdaleReference if dugdale else Reference)(shape, **given) for shape in shapes]
+    given |= {"adhesion": "dugdale"} if dugdale else {}
+    alone = list(zip(shapes, references, case.distances(), strict=False))[: 1 if dugdale else None]
+    for shape, reference, distance in alone:
+        for control in CONTROLS:
+            yield _one(shape, reference, control, distance, given)
+    depths = [reference.depth() for reference in references]
+    if model == "elastic" or representable(depths):
+        yield _sum(shapes, references, depths, case.distances(), given)
+
+
+def _one(shape: rm.PowerLaw, reference: Reference, control: str, distance: float, given: dict[str, Any]) -> Verdict:
+    """Judge one asperity under one control."""
+    value = reference.value(control, distance)
+    try:
+        contact = rm.indent(shape, **given, **{control: float(value)})  # type: ignore[arg-type]
+    except Exception as error:
+        return on_error(error, reference.numbers(control, value))
+    return on_results(reference.judge(control, {str(name): float(contact[name]) for name in contact.variables}))
+
+
+def _sum(
+    shapes: list[rm.PowerLaw],
+    references: Sequence[Reference],
+    depths: list[Number],
+    distances: tuple[float, ...],
+    given: dict[str, Any],
+) -> Verdict:
+    """Judge the sum: pressed until all touch, back to the distances to the folds, and until the first detaches.
+
+    The error of the force must be within the stated one, and the number of contacts right.
+    """
+    targets = [reference.value("indentation", each) for reference, each in zip(references, distances, strict=False)]
+    height = np.array([float(value) for value in targets])
+    first, second = sorted(float(z + depth) for z, depth in zip(targets, depths, strict=True))[:2]
+    low = float(min(z - depth for z, depth in zip(targets, depths, strict=True))) if any(depths) else 0.5 * min(height)
+    path = [low, 0.0, 0.5 * (first + second)]
+    columns = {name: [shape.parameters[name] for shape in shapes] for name in shapes[0].parameters}
+    data = {name: ("asperity", column) for name, column in {"height": height, **columns}.items()}
+    try:
+        curve = rm.load_separation(
+            xr.Dataset(data, attrs={"shape": shapes[0].name}),
+            separation=path, variables=["force", "contact_count"], **given,
+        )  # fmt: skip
+    except Exception as error:
+        # The bound on the error combines the largest of all natural scales and distances.
+        farthest = (max(height) - low) / min(depths) if any(depths) else 0
+        needed = [
+            number
+            for reference, depth, z in zip(references, depths, height.tolist(), strict=True)
+            for delta in (depth * farthest, *(mp.mpf(z) - mp.mpf(h) for h in path[:2]))
+            if delta
+            for number in reference.numbers("indentation", delta)
+        ]
+        return on_error(error, needed)
+    contacts = [
+        [reference.contact(mp.mpf(z) - mp.mpf(h))
+         for z, reference, depth in zip(height.tolist(), references, depths, strict=True)
+         if mp.mpf(z) - mp.mpf(h) > -depth]
+        for h in path
+    ]  # fmt: skip
+    force = [mp.fsum(each for _, each in step) for step in contacts]
+    largest = max(*map(abs, force), mp.mpf(_TINY))
+    worst = max(abs(true - mp.mpf(got)) for true, got in zip(force, curve.force.to_numpy().tolist(), strict=True))
+    count = [sum(a > 0 for a, _ in step) for step in contacts]
+    if curve.contact_count.to_numpy().tolist() != count:
+        return Verdict(WRONG, reason=f"{curve.contact_count.to_numpy().tolist()} contacts, not {count}")
+    return on_results({"force of all": Judged(float(worst / largest), float(curve.numerical_error))})

@@ -1,0 +1,210 @@
+"""Random scenes over all shapes, adhesion models, distributions, paths and estimators."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roughmdr.shapes import SHAPES
+
+Table = dict[str, Any]
+
+SEED = 2026
+ESTIMATORS = ("sampled", "stratified", "expected")
+ADHESIONS = ("none", "jkr", "dugdale")
+COHESIVE = ("paraboloid", "flat_punch", "truncated_cone")
+"""Shapes drawn with adhesion of finite range, the last not for the expected curve: each of the others takes half a
+minute to compile, and seconds for its reference."""
+_FIXED_PROFILES = ("power_series", "tabulated")
+_EXPONENTS = (1, 1.5, 2, 2.5, 3, 4, 6)  # of power series
+_LARGEST_WORK = 10.0  # [J/m2]
+
+
+class RandomScene(NamedTuple):
+    """A scene and its choices."""
+
+    number: int
+    shape: str
+    adhesion: str
+    estimator: str
+    table: Table
+
+
+class Size(NamedTuple):
+    """A tip is about ``rise`` high at the radius ``width``; its natural depth with adhesion is about ``depth`` [m]."""
+
+    width: float
+    rise: float
+    depth: float
+
+
+def decades(rng: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number between powers of ten, uniform in its logarithm."""
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def scene(number: int) -> RandomScene:
+    """Return the scene of a number; every fourth is for the expected curve."""
+    rng = np.random.default_rng([SEED, number])
+    estimator = "expected" if number % 4 == 0 else str(rng.choice(["sampled", "sampled", "stratified"]))
+    adhesion = str(rng.choice(ADHESIONS, p=[0.25, 0.6, 0.15]))
+    if adhesion == "dugdale":
+        shape = str(rng.choice(COHESIVE[: 2 if estimator == "expected" else 3]))
+    else:
+        shape = str(rng.choice(list(SHAPES)))
+    source = "nayak" if shape == "paraboloid" and rng.uniform() < 0.2 else "random"
+    effective_modulus, width, slope = decades(rng, 3, 13), decades(rng, -9, 0), decades(rng, -4, 0)
+    stretch = decades(rng, -2, 1.5)  # dl at the edge of a contact of this width, over the rise of the tip there
+    work = min(stretch**2 * (slope * width) ** 2 * effective_modulus / (2.0 * math.pi * width), _LARGEST_WORK)
+    stretch = math.sqrt(2.0 * math.pi * width * work / effective_modulus) / (slope * width)
+    rise = slope * width
+    size = Size(width, rise, rise * stretch ** (4.0 / 3.0) if adhesion != "none" else 0.0)
+    std = max(size.depth * decades(rng, -1.5, 2), rise * 1e-6) if adhesion != "none" else rise * decades(rng, -3, 0.5)
+    datum = 0.0 if rng.uniform() < 0.8 else float(rng.choice([-1.0, 1.0])) * std * decades(rng, 1, 7)
+    if source == "nayak":
+        datum, asperities = 0.0, _summits(rng, std, size)
+    else:
+        asperities = _asperities(rng, shape, adhesion, estimator, std, datum, size)
+    table: Table = {
+        "title": f"Random scene {number}",
+        "seed": int(rng.integers(2**31)),
+        "material": {"effective_modulus": effective_modulus},
+        "asperities": asperities,
+        "path": _path(rng, std, datum, size),
+        "output": {"variables": ["force"]},
+        "batch": {"estimator": estimator},
+    }
+    if adhesion != "none":
+        table["adhesion"] = {"model": adhesion, "work": work}
+    if adhesion == "dugdale":
+        tabor = decades(rng, -2, 2)
+        dl = math.sqrt(2.0 * math.pi * width * work / effective_modulus)
+        table["adhesion"]["strength"] = tabor * math.pi ** (2.0 / 3.0) * work / dl
+    if estimator != "expected" and rng.uniform() < 0.2:
+        table["batch"]["realizations"] = 3
+        table["output"]["keep"] = "statistics"
+    return RandomScene(number, shape, adhesion, estimator, table)
+
+
+def _asperities(
+    rng: np.random.Generator, shape: str, adhesion: str, estimator: str, std: float, datum: float, size: Size
+) -> Table:
+    slow = adhesion == "dugdale" and shape not in ("paraboloid", "flat_punch")
+    section: Table = {
+        "source": "random",
+        "shape": shape,
+        "count": int(rng.integers(1, 3 if slow else 10)),
+        "patch": 100.0 * size.width,
+        "height": _heights(rng, std, datum),
+    }
+    if shape in _FIXED_PROFILES:
+        return {**section, **_fixed_profile(rng, shape, size)}
+    values = _tip(rng, shape, size)
+    max_varied = 0 if slow else len(values)
+    if estimator == "expected":  # two at once take seconds, in the run and for its reference
+        max_varied = min(max_varied, 2 if shape == "power_law" and rng.uniform() < 0.3 else 1)
+    varied = list(rng.permutation(list(values)))[: int(rng.integers(0, max_varied + 1))]
+    ordered = shape == "capped_paraboloid"
+    section |= {
+        name: _spread(rng, value, ordered or name == "exponent") if name in varied else value
+        for name, value in values.items()
+    }
+    if varied and rng.uniform() < 0.25:
+        section["correlation"] = {varied[0]: float(rng.uniform(-0.9, 0.9))}
+    if rng.uniform() < 0.15:
+        other = {name: value * (0.9 if ordered else decades(rng, -0.5, 0.5)) for name, value in values.items()}
+        other.pop("exponent", None)
+        changed = list(rng.permutation(list(other)))[: 0 if ordered else 1]
+        section["second"] = {
+            "share": float(rng.uniform(0.1, 0.9)),
+            "height": _heights(rng, std * decades(rng, -1, 0.5), datum + std * float(rng.uniform(-1, 1))),
+            **{name: other[name] for name in changed},
+        }
+    return section
+
+
+def _tip(rng: np.random.Generator, shape: str, size: Size) -> dict[str, float]:
+    """Return parameters of a tip of this size."""
+    slope, radius = size.rise / size.width, size.width**2 / (2.0 * size.rise)
+    blend = size.width * decades(rng, -1.5, 0.5)
+    match shape:
+        case "flat_punch":
+            return {"radius": size.width}
+        case "cone":
+            return {"slope": slope}
+        case "paraboloid" | "sphere":
+            return {"radius": radius}
+        case "power_law":
+            return {"exponent": decades(rng, -0.1, 1.0), "width": size.width, "rise": size.rise}
+        case "truncated_cone":
+            return {"slope": slope, "flat_radius": blend}
+        case "truncated_paraboloid":
+            return {"radius": radius, "flat_radius": blend}
+        case "rounded_cone":
+            return {"slope": slope, "blend_radius": blend}
+        case "capped_paraboloid":
+            return {"radius": radius, "cap_radius": radius * (1.0 + decades(rng, -0.3, 1.5)), "blend_radius": blend}
+        case "rounded_punch":
+            return {"flat_radius": blend, "edge_radius": radius}
+    raise ValueError(f"no shape {shape}")
+
+
+def _fixed_profile(rng: np.random.Generator, shape: str, size: Size) -> Table:
+    """Return the one profile of all asperities."""
+    if shape == "power_series":
+        exponents = sorted(rng.choice(_EXPONENTS, int(rng.integers(1, 4)), replace=False).tolist())
+        shares = rng.uniform(0.1, 1.0, len(exponents))
+        return {
+            "terms": {f"{n:g}": float(s) * size.rise * size.width**-n for n, s in zip(exponents, shares, strict=True)}
+        }
+    gaps = rng.uniform(0.3, 1.0, int(rng.integers(2, 7)))
+    r = np.concatenate([[0.0], np.cumsum(gaps)]) * size.width
+    f = size.rise * (r / size.width) ** rng.uniform(1.3, 3.0)
+    return {"r": r.tolist(), "f": f.tolist()}
+
+
+def _spread(rng: np.random.Generator, value: float, ordered: bool) -> Table:
+    """Return a distribution about a value; a narrow one where parameters must stay ``ordered``."""
+    if ordered or rng.uniform() < 0.4:
+        width = float(rng.uniform(0.02, 0.36 if ordered else 1.0))
+        return {"distribution": "uniform", "loc": value * (1.0 - 0.5 * width), "scale": value * width}
+    return {"distribution": "lognormal", "mean": value, "std": value * decades(rng, -2, -0.2)}
+
+
+def _heights(rng: np.random.Generator, std: float, datum: float) -> Table:
+    match rng.integers(6):
+        case 0:
+            return {"distribution": "expon", "loc": datum, "scale": std}
+        case 1:
+            return {"distribution": "uniform", "loc": datum - 1.7 * std, "scale": 3.4 * std}
+        case 2:
+            return {"distribution": "weibull_min", "c": float(rng.uniform(1.0, 4.0)), "mean": datum, "std": std}
+        case 3:
+            cut = float(rng.uniform(0.0, 2.0))
+            return {"distribution": "normal", "mean": datum, "std": std, "max": datum + cut * std}
+    return {"distribution": "normal", "mean": datum, "std": std}
+
+
+def _summits(rng: np.random.Generator, std: float, size: Size) -> Table:
+    """Return the summits of a Gaussian surface of about this roughness and size."""
+    alpha, count = 1.5 + decades(rng, -1, 2), int(rng.integers(3, 10))
+    m0 = std * std
+    curvature = 2.0 * size.rise / size.width**2
+    m4 = (3.0 / 8.0 * curvature) ** 2 * math.pi
+    m2 = math.sqrt(m0 * m4 / alpha)
+    patch = math.sqrt(count * 6.0 * math.pi * math.sqrt(3.0) * m2 / m4)
+    return {"source": "nayak", "patch": patch, "m0": m0, "m2": m2, "m4": m4}
+
+
+def _path(rng: np.random.Generator, std: float, datum: float, size: Size) -> Table:
+    """Return a path of loading, of loading and unloading, or back and forth."""
+    low = datum + std * float(rng.uniform(-1.0, 0.5))
+    high = datum + std * float(rng.uniform(1.0, 3.0))
+    far = high + size.depth * float(rng.uniform(0.0, 2.0))
+    kind = rng.integers(4)
+    if kind == 0:
+        return {"separation": {"start": high, "stop": low, "steps": int(rng.integers(3, 9))}}
+    if kind == 1:
+        return {"separation": {"start": far, "stop": low, "steps": int(rng.integers(3, 7))}, "unload": True}
+    inner = rng.uniform(low, far, int(rng.integers(1, 6))).tolist()
+    return {"separation": [high, low, *inner] if kind == 2 else [high, *inner, low, *sorted(inner)]}

@@ -1,0 +1,71 @@
+"""The framework of a study or a figure: measure into NAME.nc, draw PNG files, and report in Markdown."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import click
+import xarray as xr
+
+from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.result_file import provenance
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Draw: TypeAlias = "Callable[[xr.Dataset], Figure]"
+OUTPUT = click.option(
+    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("results/studies"),
+    show_default=True, help="Folder to write to.",
+)  # fmt: skip
+QUICK = click.option("--quick", is_flag=True, help="A reduced form: seconds, and rough figures.")
+
+
+class Study(NamedTuple):
+    """A study or a figure, given by its functions."""
+
+    name: str
+    """Name of its command and of its files."""
+    title: str
+    measure: Callable[[bool], xr.Dataset]
+    """Return all numbers; a reduced form, in seconds, where the argument is true."""
+    draw: "Draw | dict[str, Draw]"
+    """The picture NAME.png, or several pictures by their names."""
+    report: Callable[[xr.Dataset], str]
+    """Return a few sentences and tables in Markdown."""
+
+    def carry_out(self, output: Path, quick: bool) -> str:
+        """Measure, write all files to the folder ``output``, and return the report."""
+        output.mkdir(parents=True, exist_ok=True)
+        result = self.measure(quick)
+        result = result.assign_attrs(provenance(self.title, f"{self.name}.py"))
+        write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
+        for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
+            with replace_atomically(output / f"{name}.png") as temporary:
+                draw(result).savefig(temporary, dpi=160, format="png")
+        return f"## {self.title}\n\n{self.report(result).strip()}\n"
+
+    @property
+    def command(self) -> click.Command:
+        """The study as a command."""
+
+        @click.command(help=self.title)
+        @OUTPUT
+        @QUICK
+        def main(output: Path, quick: bool) -> None:
+            click.echo(self.carry_out(output, quick), nl=False)
+
+        return main
+
+
+def named(long_name: str, units: str = "1") -> dict[str, str]:
+    """Return the attributes of a variable."""
+    return {"units": units, "long_name": long_name}
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)

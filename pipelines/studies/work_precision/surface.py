@@ -1,0 +1,202 @@
+"""The mean curve of a rough surface: every method for it, by draws and by integrals."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from typing import Any, NamedTuple
+from unittest.mock import patch
+
+import numpy as np
+from oracles.expected_paraboloids import Rough
+from oracles.plain_sums import Sums, with_brentq, with_numpy
+from studies.work_precision.points import Curve, Method, Point, Points, Reference, each_setting, root_mean_square
+
+from roughmdr.aggregate import LoadSeparation
+from roughmdr.aggregate.totals import AREA, FORCE
+from roughmdr.batch import tasks
+from roughmdr.batch.plan import Cell, make_plan, simulate_realization
+from roughmdr.ensemble.nodes import Rule
+from roughmdr.expected.node import Problem, set_up, totals_of
+from roughmdr.numerics.arguments import Floats
+from roughmdr.runner.backend import Backend
+from roughmdr.runner.run import execute
+from roughmdr.scene import read
+
+UM, MODULUS, WORK = 1e-6, 4e6, 0.05
+COUNT = 1000  # asperities of a realisation
+VARIABLES = ["force", "contact_area"]
+DIGITS = 12
+_STEPS = {False: (10, 20, 30, 40), True: (10, 30, 45, 55, 62, 68)}  # of the reference, loading only or both ways
+_NODES = (1, 2, 3, 4, 6, 8, 12, 16)
+_ERRORS = (0.1, 0.03, 0.01, 0.003)
+_MIN_GROUPS = 4  # whose r.m.s. is taken
+_SEEDS = 12  # runs to an asked error, of which the mean counts
+
+
+class Surface(NamedTuple):
+    """Paraboloids of normal heights, loaded by a flat and, with adhesion, unloaded."""
+
+    rough: Rough
+
+    def table(self, **sections: Any) -> dict[str, Any]:
+        """Return the scene; other sections as they are given."""
+        rough = self.rough
+        lognormal = {"distribution": "lognormal", "mean": rough.radius, "std": rough.radius_std}
+        return {
+            "material": {"effective_modulus": rough.effective_modulus},
+            "adhesion": {"model": "jkr", "work": rough.work},
+            "asperities": {
+                "source": "random",
+                "shape": "paraboloid",
+                "count": COUNT,
+                "patch": "1 mm",
+                "height": {"distribution": "normal", "std": rough.std},
+                "radius": lognormal if rough.radius_std else rough.radius,
+            },
+            "path": {"separation": {"start": 3 * UM, "stop": -0.5 * UM, "steps": 50}, "unload": bool(rough.work)},
+            "output": {"variables": VARIABLES},
+            **sections,
+        }
+
+
+SURFACES = {
+    "Hertz, lognormal radii": Surface(Rough("normal", UM, 50 * UM, 5 * UM, MODULUS)),
+    "JKR, equal radii": Surface(Rough("normal", UM, 50 * UM, 0.0, MODULUS, WORK)),
+    "JKR, lognormal radii": Surface(Rough("normal", UM, 50 * UM, 5 * UM, MODULUS, WORK)),
+}
+
+
+@cache
+def _cell(surface: Surface) -> Cell:
+    return make_plan(read(surface.table())).cells[0]
+
+
+def reference(surface: Surface, *, quick: bool) -> Reference:
+    """Compute double integrals with ``DIGITS`` digits; the pull-off force at the lowest step of the expected curve."""
+    separation, rough = _cell(surface).path.separation, surface.rough
+    lowest, turn = int(np.argmin(simulate(surface, "expected").force)), int(np.argmin(separation))
+
+    def mean(quantity: Callable[..., float], step: int) -> float:
+        closest = float(separation[turn]) if step > turn else None
+        return COUNT * quantity(float(separation[step]), closest, DIGITS)
+
+    steps = list(_STEPS[bool(rough.work)])[:: 2 if quick else 1]
+    force = np.array([mean(rough.force, step) for step in steps])
+    area = np.array([mean(rough.area, step) for step in steps[::2]])
+    return Reference(steps, force, steps[::2], area, mean(rough.force, lowest) if rough.work else 0.0)
+
+
+def _curve(force: Floats, area: Floats, evaluations: int) -> Curve:
+    return Curve(force, area, float(force.min()), evaluations)
+
+
+def simulate(surface: Surface, estimator: str, realization: int = 0) -> Curve:
+    """Compute one realisation, or the expected curve."""
+    found = simulate_realization(*_cell(surface), realization, VARIABLES, estimator)
+    return _curve(found.variables["force"], found.variables["contact_area"], found.visits)
+
+
+def _by_nodes(surface: Surface, order: float) -> Callable[[], Curve]:
+    """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
+    scene, path = _cell(surface)
+    problem = Problem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
+    steps = list(range(path.separation.size))
+
+    def action() -> Curve:
+        nodes = set_up(problem, Rule.smooth(int(order)))
+        total, products = totals_of(nodes, path.separation, problem.rows, steps)
+        return _curve(COUNT * total[FORCE], COUNT * total[AREA], products)
+
+    return action
+
+
+def expected_by_nodes(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
+    """Return the points of ``_by_nodes``; none where all radii are equal."""
+    if surface.rough.radius_std:
+        yield from each_setting(_NODES, _by_nodes)(surface, exact, quick)
+
+
+Draw = Callable[[Surface, int], Curve]
+"""(surface, number) -> one realisation."""
+
+
+def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
+    """Return a point for 1, 2, 4 ... of ``count`` realisations: the r.m.s. error of all such groups."""
+
+    def points(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
+        draw(surface, 0)  # compiled before the clock runs
+        total = quick_count if quick else count
+        curves, seconds = [], []
+        for number in range(total):
+            started = time.perf_counter()
+            curves.append(draw(surface, number))
+            seconds.append(time.perf_counter() - started)
+        each, visits = float(np.median(seconds)), float(np.mean([curve.evaluations for curve in curves]))
+        drawn = [np.array([getattr(curve, name) for curve in curves]) for name in ("force", "area")]
+        for size in 2 ** np.arange(int(math.log2(total / _MIN_GROUPS)) + 1):
+            means = [values.reshape(-1, size, values.shape[-1]).mean(axis=1) for values in drawn]
+            errors = [exact.errors(_curve(force, area, 0)) for force, area in zip(*means, strict=True)]
+            yield Point(float(size), root_mean_square(errors), float(size) * each, float(size) * visits)
+
+    return points
+
+
+def _plain(sum_up: Callable[..., Sums]) -> Draw:
+    """Return realisations drawn and summed by a plain script."""
+
+    def draw(surface: Surface, number: int) -> Curve:
+        rng, rough = np.random.default_rng(number), surface.rough
+        spread = math.sqrt(math.log1p((rough.radius_std / rough.radius) ** 2))
+        radius = rough.radius * np.exp(spread * rng.standard_normal(COUNT) - 0.5 * spread**2)
+        height = rough.std * rng.standard_normal(COUNT)
+        found = sum_up(height, radius, _cell(surface).path.separation, rough.effective_modulus, rough.work)
+        return _curve(found.force, found.area, found.visits)
+
+    return draw
+
+
+def _to_error(method: str) -> Points:
+    """Return a point for each error that is asked for: r.m.s. error and mean cost of runs with several seeds."""
+
+    def points(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
+        _run(surface, method, _ERRORS[-1], 0)  # all is loaded before the clock runs
+        for relative in _ERRORS[:2] if quick else _ERRORS:
+            runs = [_run(surface, method, relative, seed) for seed in range(2 if quick else _SEEDS)]
+            errors = root_mean_square([exact.errors(curve) for curve, _ in runs])
+            seconds, visits = np.mean([(spent, curve.evaluations) for curve, spent in runs], axis=0)
+            yield Point(relative, errors, float(seconds), float(visits))
+
+    return points
+
+
+def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Curve, float]:
+    """Return the mean curve of a run to an asked error, and its time [s] without planning, of all that was tried."""
+    accuracy = {"relative": relative, "max_realizations": 4096, "method": method}
+    output = {"variables": VARIABLES, "keep": "statistics"}
+    plan = make_plan(read(surface.table(seed=seed, accuracy=accuracy, output=output)))
+    visits = list[int]()
+
+    def counted(*args: Any) -> LoadSeparation:
+        found = simulate_realization(*args)
+        visits.append(found.visits)
+        return found
+
+    with patch.object(tasks, "simulate_realization", counted):
+        started = time.perf_counter()
+        result = execute(plan, None, Backend(workers=1), quiet=True).variables
+        seconds = time.perf_counter() - started
+    return _curve(result["force_mean"].values, result["contact_area_mean"].values, sum(visits)), seconds
+
+
+METHODS = (
+    Method("sampled", "realisations", _drawn(lambda surface, n: simulate(surface, "sampled", n), 1024, 64)),
+    Method("stratified", "realisations", _drawn(lambda surface, n: simulate(surface, "stratified", n), 1024, 64)),
+    Method("sampled, error asked for", "error", _to_error("sampled"), competes=False),
+    Method("stratified, error asked for", "error", _to_error("stratified"), competes=False),
+    Method("auto, error asked for", "error", _to_error("auto"), competes=False),
+    Method("expected", "-", each_setting((1.0,), lambda surface, _: partial(simulate, surface, "expected"))),
+    Method("expected, nodes given", "nodes", expected_by_nodes, competes=False),
+    Method("plain NumPy", "realisations", _drawn(_plain(with_numpy), 128, 16)),
+    Method("brentq", "realisations", _drawn(_plain(with_brentq), 4, 4)),
+)
