@@ -1,7 +1,10 @@
-"""The shape that CONTRIBUTING.md adds, as it stands there: one file and one line, and it works everywhere."""
+"""The examples of CONTRIBUTING.md, as they stand there: each is added, and works everywhere."""
 
 import importlib.util
+import os
 import re
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -14,13 +17,14 @@ import roughmdr as rm
 from roughmdr.shapes import SHAPES
 
 S, R, E, W = 0.05, 3e-5, 4e6, 0.02
+ROOT = Path(__file__).parent.parent
+GUIDE = (ROOT / "CONTRIBUTING.md").read_text()
 
 
 @pytest.fixture
 def conoid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    guide = (Path(__file__).parent.parent / "CONTRIBUTING.md").read_text()
     file = tmp_path / "conoid.py"
-    file.write_text(re.findall(r"```python\n(.*?)```", guide, flags=re.DOTALL)[0])
+    file.write_text(re.findall(r"```python\n(.*?)```", GUIDE, flags=re.DOTALL)[0])
     spec = importlib.util.spec_from_file_location("conoid", file)
     assert spec is not None
     assert spec.loader is not None
@@ -54,3 +58,51 @@ def test_the_shape_of_the_guide_works(conoid: ModuleType) -> None:
         for s, d in ((S, 1e-6), (2 * S, 0.9e-6))
     ]
     assert float(law.force[1]) == pytest.approx(sum(float(one.force) for one in alone), rel=1e-12)
+
+
+_USE = """
+import sys
+sys.path.insert(0, {package!r})
+import numpy as np
+import roughmdr as rm
+from scenes import ASPERITIES, ensemble, scene
+
+{code}
+"""
+_DMT = """
+E, w, R = 4e6, 0.05, np.array([5e-5, 1e-4])
+data = ensemble([0.0, -1e-7], radius=R)
+law = rm.load_separation(data, separation=[1e-6, -1e-6, 1e-6], effective_modulus=E, work=w, adhesion="dmt")
+delta = np.array([1e-6, 0.9e-6])
+exact = (4.0 / 3.0 * E * np.sqrt(R) * delta**1.5 - 2.0 * np.pi * w * R).sum()
+assert abs(float(law.force[1]) - exact) <= float(law.numerical_error) * abs(exact)
+assert float(law.force[0]) == float(law.force[2]) == 0.0
+adhesion, asperities = {"model": "dmt", "work": w}, {**ASPERITIES, "radius": 5e-5, "count": 4000}
+drawn = rm.run(scene(adhesion=adhesion, asperities=asperities, batch={"realizations": 4}), "out.nc").force
+expected = rm.run(scene(adhesion=adhesion, asperities=asperities, batch={"estimator": "expected"})).force[0]
+assert float(expected.min()) < 0.0 < float(expected.max())
+assert float(abs(drawn.mean("realization") - expected).max()) < 0.1 * float(expected.max())
+"""
+_PERIMETER = """
+names = ["contact_perimeter", "contact_radius_sum"]
+for batch in ({"realizations": 2}, {"estimator": "expected"}):
+    found = rm.run(scene(batch=batch, output={"variables": names}), f"{len(batch)}{list(batch)[0]}.nc")
+    assert found.contact_perimeter.attrs["units"] == "m"
+    np.testing.assert_allclose(found.contact_perimeter, 2.0 * np.pi * found.contact_radius_sum, rtol=1e-14)
+    assert float(found.contact_perimeter.max()) > 0.0
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("section", "code"), [("adhesion model", _DMT), ("curve variable", _PERIMETER)])
+def test_the_patches_of_the_guide_work(section: str, code: str, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "roughmdr", tmp_path / "roughmdr", ignore=shutil.ignore_patterns("__pycache__"))
+    (patch,) = re.findall(
+        r"```diff\n(.*?)```", GUIDE.split(f"## A new {section}\n")[1].split("\n## ")[0], flags=re.DOTALL
+    )
+    (tmp_path / "example.diff").write_text(patch)
+    subprocess.run(["git", "apply", "--unidiff-zero", "example.diff"], cwd=tmp_path, check=True)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "tests"), "PYTHONWARNINGS": "ignore"}
+    command = [sys.executable, "-c", _USE.format(package=str(tmp_path), code=code)]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -36,7 +36,7 @@ def few(keep: str, **changes: Any) -> dict[str, Any]:
 @pytest.fixture
 def visit_count(monkeypatch: pytest.MonkeyPatch) -> Diagnostic:
     """The diagnostic of the guide."""
-    (declared,) = eval(f"({DECLARED})", {"Diagnostic": Diagnostic})
+    declared = eval(DECLARED, {"Diagnostic": Diagnostic})
     diagnostics_of = tasks.diagnostics_of
 
     def more(result: Any, *others: Any) -> dict[str, object]:
