@@ -1,4 +1,4 @@
-"""What a cell, a task and a second worker cost, memory, and what a very large sweep would take.
+"""Measure the cost of a cell, a task and a second worker, memory, and extrapolate to a very large sweep.
 
 python pipelines/batch.py -o results/studies
 """

@@ -1,4 +1,4 @@
-"""What a scene calls and keeps with each part that it does not need left out, and forced on.
+"""Count what a scene calls and keeps with each part that it does not need left out, and forced on.
 
 python pipelines/left_out.py -o results/studies
 """

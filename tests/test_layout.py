@@ -4,6 +4,7 @@ import ast
 import statistics
 import subprocess
 import sys
+from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -169,3 +170,24 @@ def test_files_are_short() -> None:
     lengths = [len(path.read_text().splitlines()) for path in FILES if path.name != "__init__.py"]
     assert max(lengths) <= 300
     assert 60 <= statistics.median(lengths) <= 120
+
+
+def functions(path: Path) -> Iterator[ast.FunctionDef]:
+    return (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef))
+
+
+def test_no_function_has_many_parameters() -> None:
+    for path in FILES:
+        for function in functions(path):
+            listed = function.args
+            names = [each.arg for each in (*listed.posonlyargs, *listed.args, *listed.kwonlyargs)]
+            names += [each.arg for each in (listed.vararg, listed.kwarg) if each is not None]
+            assert len(names) - (names[:1] in (["self"], ["cls"])) <= 8, f"{path.name}: {function.name}"
+
+
+def test_a_docstring_names_its_subject() -> None:
+    for path in (*FILES, *PACKAGE.parent.glob("pipelines/**/*.py"), *PACKAGE.parent.glob("data_gen/*.py")):
+        tree = ast.parse(path.read_text())
+        documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+        for text in (ast.get_docstring(node) for node in ast.walk(tree) if isinstance(node, documented)):
+            assert not (text or "").startswith(("What ", "The same", "Of ")), f"{path.name}: {text}"

@@ -1,4 +1,4 @@
-"""What the batch engine costs: a cell, a task, memory, a second worker; and what a very large sweep would take."""
+"""The costs of the batch engine: a cell, a task, memory, a second worker; extrapolated to a very large sweep."""
 
 from statistics import median
 

@@ -1,4 +1,4 @@
-"""What a sweep over very many asperities would take: extrapolated from two cores to many workers.
+"""The time and memory of a sweep over very many asperities, extrapolated from two cores to many workers.
 
 What each part costs alone is measured; that parts and workers do not hinder each other is assumed.
 """

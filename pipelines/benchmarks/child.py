@@ -1,4 +1,4 @@
-"""What is measured in processes of their own: memory, and overheads that begin from nothing.
+"""Measurements in processes of their own: memory, and overheads from a cold start.
 
 It imports no more than a run does, since its memory is what is measured.
 """

@@ -1,4 +1,4 @@
-"""What ``roughmdr plan`` foresees against what the runs then take: time and peak memory of five scenes.
+"""Time and peak memory of five scenes as ``roughmdr plan`` foresees them, against those of the runs.
 
 Each scene is run in a process of its own. Needs /proc.
 """

@@ -1,4 +1,4 @@
-"""What the sum costs: time a visited asperity and step, against NumPy and SciPy; two workers; a million; a cell.
+"""The costs of the sum: time a visited asperity and step, against NumPy and SciPy; two workers; a million; a cell.
 
 All figures come from one run, since ratios hold where times drift.
 """

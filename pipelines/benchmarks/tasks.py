@@ -1,4 +1,4 @@
-"""What a task costs by each scheduler, and how much faster two workers are than one."""
+"""The cost of a task by each scheduler, and the speed-up of two workers."""
 
 import math
 import os

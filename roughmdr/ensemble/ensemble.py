@@ -132,6 +132,8 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 def _size(name: str, value: Any) -> float:
     """Return a length [m] or an area [m2] of a patch."""
+    if isinstance(value, str):
+        raise SceneError(f"ensemble: attribute {name} is {short_repr(value)}; it must be a finite number above 0 in SI")
     try:
         return check_number(f"ensemble: attribute {name}", value, "in SI")
     except OutOfRange as error:

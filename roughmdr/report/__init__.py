@@ -1,1 +1,1 @@
-"""What users see of plans and results: summaries, tables, pictures, and messages on the terminal."""
+"""Summaries, tables and pictures of plans and results, and messages on the terminal."""

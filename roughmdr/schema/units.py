@@ -89,7 +89,7 @@ def quantity(value: object, dimension: str) -> float:
 
 
 def unit_factor(unit: str, dimension: str) -> Decimal:
-    """What one ``unit`` is in SI; no unit means SI. RoughmdrError where it is no unit of the dimension."""
+    """Return the value of one ``unit`` in SI; no unit means SI. RoughmdrError where it is no unit of the dimension."""
     unit = unit.strip()
     if unit in ("", dimension):
         return Decimal(1)

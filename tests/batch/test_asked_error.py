@@ -68,7 +68,7 @@ def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:
 
 FILE = {"source": "file", "file": "ensemble.nc"}
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "nothing drawn": (asking(0.1, None, asperities=FILE), r"accuracy: does not go with source 'file': nothing of it"),
+    "nothing drawn": (asking(0.1, None, asperities=FILE), r"accuracy: does not go with source 'file': nothing in it"),
     "estimator": (asking(0.1, batch={"estimator": "sampled"}), r"batch\.estimator: .*chosen by accuracy\.method"),
     "max": (asking(0.1, most=10, batch={"realizations": 11}), r"batch\.realizations: .*at most .*max_realizations, 10"),
     "one": (asking(0.1, most=1), r"accuracy\.max_realizations.*1"),

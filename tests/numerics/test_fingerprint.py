@@ -36,6 +36,7 @@ def run(package: Path, folder: Path, realizations: int) -> tuple[int, int]:
     arguments = ["run", "small.toml", "-o", "out.nc", "--set", f"batch.realizations={realizations}", "--quiet"]
     environment = {**os.environ, "PYTHONPATH": str(package.parent), "XDG_CACHE_HOME": str(folder / "cache")}
     code = f"import sys; sys.path.insert(0, {str(package.parent)!r})" + _RUN.format(arguments=arguments)
+    environment.pop("NUMBA_DISABLE_JIT", None)
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, check=False
     )

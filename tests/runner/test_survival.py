@@ -262,10 +262,10 @@ def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Pat
     slowly = """
 import os, signal
 import roughmdr.batch.resume.writer as writer
-def write(*arguments, write=writer.write):
+def write(*arguments, write=writer.write_netcdf):
     os.kill(os.getpid(), signal.SIGINT)
     write(*arguments)
-writer.write = write
+writer.write_netcdf = write
 """
     with running(Batch(folder, code=slowly)) as batch:
         status, said = batch.end()

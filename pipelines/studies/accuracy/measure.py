@@ -60,7 +60,7 @@ class ForceSamples(NamedTuple):
 
     @property
     def kurtosis(self) -> float:
-        """Of the force at the step where it varies most; 3 for a normal distribution."""
+        """Return the kurtosis of the force at the step where it varies most; 3 for a normal distribution."""
         force = self.force[:, int(self.force.std(axis=0).argmax())]
         return float(np.mean((force - force.mean()) ** 4) / force.var() ** 2)
 

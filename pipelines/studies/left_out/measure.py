@@ -1,4 +1,4 @@
-"""What a scene calls and keeps with a part that it does not need left out, and with the part forced on alone.
+"""Count what a scene calls and keeps with a part that it does not need left out, and with that part forced on.
 
 Calls are counted where nothing is compiled, in a process with NUMBA_DISABLE_JIT=1, so that each of them is seen.
 """
@@ -79,7 +79,7 @@ def scene_of(asperities: int, *, unload: bool, adhesive: bool = False, runs: int
 
 
 class Counts(NamedTuple):
-    """What one realisation of a scene calls, and the force that it comes to."""
+    """The calls of one realisation of a scene, and its force."""
 
     counted: dict[str, float]
     force: list[float]

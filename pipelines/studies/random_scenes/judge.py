@@ -1,4 +1,4 @@
-"""What must be true of any scene: it is refused in words, or its numbers are finite and physically right."""
+"""Judge any scene: it is refused in words, or its numbers are finite and physically right."""
 
 import math
 import re
@@ -28,7 +28,7 @@ class Defect(AssertionError):  # noqa: N818 - it is what is looked for
 
 
 class Verdict(NamedTuple):
-    """What became of a scene."""
+    """The outcome of a scene."""
 
     outcome: str
     reason: str = ""

@@ -39,7 +39,7 @@ KINDS = {
 
 
 class Record(NamedTuple):
-    """What became of one scene."""
+    """The outcome of one scene."""
 
     kind: tuple[str, ...]
     """As in ``KINDS``."""

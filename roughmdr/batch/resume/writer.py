@@ -89,7 +89,7 @@ class CheckpointWriter:
 
     @property
     def saved_message(self) -> str:
-        """What is safe, in words; empty where nothing is."""
+        """Message that tells which runs are kept, and where; empty if none are."""
         if self.store is None or self.store.empty or not self.store.folder.is_dir():
             return ""
         again = "the same command without --fresh" if self._cleared else "the same command"
