@@ -18,7 +18,10 @@ CONTACT_ROWS = 4
 
 
 class Block(NamedTuple):
-    """Arrays over the asperities of a block, from the highest to the lowest."""
+    """Arrays over the asperities of a block, from the highest to the lowest.
+
+    Loops take the arrays out first: an array that is taken out of a tuple within a loop keeps it from vector code.
+    """
 
     z: Floats
     """Heights [m]."""
@@ -58,9 +61,10 @@ class SumKernels(Kernels):
     update_contact: Callable[..., None]
     evaluate: Callable[..., None]
     solve_contacts: Callable[..., None]
-    radius_at: Callable[[Block, int], float]
-    force_at: Callable[[Block, int], float]
-    stiffness_at: Callable[[Block, int], float]
+    radius_at: Callable[[Floats, Any, int], float]
+    """(contacts, params, i) -> a of one contact over its natural scale; the next two alike P and k."""
+    force_at: Callable[[Floats, Any, int], float]
+    stiffness_at: Callable[[Floats, Any, int], float]
     total_error: Callable[..., float]
     error_bound: Callable[..., float]
     jumps: Callable[..., float]

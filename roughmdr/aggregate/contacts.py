@@ -1,28 +1,30 @@
 """The state of each contact of a block at one step, and radius, force and stiffness from it."""
 
+from typing import Any
+
 from roughmdr.aggregate.block import DEPTH, FORCE, PER_DEPTH, RADIUS, STATE, STIFFNESS, Block, law
 from roughmdr.loading.staircase import Staircase
+from roughmdr.numerics.arguments import Floats
 
 
 def update_contact(count: int, block: Block, memory: Staircase, begin: int, end: int) -> None:
     """Set which of the first ``count`` asperities are in contact, by steps begin to end of the staircase."""
-    z, depth, in_contact = block.z, block.scales[DEPTH], block.in_contact
-    low, high = memory.bottom[begin], memory.top[begin]
+    z, depth, in_contact, bottom, top = block.z, block.scales[DEPTH], block.in_contact, memory.bottom, memory.top
+    low, high = bottom[begin], top[begin]
     for i in range(count):
         in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
     for j in range(begin + 1, end):
-        low, high = memory.bottom[j], memory.top[j]
+        low, high = bottom[j], top[j]
         for i in range(count):
             in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else in_contact[i]
 
 
 def evaluate(count: int, block: Block) -> None:
     """Find a, P and k of the first ``count`` contacts."""
-    a, force, stiffness = block.contacts[RADIUS], block.contacts[FORCE], block.contacts[STIFFNESS]
+    contacts, params = block.contacts, block.params
+    a, force, stiffness = contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     for i in range(count):
-        a[i], force[i], stiffness[i] = law.radius_force_stiffness(
-            block.contacts[STATE, i], law.params_of(block.params, i)
-        )
+        a[i], force[i], stiffness[i] = law.radius_force_stiffness(contacts[STATE, i], law.params_of(params, i))
 
 
 def skip(count: int, block: Block) -> None:
@@ -36,15 +38,16 @@ def solve_closed(
 
     Without adhesion all of them are. Those out of contact have the state of first touch.
     """
-    z, depth, per_depth, state = block.z, block.scales[DEPTH], block.scales[PER_DEPTH], block.contacts[STATE]
+    z, params, in_contact, state = block.z, block.params, block.in_contact, block.contacts[STATE]
+    depth, per_depth = block.scales[DEPTH], block.scales[PER_DEPTH]
     if law.adhesive:
         law.update_contact(count, block, memory, begin, end)
         for i in range(count):
             x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = law.state(x if block.in_contact[i] > 0.0 else 1.0, law.params_of(block.params, i))
+            state[i] = law.state(x if in_contact[i] > 0.0 else 1.0, law.params_of(params, i))
     else:
         for i in range(count):
-            state[i] = law.state((z[i] - h) * per_depth[i], law.params_of(block.params, i))
+            state[i] = law.state((z[i] - h) * per_depth[i], law.params_of(params, i))
     law.evaluate(count, block)
 
 
@@ -82,31 +85,31 @@ def solve_iterative(
     law.evaluate(count, block)
 
 
-def radius_of_state(block: Block, i: int) -> float:
+def radius_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return a of one contact over its natural scale."""
-    return law.radius(block.contacts[STATE, i], law.params_of(block.params, i))
+    return law.radius(contacts[STATE, i], law.params_of(params, i))
 
 
-def force_of_state(block: Block, i: int) -> float:
+def force_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return P of one contact over its natural scale."""
-    return law.force(block.contacts[STATE, i], law.params_of(block.params, i))
+    return law.force(contacts[STATE, i], law.params_of(params, i))
 
 
-def stiffness_of_state(block: Block, i: int) -> float:
+def stiffness_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return k of one contact over its natural scale."""
-    return law.stiffness(block.contacts[STATE, i], law.params_of(block.params, i))
+    return law.stiffness(contacts[STATE, i], law.params_of(params, i))
 
 
-def found_radius(block: Block, i: int) -> float:
+def found_radius(contacts: Floats, params: Any, i: int) -> float:
     """Return a of one contact that was found with its state."""
-    return float(block.contacts[RADIUS, i])
+    return float(contacts[RADIUS, i])
 
 
-def found_force(block: Block, i: int) -> float:
+def found_force(contacts: Floats, params: Any, i: int) -> float:
     """Return P of one contact that was found with its state."""
-    return float(block.contacts[FORCE, i])
+    return float(contacts[FORCE, i])
 
 
-def found_stiffness(block: Block, i: int) -> float:
+def found_stiffness(contacts: Floats, params: Any, i: int) -> float:
     """Return k of one contact that was found with its state."""
-    return float(block.contacts[STIFFNESS, i])
+    return float(contacts[STIFFNESS, i])

@@ -61,7 +61,8 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
     in the lowest or the highest state: two calls bound a block whose parameters are alike. Only a retraction brings a
     state below that of first touch, x = 1.
     """
-    params, first, state, scratch = block.params, law.params_of(block.params, 0), block.contacts[STATE], block.scratch
+    params, first, state = block.params, law.params_of(block.params, 0), block.contacts[STATE]
+    scratch, in_contact = block.scratch, block.in_contact
     lift = block.max_scales[DEPTH] if law.adhesive else 0.0
     high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
@@ -69,7 +70,7 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
         low = law.state(1.0, first)
         if retracted:
             for i in range(count):
-                scratch[i] = state[i] if block.in_contact[i] > 0.0 else math.inf
+                scratch[i] = state[i] if in_contact[i] > 0.0 else math.inf
             low = max(min(low, block_minimum(scratch, count)), ROUNDING)
     stiffness = max(abs(law.stiffness(low, first)), abs(law.stiffness(high, first)))
     least_force = 1.0 if law.adhesive else 0.0  # without adhesion the natural force is no force of this contact
@@ -85,10 +86,11 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
     """Return the bound where P and k were found with the state: one by one, whichever way k goes along the branch."""
-    contacts, stiffness, error, rounding = block.contacts, 0.0, 0.0, 0.0
+    contacts, params, in_contact, scales = block.contacts, block.params, block.in_contact, block.scales
+    stiffness, error, rounding = 0.0, 0.0, 0.0
     for i in range(count):
-        if not law.adhesive or block.in_contact[i] > 0.0:
-            own = law.params_of(block.params, i)
+        if not law.adhesive or in_contact[i] > 0.0:
+            own = law.params_of(params, i)
             of_force, of_indentation = law.relative_errors(own)
             k, stretch, pull = abs(contacts[STIFFNESS, i]), 0.0, 0.0
             if law.adhesive:
@@ -100,6 +102,6 @@ def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
             if law.terms_cancel:
                 g, load = law.term_sizes(contacts[STATE, i], own)
                 each += of_force * load + _NEXT_TO_A_FOLD * of_indentation * k * g
-            stiffness, error = stiffness + block.scales[RIGIDITY, i] * k, error + block.scales[LOAD, i] * each
+            stiffness, error = stiffness + scales[RIGIDITY, i] * k, error + scales[LOAD, i] * each
             rounding = max(rounding, of_indentation)
     return law.total_error(count, block, h, stiffness, error, rounding)

@@ -119,7 +119,7 @@ def _loop(
             if step == turn:
                 for i in range(count):
                     if not law.adhesive or in_contact[i] > 0.0:
-                        totals.max_radius[start + i] = scales[SIZE, i] * law.radius_at(block, i)
+                        totals.max_radius[start + i] = scales[SIZE, i] * law.radius_at(contacts, params, i)
             if count > 0:
                 law.add_totals(count, block, step, totals)
     for row in range(ROWS):

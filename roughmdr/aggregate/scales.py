@@ -14,14 +14,11 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
 
     That of the energy is 1 unless ``energetic``: unless an energy is asked for.
     """
-    scales, count = block.scales, block.z.size
+    scales, params, scratch, count = block.scales, block.params, block.scratch, block.z.size
+    width, rise, modulus, work = columns.width, columns.rise, material.effective_modulus, material.work
     for i in range(count):  # nothing but this, so that it becomes vector code
         (depth, _), size, load, rigidity = law.scales(
-            material.effective_modulus,
-            material.work,
-            columns.width[start + i],
-            columns.rise[start + i],
-            law.params_of(block.params, i),
+            modulus, work, width[start + i], rise[start + i], law.params_of(params, i)
         )
         scales[DEPTH, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
@@ -33,7 +30,7 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
     unrepresentable = 0
     for row in range(SCALES):
         for i in range(count):
-            block.scratch[i] = -scales[row, i]
+            scratch[i] = -scales[row, i]
             unrepresentable += not (_SMALLEST <= scales[row, i] <= _LARGEST)
-        block.max_scales[row] = -block_minimum(block.scratch, count)
+        block.max_scales[row] = -block_minimum(scratch, count)
     return unrepresentable == 0

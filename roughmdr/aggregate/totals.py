@@ -29,32 +29,34 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
     """
     size, load, rigidity, worth = block.scales[SIZE], block.scales[LOAD], block.scales[RIGIDITY], block.scales[WORTH]
     wanted, total, compensation = totals.wanted, totals.total, totals.compensation
-    terms, in_contact = block.scratch, block.in_contact
+    terms, in_contact, contacts, params = block.scratch, block.in_contact, block.contacts, block.params
     if wanted[FORCE]:
         for i in range(count):
-            terms[i] = load[i] * law.force_at(block, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
+            terms[i] = load[i] * law.force_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
         accumulate(total[FORCE], compensation[FORCE], step, block_sum(terms, count))
     if wanted[RADIUS]:
         for i in range(count):
-            terms[i] = size[i] * law.radius_at(block, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
+            terms[i] = size[i] * law.radius_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
         accumulate(total[RADIUS], compensation[RADIUS], step, block_sum(terms, count))
     if wanted[AREA]:
         for i in range(count):
-            a = size[i] * law.radius_at(block, i)
+            a = size[i] * law.radius_at(contacts, params, i)
             terms[i] = math.pi * (a * a) if not law.adhesive or in_contact[i] > 0.0 else 0.0
         accumulate(total[AREA], compensation[AREA], step, block_sum(terms, count))
     if wanted[STIFFNESS]:
         for i in range(count):
-            terms[i] = rigidity[i] * law.stiffness_at(block, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
+            terms[i] = (
+                rigidity[i] * law.stiffness_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
+            )
         accumulate(total[STIFFNESS], compensation[STIFFNESS], step, block_sum(terms, count))
     if wanted[ENERGY]:
         for i in range(count):
-            energy = law.energy(block.contacts[STATE, i], law.params_of(block.params, i))
+            energy = law.energy(contacts[STATE, i], law.params_of(params, i))
             terms[i] = worth[i] * energy if not law.adhesive or in_contact[i] > 0.0 else 0.0
         accumulate(total[ENERGY], compensation[ENERGY], step, block_sum(terms, count))
     if wanted[COUNT]:
         for i in range(count):
-            touching = not law.cohesive or law.radius_at(block, i) > 0.0
+            touching = not law.cohesive or law.radius_at(contacts, params, i) > 0.0
             terms[i] = 1.0 if touching and (not law.adhesive or in_contact[i] > 0.0) else 0.0
         accumulate(total[COUNT], compensation[COUNT], step, block_sum(terms, count))
 
@@ -65,25 +67,28 @@ def jumps(count: int, block: Block) -> float:
     Between two steps the flat moves one way, so that a contact made or lost meanwhile has jumped once: on at first
     touch, where it goes from no energy to U < 0, or off at its fold, from U > 0 to none.
     """
+    now, before, terms, worth, params = (
+        block.in_contact, block.in_contact_before, block.scratch, block.scales[WORTH], block.params
+    )  # fmt: skip
     for i in range(count):
-        made = block.in_contact[i] > block.in_contact_before[i]
-        lost = block.in_contact[i] < block.in_contact_before[i]
+        made, lost = now[i] > before[i], now[i] < before[i]
         if made or lost:
-            own = law.params_of(block.params, i)
+            own = law.params_of(params, i)
             energy = law.energy(law.state(1.0 if made else 0.0, own), own)
-            block.scratch[i] = block.scales[WORTH, i] * (-energy if made else energy)
+            terms[i] = worth[i] * (-energy if made else energy)
         else:
-            block.scratch[i] = 0.0
-        block.in_contact_before[i] = block.in_contact[i]
-    return block_sum(block.scratch, count)
+            terms[i] = 0.0
+        before[i] = now[i]
+    return block_sum(terms, count)
 
 
 def jumps_between_branches(count: int, block: Block) -> float:
     """Return as ``jumps`` the energy where a contact also jumps from one branch to another."""
+    now, before, terms, worth, params = (
+        block.in_contact, block.in_contact_before, block.scratch, block.scales[WORTH], block.params
+    )  # fmt: skip
     for i in range(count):
-        before, now, dissipated = block.in_contact_before[i], block.in_contact[i], 0.0
-        if now != before:
-            dissipated = block.scales[WORTH, i] * law.jump_energy(before, now, law.params_of(block.params, i))
-        block.scratch[i] = dissipated
-        block.in_contact_before[i] = now
-    return block_sum(block.scratch, count)
+        changed = now[i] != before[i]
+        terms[i] = worth[i] * law.jump_energy(before[i], now[i], law.params_of(params, i)) if changed else 0.0
+        before[i] = now[i]
+    return block_sum(terms, count)
