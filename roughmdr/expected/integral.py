@@ -6,7 +6,7 @@ from roughmdr.expected.curve import Curve
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.intervals import Intervals
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.chebyshev import evaluate_series
+from roughmdr.numerics.chebyshev import evaluate_series, find_piece
 from roughmdr.numerics.gauss import gauss, last_coefficients
 from roughmdr.numerics.jit import njit
 
@@ -17,7 +17,7 @@ _BETWEEN_NODES = 1.1  # times the range of values at the nodes, which lie within
 
 
 @njit
-def _place_nodes(begin: float, end: float, h: float, offset: float, depth: float, nodes: Floats) -> None:
+def _place_nodes(begin: float, end: float, h: float, offset: float, depth: float, nodes: tuple[Floats, ...]) -> None:
     """Fill ``nodes`` with Gauss's nodes over the heights from ``begin`` to ``end`` [m].
 
     Its rows are s, (z - begin) - (end - z), and the weights of dz and ds. The variable is s, in which the quantities of
@@ -83,45 +83,49 @@ def integrate(
     contact. Row ``stiffness_row`` (-1 for none) of the curve is times 2 s; the last row of ``total`` takes the error
     bound of the first. Returns how often two pieces were multiplied.
     """
-    table = curve.table
-    nodes, u = np.empty((4, _NODES.size)), np.empty(_NODES.size)
-    s, z, weight, weight_of_s = nodes
-    density, value, before, earlier = np.empty((4, _NODES.size))
+    # Arrays are taken out of their tuples before the loops, which are slow otherwise.
+    steps, branches, begins, ends = intervals.step, intervals.branch, intervals.begin, intervals.end
+    z_low, z_high, densities, doubts = heights.low, heights.high, heights.coefficients, heights.doubt
+    firsts, offsets, table = curve.first, curve.offset, curve.table
+    s_low, s_high, coefficients, errors = table.low, table.high, table.coefficients, table.error_bound
+    n = _NODES.size
+    s, z, weight, weight_of_s, u, density, value, before, earlier = np.empty((9, n))
+    nodes = s, z, weight, weight_of_s
     products = 0
-    for i in range(intervals.step.size):
-        step, branch = intervals.step[i], intervals.branch[i] - 1
-        h, offset = separation[step], curve.offset[branch]
-        start, stop = max(intervals.begin[i], heights.low[0]), min(intervals.end[i], heights.high[-1])
+    for i in range(steps.size):
+        step, branch = steps[i], branches[i] - 1
+        h, offset = separation[step], offsets[branch]
+        start, stop = max(begins[i], z_low[0]), min(ends[i], z_high[-1])
         if not start < stop:
             continue
         # k is the piece of the curve, j that of the heights.
-        first, last = curve.first[branch], curve.first[branch + 1] - 1
+        first, last = firsts[branch], firsts[branch + 1] - 1
         s_start = np.sqrt(max((start - h) / depth + offset, 0.0))
-        k = min(first + np.searchsorted(table.high[first : last + 1], s_start, side="right"), last)
-        j = np.searchsorted(heights.high, start, side="right")
+        k = min(first + find_piece(s_high[first : last + 1], s_start), last)
+        j = find_piece(z_high, start)
         begin = start
-        while begin < stop and j < heights.high.size:
-            edge = h + (table.high[k] * table.high[k] - offset) * depth if k < last else np.inf
-            low, high = heights.low[j], heights.high[j]
+        while begin < stop and j < z_high.size:
+            edge = h + (s_high[k] * s_high[k] - offset) * depth if k < last else np.inf
+            low, high = z_low[j], z_high[j]
             end = max(min(stop, high, edge), begin)
             if end > begin:
                 _place_nodes(begin, end, h, offset, depth, nodes)
-                for m in range(u.size):
+                for m in range(n):
                     u[m] = (((begin - low) - (high - end)) + z[m]) / (high - low)
-                evaluate_series(heights.coefficients[j, 0], u, density, before, earlier)
-                for m in range(u.size):
-                    u[m] = (2.0 * s[m] - table.low[k] - table.high[k]) / (table.high[k] - table.low[k])
+                evaluate_series(densities[j, 0], u, density, before, earlier)
+                for m in range(n):
+                    u[m] = (2.0 * s[m] - s_low[k] - s_high[k]) / (s_high[k] - s_low[k])
                 for row in range(total.shape[0] - 1):
-                    evaluate_series(table.coefficients[k, row], u, value, before, earlier)
+                    evaluate_series(coefficients[k, row], u, value, before, earlier)
                     measure = weight_of_s if row == stiffness_row else weight
                     integral = 0.0
-                    for m in range(u.size):
+                    for m in range(n):
                         integral += measure[m] * value[m] * density[m]
                     total[row, step] += integral
                     if row == 0:
                         cut = start > low or stop < high
-                        error = table.error_bound[k, 0]
-                        total[-1, step] += _error(value, density, weight, error, heights.doubt[j], cut)
+                        error = errors[k, 0]
+                        total[-1, step] += _error(value, density, weight, error, doubts[j], cut)
                 products += 1
             if edge <= end:
                 k += 1
