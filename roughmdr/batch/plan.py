@@ -161,4 +161,4 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"
-    yield "asperities out of reach: not visited"
+    yield "asperities too low for contact: not visited"
