@@ -3,8 +3,7 @@
 python pipelines/accuracy.py -o results/studies
 """
 
-from studies.accuracy.measure import measure
-from studies.accuracy.report import draw, report
+from studies.accuracy import draw, measure, report
 from studies.study import Study
 
 STUDY = Study("accuracy", "Errors asked for, and reached", measure, draw, report)

@@ -3,8 +3,7 @@
 python pipelines/left_out.py -o results/studies
 """
 
-from studies.left_out.measure import measure
-from studies.left_out.report import draw, report
+from studies.left_out import draw, measure, report
 from studies.study import Study
 
 STUDY = Study("left_out", "What leaving out saves", measure, draw, report)

@@ -11,7 +11,7 @@ from oracles.multiprecision import mp
 from scenes import ensemble
 from studies.asperity_error import measure as asperity_error
 from studies.asperity_error.asperities import DRAW
-from studies.asperity_error.judge import random_error
+from studies.asperity_error.judge import ForceError, random_error
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
@@ -107,10 +107,10 @@ def test_what_no_float_can_hold_is_refused() -> None:
         rm.load_separation(ensemble([1e-200], radius=1e-200, area=None), separation=[0.0], effective_modulus=E)
 
 
-def outside(kind: str, adhesive: bool, seeds: range) -> list[tuple[object, object]]:
+def outside(kind: str, adhesive: bool, seeds: range) -> list[ForceError]:
     """The asperities whose true error is beyond the stated one."""
     judged = [random_error(kind, adhesive, seed) for seed in seeds]
-    return [(asperity, one) for asperity, one in judged if not one.error <= one.stated]
+    return [one for one in judged if not one.error <= one.stated]
 
 
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])

@@ -11,7 +11,7 @@ import xarray as xr
 from batches import interrupted
 from click.testing import CliRunner
 from scenes import ASPERITIES, scene
-from studies.accuracy.measure import SCENES, force_samples, realizations_taken
+from studies.accuracy import SCENES, force_samples, realizations_taken
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact

@@ -1,5 +1,6 @@
 """One random asperity at a random point of its stable branches: the error of its force, and the bound on it."""
 
+import contextlib
 import math
 import warnings
 from typing import NamedTuple
@@ -25,22 +26,16 @@ _MIN_FORCE = 1e-290
 _TRIES = 50
 
 
-class Asperity(NamedTuple):
-    """One asperity on a path of the flat that comes down to it."""
+class ForceError(NamedTuple):
+    """One asperity on a path of separations, and the error of its force at the last of them, in SI units."""
 
     shape: Shape
     effective_modulus: float
     work: float
     height: float
-    path: tuple[float, ...]
-    """Separations [m]; the error is that at the last."""
-
-
-class ForceError(NamedTuple):
-    """The error of the force [N] of one asperity at the end of its path."""
-
+    path: list[float]
     error: float
-    """The true one, of the sum over this asperity alone."""
+    """The true error of the force, of the sum over this asperity alone."""
     stated: float
     force: float
     distance: float
@@ -74,16 +69,13 @@ class _Subject:
             self.branches = self._branches() if work else []
 
     def _branches(self) -> list[Branch]:
-        exact = self.exact
+        indentation = self.exact.indentation
         if not self.law.iterative:
-            foot = exact.fold()
-            return [Branch(foot, mp.inf, exact.indentation(foot), mp.inf)]
-        found = []
-        for j in range(int(self.params[COUNT])):
-            foot, top = mp.mpf(float(self.params[FOOT + j])), mp.mpf(float(self.params[TOP + j]))
-            highest = exact.indentation(top) if top < mp.inf else mp.inf
-            found.append(Branch(foot, top, exact.indentation(foot), highest))
-        return found
+            return [Branch(self.exact.fold(), mp.inf, indentation(self.exact.fold()), mp.inf)]
+        count = int(self.params[COUNT])
+        feet, tops = ([mp.mpf(float(t)) for t in self.params[start : start + count]] for start in (FOOT, TOP))
+        return [Branch(foot, top, indentation(foot), indentation(top) if top < mp.inf else mp.inf)
+                for foot, top in zip(feet, tops, strict=True)]  # fmt: skip
 
     @property
     def fold_depth(self) -> Number:
@@ -102,8 +94,7 @@ class _Subject:
 
     def force_error(self, height: float, path: list[float]) -> ForceError | None:
         """Compare the sum over the asperity with the exact force; None where it detaches, or is too near to that."""
-        h = np.array(path)
-        asked = {totals.FORCE, totals.ERROR}
+        h, asked = np.array(path), {totals.FORCE, totals.ERROR}
         total, _, _ = loop.add_asperities(
             self.law, np.array([height]), self.columns, self.effective_modulus, self.adhesion, h, staircase(h), asked
         )
@@ -120,14 +111,18 @@ class _Subject:
             distance = float(min(indentation - branch.lowest, branch.highest - indentation) / self.fold_depth)
             if not distance >= NEAREST:
                 return None
-        t = self._exact_state(indentation, x[-1], number, (low, high))
-        if t is None:
+        begin = self._state_found(x[-1], float(number))
+        if not 0.0 <= begin < math.inf:
             return None
+        t = self.exact.state(indentation, begin, low, high)
+        if t is None:
+            raise ArithmeticError(f"no equilibrium of {self.shape} at {indentation}")
         force = self.exact.force(t)
         if not _MIN_FORCE < abs(force) < 1 / _MIN_FORCE:  # beyond, floats lose digits
             return None
-        error = abs(mp.mpf(float(total[totals.FORCE, -1])) - force)
-        return ForceError(float(error), float(total[totals.ERROR, -1]), float(force), distance)
+        error, stated = abs(mp.mpf(float(total[totals.FORCE, -1])) - force), float(total[totals.ERROR, -1])
+        asperity = self.shape, self.effective_modulus, self.adhesion.work, height, path
+        return ForceError(*asperity, float(error), stated, float(force), distance)
 
     def _branch_at_end(self, x: list[float]) -> int:
         """Return the number of the branch at the end of a path of reduced controls, from 1; 0 out of contact."""
@@ -138,39 +133,28 @@ class _Subject:
             number = self.law.branch(max(each, 0.0), number, True, self.params)
         return int(number)
 
-    def _exact_state(self, indentation: Number, x: float, number: int, ends: tuple[Number, Number]) -> Number | None:
+    def _state_found(self, x: float, number: float) -> float:
+        """Return the state that the kernels find, where the exact search begins."""
         law, params = self.law, self.params
-        begin = law.state_on_branch(x, float(number), params) if law.branched else law.state(x, params)
-        if not law.iterative:
-            begin = self.radius * law.radius(begin, params)
-        if not 0.0 <= begin < math.inf:
-            return None
-        t = self.exact.state(indentation, begin, *ends)
-        if t is None:
-            raise ArithmeticError(f"no equilibrium of {self.shape} at {indentation}")
-        return t
+        state = law.state_on_branch(x, number, params) if law.branched else law.state(x, params)
+        return state if law.iterative else self.radius * law.radius(state, params)
 
 
-def random_error(kind: str, adhesive: bool, seed: int) -> tuple[Asperity, ForceError]:
-    """Return a random asperity of a kind, with JKR adhesion or without, and its error; skip what floats cannot hold."""
+def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:
+    """Return the error of a random asperity, with JKR adhesion or without; skip what floats cannot hold."""
     rng = np.random.default_rng([list(SHAPES).index(kind), adhesive, seed])
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", rm.LimitWarning)
         for _ in range(_TRIES):
-            try:
-                found = _draw(rng, kind, adhesive)
-            except rm.RoughmdrError:
-                continue
-            if found is not None:
-                return found
+            with contextlib.suppress(rm.RoughmdrError):
+                if (found := _draw(rng, kind, adhesive)) is not None:
+                    return found
     raise ArithmeticError(f"no {kind} of {_TRIES} that floats hold")
 
 
-def _draw(rng: Rng, kind: str, adhesive: bool) -> tuple[Asperity, ForceError] | None:
+def _draw(rng: Rng, kind: str, adhesive: bool) -> ForceError | None:
     shape = DRAW[kind](rng)
-    effective_modulus = power_of_ten(rng, 3.0, 13.0)
-    work = power_of_ten(rng, -9.0, 1.0) if adhesive else 0.0
-    subject = _Subject(shape, effective_modulus, work)
+    subject = _Subject(shape, power_of_ten(rng, 3.0, 13.0), power_of_ten(rng, -9.0, 1.0) if adhesive else 0.0)
     if not subject.solvable:
         return None
     indentation = subject.random_indentation(rng)
@@ -180,6 +164,4 @@ def _draw(rng: Rng, kind: str, adhesive: bool) -> tuple[Asperity, ForceError] | 
     if rng.random() >= 0.5:
         height = float(rng.normal()) * abs(indentation) * power_of_ten(rng, 0.0, 3.0)
     before = [height, height - _PRESSED * subject.depth] if rng.random() < 0.3 else [height]
-    path = [*(before if adhesive else []), height - indentation]
-    error = subject.force_error(height, path)
-    return None if error is None else (Asperity(shape, effective_modulus, work, height, tuple(path)), error)
+    return subject.force_error(height, [*(before if adhesive else []), height - indentation])

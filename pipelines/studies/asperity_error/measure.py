@@ -2,22 +2,27 @@
 
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from roughmdr.shapes import SHAPES
-from studies.asperity_error.judge import ForceError, random_error
+from studies.asperity_error.judge import random_error
 from studies.study import named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 COUNT, QUICK = 100_000, 480
 _WORKERS, _GROUP_SIZE = 2, 100
 _WEIGHT = {"tabulated": 0.2}  # of a shape, else 1: its reference is slow
 _MODELS = ("none", "JKR")
+COLUMNS = {
+    "shape": {"long_name": "shape of the asperity"},
+    "adhesive": named("with JKR adhesion"),
+    "seed": named("number of the asperity"),
+    "true_error": named("true error of the force"),
+    "stated_error": named("bound on it"),
+    "distance": named("distance to the end of the branch"),
+}
 
 
 class Group(NamedTuple):
@@ -40,63 +45,34 @@ def groups(count: int) -> list[Group]:
     return found
 
 
-def errors(group: Group) -> list[ForceError]:
-    """Return the errors of a group."""
-    return [random_error(group.kind, group.adhesive, seed)[1] for seed in group.seeds]
+def rows_of(group: Group) -> list[tuple[str, int, int, float, float, float]]:
+    """Return a row of ``COLUMNS`` for each asperity of a group."""
+    rows = []
+    for seed in group.seeds:
+        one = random_error(group.kind, group.adhesive, seed)
+        relative = abs(one.error / one.force), abs(one.stated / one.force)
+        rows.append((group.kind, int(group.adhesive), seed, *relative, one.distance))
+    return rows
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the errors of all asperities, from two processes."""
-    asked = groups(QUICK if quick else COUNT)
     with ProcessPoolExecutor(_WORKERS, get_context("spawn")) as pool:
-        found = list(pool.map(errors, asked))
-    rows = [(group.kind, group.adhesive, seed, abs(one.error / one.force), abs(one.stated / one.force), one.distance)
-            for group, some in zip(asked, found, strict=True)
-            for seed, one in zip(group.seeds, some, strict=True)]  # fmt: skip
-    kind, adhesive, seed, true, stated, distance = (
-        ("asperity", np.array(column)) for column in zip(*rows, strict=True)
-    )
-    return xr.Dataset(
-        {
-            "true_error": (*true, named("true error of the force")),
-            "stated_error": (*stated, named("bound on it")),
-            "distance": (*distance, named("distance to the end of the branch")),
-        },
-        {
-            "shape": kind,
-            "adhesive": ("asperity", adhesive[1].astype(np.int8), named("with JKR adhesion")),
-            "seed": (*seed, named("number of the asperity")),
-        },
-    )
+        rows = [row for part in pool.map(rows_of, groups(QUICK if quick else COUNT)) for row in part]
+    columns = zip(COLUMNS.items(), zip(*rows, strict=True), strict=True)
+    return xr.Dataset({name: ("asperity", np.array(values), attributes) for (name, attributes), values in columns})
 
 
 def report(result: xr.Dataset) -> str:
     """Return how many are within the bound, and how near the worst of each shape comes to it."""
-    excess = (result.true_error / result.stated_error).to_numpy()
+    excess, stated = (result.true_error / result.stated_error).to_numpy(), result.stated_error.to_numpy()
     rows = []
     for kind in SHAPES:
         for adhesive, model in enumerate(_MODELS):
             chosen = np.flatnonzero((result["shape"] == kind) & (result.adhesive == adhesive))
             worst = chosen[np.argmax(excess[chosen])]
             cells = [f"{excess[worst]:.2g}", f"{float(result.distance[worst]):.1g}", f"{int(result.seed[worst])}"]
-            stated = np.quantile(result.stated_error.to_numpy()[chosen], [0.5, 0.99])
-            rows.append([kind, model, f"{chosen.size}", *cells, *(f"{value:.1g}" for value in stated)])
+            quantiles = [f"{value:.1g}" for value in np.quantile(stated[chosen], [0.5, 0.99])]
+            rows.append([kind, model, f"{chosen.size}", *cells, *quantiles])
     head = ["shape", "adhesion", "asperities", "true/stated: largest", "at", "number", "stated: median", "99 %"]
     return f"Outside the bound: {int((excess > 1.0).sum())} of {excess.size} asperities.\n\n{table(head, rows)}"
-
-
-def draw(result: xr.Dataset) -> "Figure":
-    """Draw the true error of each asperity over the stated one."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.0, 5.0), layout="constrained")
-    axes = figure.add_subplot()
-    for adhesive, model in enumerate(_MODELS):
-        chosen = result.isel(asperity=np.flatnonzero(result.adhesive == adhesive))
-        error = chosen.true_error.clip(min=1e-18)
-        axes.plot(chosen.stated_error, error, ".", markersize=2.0, alpha=0.4, label=f"adhesion: {model}")
-    ends = [1e-15, 1e-3]
-    axes.plot(ends, ends, "k-", linewidth=0.8)
-    axes.set(xscale="log", yscale="log", xlabel="stated error of the force", ylabel="true error of the force")
-    axes.legend()
-    return figure

@@ -7,18 +7,20 @@ batch; the naive rule, which stops as soon as the estimated error is small enoug
 
 import math
 import warnings
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from studies.study import named
 
 import roughmdr as rm
 from roughmdr.batch.moments import MomentTree
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
+from studies.study import named, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def scene_of(count: int, height: dict[str, Any], work: float = 0.0) -> dict[str, Any]:
@@ -28,16 +30,12 @@ def scene_of(count: int, height: dict[str, Any], work: float = 0.0) -> dict[str,
         "material": {"effective_modulus": "4 MPa"},
         "adhesion": {"model": "jkr", "work": work},
         "asperities": {
-            "source": "random",
-            "shape": "paraboloid",
-            "count": count,
-            "patch": "0.5 mm",
-            "height": height,
+            "source": "random", "shape": "paraboloid", "count": count, "patch": "0.5 mm", "height": height,
             "radius": "200 um",
         },
         "path": {"separation": {"start": "2 um", "stop": "-0.5 um", "steps": 20}, "unload": work > 0.0},
         "output": {"variables": ["force"]},
-    }
+    }  # fmt: skip
 
 
 NORMAL = {"distribution": "normal", "std": "1 um"}
@@ -48,8 +46,6 @@ SCENES = {
 }
 MINIMAL_COUNTS = (50, 200, 500, 1000, 4000)
 """Realisations that the errors asked for need at least."""
-TOLERATED = 1.3
-"""Times the minimal count that a run should not exceed."""
 
 
 class ForceSamples(NamedTuple):
@@ -58,7 +54,6 @@ class ForceSamples(NamedTuple):
     force: Floats
     """[N], [realization, step]."""
 
-    @property
     def kurtosis(self) -> float:
         """Return the kurtosis of the force at the step where it varies most; 3 for a normal distribution."""
         force = self.force[:, int(self.force.std(axis=0).argmax())]
@@ -90,10 +85,7 @@ class ForceSamples(NamedTuple):
         return FIRST + int(reached[0]) if reached.size else len(draws)
 
 
-RULES: dict[str, Callable[[ForceSamples, np.ndarray, float], int]] = {
-    "as in a batch": ForceSamples.stop_as_a_batch,
-    "estimate small enough": ForceSamples.stop_naively,
-}
+RULES = {"as in a batch": ForceSamples.stop_as_a_batch, "estimate small enough": ForceSamples.stop_naively}
 
 
 def force_samples(name: str, realizations: int) -> ForceSamples:
@@ -115,29 +107,71 @@ def measure(quick: bool) -> xr.Dataset:
     """Return the realisations taken by every scene, rule and error, and the share of runs that met the error."""
     realizations, seeds = (4000, 40) if quick else (25_000, 200)
     samples = [force_samples(name, realizations) for name in SCENES]
-    errors = np.array([[each.true_error(count) for count in MINIMAL_COUNTS] for each in samples])
-    taken = np.array(
-        [
-            [[realizations_taken(each, error, seeds, rule) for error in row] for rule in RULES]
-            for each, row in zip(samples, errors, strict=True)
-        ]
-    )
-    minimal, over = np.array(MINIMAL_COUNTS)[:, None], ("scene", "rule", "minimal")
+    errors = [[each.true_error(count) for count in MINIMAL_COUNTS] for each in samples]
+    taken = [
+        [[realizations_taken(each, error, seeds, rule) for error in row] for rule in RULES]
+        for each, row in zip(samples, errors, strict=True)
+    ]
+    reached = (np.array(taken) >= np.array(MINIMAL_COUNTS)[:, None]).mean(axis=-1)
+    minimal = named("least number of realisations that meets the error")
+    runs = ("scene", "rule", "minimal", "seed")
     return xr.Dataset(
         {
-            "taken": ((*over, "seed"), taken, named("realisations that a run takes")),
+            "taken": (runs, taken, named("realisations that a run takes")),
             "asked": (("scene", "minimal"), errors, named("standard error of the mean force over its largest value")),
-            "reached": (over, (taken >= minimal).mean(axis=-1), named("share of the runs that meet the error")),
-            "thrifty": (
-                over,
-                (taken <= TOLERATED * minimal).mean(axis=-1),
-                named(f"share that takes at most {TOLERATED} times the minimal number"),
-            ),
-            "kurtosis": ("scene", [each.kurtosis for each in samples], named("kurtosis of the force where it varies")),
+            "reached": (runs[:-1], reached, named("share of the runs that meet the error")),
+            "kurtosis": ("scene", [each.kurtosis() for each in samples], named("kurtosis of the force")),
         },
-        {
-            "scene": list(SCENES),
-            "rule": list(RULES),
-            "minimal": ("minimal", list(MINIMAL_COUNTS), named("least number of realisations that meets the error")),
-        },
+        {"scene": list(SCENES), "rule": list(RULES), "minimal": ("minimal", list(MINIMAL_COUNTS), minimal)},
     )
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw how many runs meet the error, and how many realisations they take over the minimal number."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    quantiles = (result.taken / result.minimal).quantile([0.05, 0.25, 0.5, 0.75, 0.95], "seed")
+    for shift, colour, scene in zip((-0.22, 0.0, 0.22), ("#1b6ca8", "#c8553d", "#2e8b57"), SCENES, strict=True):
+        x, own = np.arange(result.minimal.size) + shift, result.sel(scene=scene)
+        label = f"{scene} (kurtosis {float(own.kurtosis):.1f})"
+        left.plot(x, 100.0 * own.reached[0], "o", color=colour, ms=8, label=label)
+        left.plot(x, 100.0 * own.reached[1], "D", color=colour, ms=6, mfc="w")
+        low, first, middle, last, high = quantiles.sel(scene=scene).to_numpy()
+        right.vlines(x, low[0], high[0], color=colour, lw=1.5)
+        right.vlines(x, first[0], last[0], color=colour, lw=5)
+        right.plot(x, middle[0], "o", color=colour, ms=8, mec="w")
+        right.vlines(x + 0.055, low[1], high[1], color=colour, lw=1.0, alpha=0.6)
+        right.plot(x + 0.055, middle[1], "D", color=colour, ms=5, mfc="w")
+    left.axhline(95.0, color="0.4", lw=1.0, ls="--")
+    left.text(-0.45, 94.0, "95 of 100", color="0.4", va="top")
+    left.set(
+        ylim=(0.0, 103.0), ylabel="runs whose true standard error is what was asked for [%]", title="Is the error met?"
+    )
+    left.legend(loc="lower right", fontsize=9)
+    right.axhline(1.0, color="k", lw=1.0)
+    right.set(ylim=(0.0, 2.6), ylabel="realisations taken, over the fewest that meet the error", title="At what cost?")
+    circle = Line2D([], [], color="0.3", marker="o", ms=8, lw=0, label="the rule of a batch")
+    diamond = Line2D([], [], color="0.3", marker="D", ms=6, lw=0, mfc="w", label="stop once the estimate is low enough")
+    right.legend(handles=[circle, diamond], title="median, 5 to 95 % of the runs", loc="upper right", fontsize=9)
+    for panel in (left, right):
+        panel.set_xticks(range(result.minimal.size), result.minimal.to_numpy().tolist())
+        panel.set(xlim=(-0.5, result.minimal.size - 0.5), xlabel="fewest realisations that meet the error asked for")
+        panel.grid(axis="y", color="0.92")
+    return figure
+
+
+def report(result: xr.Dataset) -> str:
+    """Return a table of all scenes and errors."""
+    rows = []
+    for name in SCENES:
+        for minimal in MINIMAL_COUNTS:
+            rule, naive = (result.sel(scene=name, minimal=minimal, rule=rule) for rule in RULES)
+            times = [f"{value:.2f}" for value in (rule.taken / minimal).quantile([0.5, 0.05, 0.95]).to_numpy()]
+            met = [f"{100.0 * float(own.reached):.1f} %" for own in (rule, naive)]
+            scene = f"{name} (kurtosis {float(rule.kurtosis):.1f})"
+            rows.append([scene, f"{float(rule.asked):.2g}", f"{minimal}", *met, *times])
+    head = ["scene", "error", "fewest", "met", "met by the estimate alone", "taken over fewest: median", "5 %", "95 %"]
+    return table(head, rows)
