@@ -5,8 +5,7 @@ python pipelines/work_precision.py -o results/studies
 
 from studies.study import Study
 from studies.work_precision.measure import measure
-from studies.work_precision.picture import draw
-from studies.work_precision.report import report
+from studies.work_precision.report import draw, report
 
 STUDY = Study("work_precision", "Error against run time", measure, draw, report)
 

@@ -20,7 +20,7 @@ from studies.stability.judge import (
     verdicts,
 )
 from studies.stability.measure import FULL
-from studies.stability.picture import draw
+from studies.stability.report import draw
 
 import roughmdr as rm
 

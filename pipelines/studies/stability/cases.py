@@ -17,6 +17,7 @@ class Axis(NamedTuple):
     """A quantity between two ends, varied in the logarithm of its distance to ``origin``, or linearly (None)."""
 
     long_name: str
+    label: str
     units: str
     low: float
     high: float
@@ -38,15 +39,15 @@ class Axis(NamedTuple):
 
 
 AXES = {
-    "effective_modulus": Axis("effective modulus", "Pa", 1e3, 1e13),
-    "width": Axis("width of the asperities", "m", 1e-10, 1.0),
-    "work": Axis("work of adhesion", "J m-2", 1e-9, 10.0),
-    "exponent": Axis("exponent of the profile", "1", 0.51, 200.0, 0.5),
-    "tabor": Axis("Tabor number", "1", 1e-3, 1e3),
-    "distance": Axis("distance to the fold over its depth", "1", 1e-12, 1e3),
-    "spread": Axis("decades over which the widths are spread", "1", 0.0, 6.0, None),
+    "effective_modulus": Axis("effective modulus", "E* [Pa]", "Pa", 1e3, 1e13),
+    "width": Axis("width of the asperities", "width [m]", "m", 1e-10, 1.0),
+    "work": Axis("work of adhesion", "w [J/m²]", "J m-2", 1e-9, 10.0),
+    "exponent": Axis("exponent of the profile", "exponent", "1", 0.51, 200.0, 0.5),
+    "tabor": Axis("Tabor number", "Tabor number", "1", 1e-3, 1e3),
+    "distance": Axis("distance to the fold over its depth", "distance to fold", "1", 1e-12, 1e3),
+    "spread": Axis("decades over which the widths are spread", "spread [decades]", "1", 0.0, 6.0, None),
 }
-_ASPECT = Axis("rise over width", "1", 1e-4, 10.0)
+_ASPECT = Axis("rise over width", "aspect", "1", 1e-4, 10.0)
 
 
 class Case(NamedTuple):

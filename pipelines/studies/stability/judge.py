@@ -3,10 +3,9 @@
 import math
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
 import xarray as xr
 from oracles.dugdale_power_law import DugdalePowerLaw
 from oracles.jkr_power_law import JkrPowerLaw
@@ -115,44 +114,35 @@ def on_error(error: Exception, numbers: list[Number]) -> Verdict:
         return Verdict(WRONG, reason=f"{type(error).__name__}: {error}")
     if representable(numbers):
         return Verdict(WRONG, reason=f"refused without need: {error}")
-    return Verdict(REFUSED, reason=_without_numbers(str(error)))
-
-
-def _without_numbers(message: str) -> str:
-    return re.sub(r"-?(\d|inf)\S*", "...", re.sub(r" \(.*?\)", "", re.split("[:;]", message)[0]))
+    message = re.sub(r" \(.*?\)", "", re.split("[:;]", str(error))[0])
+    return Verdict(REFUSED, reason=re.sub(r"-?(\d|inf)\S*", "...", message))
 
 
 def verdicts(case: Case, model: str) -> list[Verdict]:
     """Judge all questions: each asperity under each control, and their sum along a loading and unloading path."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # steep slopes have right results too
-        return list(_verdicts(case, model))
-
-
-def _verdicts(case: Case, model: str) -> Iterator[Verdict]:
     dugdale = model == "dugdale"
     shapes = case.shapes()[: 2 if dugdale else None]  # its reference is slow
     given: dict[str, Any] = {
         "effective_modulus": case.effective_modulus, "work": 0.0 if model == "elastic" else case.work
     }  # fmt: skip
-    if dugdale:
-        try:
-            given["strength"] = case.tabor / rm.tabor(shapes[0], **given, strength=1.0)
-        except Exception as error:
-            yield on_error(error, natural_scales(JkrPowerLaw(shapes[0], **given)))
-            return
-    references = [(DugdaleReference if dugdale else Reference)(shape, **given) for shape in shapes]
-    given |= {"adhesion": "dugdale"} if dugdale else {}
-    alone = list(zip(shapes, references, case.distances(), strict=False))[: 1 if dugdale else None]
-    for shape, reference, distance in alone:
-        for control in CONTROLS:
-            yield _one(shape, reference, control, distance, given)
-    depths = [reference.depth() for reference in references]
-    if model == "elastic" or representable(depths):
-        yield _sum(shapes, references, depths, case.distances(), given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)  # steep slopes have right results too
+        if dugdale:
+            try:
+                given["strength"] = case.tabor / rm.tabor(shapes[0], **given, strength=1.0)
+            except Exception as error:
+                return [on_error(error, natural_scales(JkrPowerLaw(shapes[0], **given)))]
+        references = [(DugdaleReference if dugdale else Reference)(shape, **given) for shape in shapes]
+        given |= {"adhesion": "dugdale"} if dugdale else {}
+        alone = zip(shapes[: 1 if dugdale else None], references, case.distances(), strict=False)
+        found = [_one(*each, control, given) for each in alone for control in CONTROLS]
+        depths = [reference.depth() for reference in references]
+        if model == "elastic" or representable(depths):
+            found.append(_sum(shapes, references, depths, case.distances(), given))
+        return found
 
 
-def _one(shape: rm.PowerLaw, reference: Reference, control: str, distance: float, given: dict[str, Any]) -> Verdict:
+def _one(shape: rm.PowerLaw, reference: Reference, distance: float, control: str, given: dict[str, Any]) -> Verdict:
     """Judge one asperity under one control."""
     value = reference.value(control, distance)
     try:
@@ -172,40 +162,33 @@ def _sum(
     """Judge the sum: pressed until all touch, back to the distances to the folds, and until the first detaches.
 
     The error of the force must be within the stated one, and the number of contacts right.
-    """
+    """  # fmt: skip
     targets = [reference.value("indentation", each) for reference, each in zip(references, distances, strict=False)]
-    height = np.array([float(value) for value in targets])
-    first, second = sorted(float(z + depth) for z, depth in zip(targets, depths, strict=True))[:2]
+    height = [float(value) for value in targets]
+    ends = sorted(float(z + depth) for z, depth in zip(targets, depths, strict=True))
     low = float(min(z - depth for z, depth in zip(targets, depths, strict=True))) if any(depths) else 0.5 * min(height)
-    path = [low, 0.0, 0.5 * (first + second)]
+    path = [low, 0.0, 0.5 * (ends[0] + ends[1])]
+    pressed = [[mp.mpf(z) - mp.mpf(h) for z in height] for h in path]
     columns = {name: [shape.parameters[name] for shape in shapes] for name in shapes[0].parameters}
     data = {name: ("asperity", column) for name, column in {"height": height, **columns}.items()}
+    asperities = xr.Dataset(data, attrs={"shape": shapes[0].name})
     try:
-        curve = rm.load_separation(
-            xr.Dataset(data, attrs={"shape": shapes[0].name}),
-            separation=path, variables=["force", "contact_count"], **given,
-        )  # fmt: skip
+        curve = rm.load_separation(asperities, separation=path, variables=["force", "contact_count"], **given)
     except Exception as error:
         # The bound on the error combines the largest of all natural scales and distances.
         farthest = (max(height) - low) / min(depths) if any(depths) else 0
-        needed = [
-            number
-            for reference, depth, z in zip(references, depths, height.tolist(), strict=True)
-            for delta in (depth * farthest, *(mp.mpf(z) - mp.mpf(h) for h in path[:2]))
-            if delta
-            for number in reference.numbers("indentation", delta)
-        ]
-        return on_error(error, needed)
+        indentations = zip(references, (depth * farthest for depth in depths), *pressed[:2], strict=True)
+        return on_error(error, [number for reference, *deltas in indentations for delta in deltas if delta
+                                for number in reference.numbers("indentation", delta)])  # fmt: skip
     contacts = [
-        [reference.contact(mp.mpf(z) - mp.mpf(h))
-         for z, reference, depth in zip(height.tolist(), references, depths, strict=True)
-         if mp.mpf(z) - mp.mpf(h) > -depth]
-        for h in path
+        [reference.contact(delta) for reference, delta, depth in zip(references, step, depths, strict=True)
+         if delta > -depth]
+        for step in pressed
     ]  # fmt: skip
-    force = [mp.fsum(each for _, each in step) for step in contacts]
-    largest = max(*map(abs, force), mp.mpf(_TINY))
-    worst = max(abs(true - mp.mpf(got)) for true, got in zip(force, curve.force.to_numpy().tolist(), strict=True))
     count = [sum(a > 0 for a, _ in step) for step in contacts]
     if curve.contact_count.to_numpy().tolist() != count:
         return Verdict(WRONG, reason=f"{curve.contact_count.to_numpy().tolist()} contacts, not {count}")
+    force = [mp.fsum(each for _, each in step) for step in contacts]
+    largest = max(*map(abs, force), mp.mpf(_TINY))
+    worst = max(abs(true - mp.mpf(got)) for true, got in zip(force, curve.force.to_numpy().tolist(), strict=True))
     return on_results({"force of all": Judged(float(worst / largest), float(curve.numerical_error))})

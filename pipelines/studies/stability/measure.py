@@ -2,33 +2,45 @@
 
 Each asperity is computed at a given indentation, force and contact radius, their sum along a loading and unloading
 path, without adhesion, with JKR and with Dugdale adhesion; all are compared with 60 digits. A refusal counts as one
-only where a float does not hold what the exact result needs. Added are changes of the problem with a known effect.
+only where a float does not hold what the exact result needs. Added are changes of the problem with a known effect, and
+the equilibria that the kernels evaluate to find one contact, counted in a process in which nothing is compiled.
 """
 
+import cProfile
+import math
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
+from benchmarks.process import in_new_process
 
-from studies.stability import counting
+import roughmdr as rm
+from roughmdr.asperity.contact import Contact
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.closed import jkr_power
+from roughmdr.kernels.dugdale import equilibrium
 from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import MODELS, OUTCOMES, REFUSED, Verdict, verdicts
-from studies.stability.metamorphic import Check, checks
+from studies.stability.metamorphic import checks
 from studies.study import named
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """Number of cases for each model, from the beginning of one sequence."""
 COUNTED, COUNTED_QUICKLY = 128, 16
 """Number of cases for each model with adhesion in which equilibria are counted."""
+EQUILIBRIUM: dict[Literal["jkr", "dugdale"], Any] = {"jkr": jkr_power._distance, "dugdale": equilibrium.state_along}
+"""The kernel that evaluates an equilibrium, by adhesion model."""
+CHECK = {
+    "name": {"long_name": "what is changed"},
+    "law": {"long_name": "adhesion model"},
+    "kind": {"long_name": "shape"},
+    "error": named("difference over the largest magnitude"),
+    "allowed": named("difference that is allowed"),
+}
 WORKERS = 2
-_CHUNK = 4  # cases that a worker takes at a time
-
-
-def judge_case(case: Case, models: list[str]) -> list[list[Verdict]]:
-    """Return the verdicts under each of the models."""
-    return [verdicts(case, model) for model in models]
 
 
 def measure(quick: bool) -> xr.Dataset:
@@ -36,66 +48,65 @@ def measure(quick: bool) -> xr.Dataset:
     counts = QUICK if quick else FULL
     cases = design(max(counts.values()))
     models = [[model for model in MODELS if number < counts[model]] for number in range(len(cases))]
-    counter = counting.start(COUNTED_QUICKLY if quick else COUNTED)
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
         changes = pool.submit(checks, quick)
-        found = list(pool.map(judge_case, cases, models, chunksize=1 if quick else _CHUNK))
-        parts = [of_verdicts(cases, found), of_checks(changes.result()), of_counts(counting.finish(counter))]
-    return xr.merge(parts)
+        counted = COUNTED_QUICKLY if quick else COUNTED
+        tried = pool.submit(in_new_process, equilibria_tried, counted, NUMBA_DISABLE_JIT="1")
+        found = list(pool.map(judge_case, cases, models, chunksize=1 if quick else 4))
+    columns = zip(CHECK.items(), zip(*changes.result(), strict=True), strict=True)
+    over = ("counted_case", "counted_law")
+    return of_verdicts(cases, found).assign(
+        {f"change_{name}": ("change", list(values), attributes) for (name, attributes), values in columns}
+        | {"tried": (over, tried.result(), named("equilibria evaluated to find a contact")), over[1]: list(EQUILIBRIUM)}
+    )
+
+
+def judge_case(case: Case, models: list[str]) -> list[list[Verdict]]:
+    """Return the verdicts under each of the models."""
+    return [verdicts(case, model) for model in models]
 
 
 def of_verdicts(cases: list[Case], found: list[list[list[Verdict]]]) -> xr.Dataset:
     """Return the axes, the worst result and the outcomes of each case and model; NaN where a model was left out."""
-    over = ("case", "law")
-    worst = np.full((3, len(cases), len(MODELS)), np.nan)
-    count = np.zeros((len(cases), len(MODELS), len(OUTCOMES)), dtype=int)
-    reasons = Counter[tuple[str, str, str]]()
+    worst = np.full((len(cases), len(MODELS)), np.nan)
+    count = np.zeros((*worst.shape, len(OUTCOMES)), dtype=int)
+    reasons = Counter[tuple[str, str]]()
     for i, row in enumerate(found):
         for j, answers in enumerate(row):
-            judged = [each.judged for each in answers if each.outcome != REFUSED]
-            if judged:
-                largest = max(judged, key=lambda one: one.excess)
-                worst[:, i, j] = largest.error, largest.allowed, largest.excess
+            worst[i, j] = max((each.judged.excess for each in answers if each.outcome != REFUSED), default=np.nan)
             for each in answers:
                 count[i, j, OUTCOMES.index(each.outcome)] += 1
-            reasons.update((MODELS[j], each.outcome, each.reason) for each in answers if each.reason)
+            reasons.update((MODELS[j], each.reason) for each in answers if each.reason)
     listed = reasons.most_common()
-    names = {"error": "the error, over its natural scale", "allowed": "what is allowed", "excess": "their ratio"}
     axes = {name: ("case", [getattr(case, name) for case in cases], named(axis.long_name, axis.units))
             for name, axis in AXES.items()}  # fmt: skip
     return xr.Dataset(
-        {name: (over, values, named(f"largest error over what is allowed: {text}"))
-         for (name, text), values in zip(names.items(), worst, strict=True)}
-        | {
-            "answers": ((*over, "outcome"), count, named("number of results")),
+        {
+            "excess": (("case", "law"), worst, named("largest error over what is allowed")),
+            "answers": (("case", "law", "outcome"), count, named("number of results")),
             **axes,
-            "reason_law": ("reason", [key[0] for key, _ in listed], {"long_name": "model of the refused or wrong"}),
-            "reason_outcome": ("reason", [key[1] for key, _ in listed], {"long_name": "their outcome"}),
-            "reason_text": ("reason", [key[2] for key, _ in listed], {"long_name": "why"}),
+            "reason_law": ("reason", [law for (law, _), _ in listed], {"long_name": "model of the refused or wrong"}),
+            "reason_text": ("reason", [text for (_, text), _ in listed], {"long_name": "why"}),
             "reason_answers": ("reason", [number for _, number in listed], named("results with this reason")),
         },
         {"law": list(MODELS), "outcome": list(OUTCOMES)},
-    )  # fmt: skip
-
-
-def of_counts(found: counting.Counts) -> xr.Dataset:
-    """Return how many equilibria the kernels evaluated; NaN where the contact was refused."""
-    evaluated = np.array([[row or (np.nan, np.nan) for row in case] for case in found], dtype=float)
-    over = ("counted_case", "counted_law")
-    return xr.Dataset(
-        {
-            "tried": (over, evaluated[..., 0], named("equilibria evaluated to find a contact")),
-            "tried_before": (over, evaluated[..., 1], named("equilibria evaluated to set up an asperity")),
-        },
-        {"counted_law": list(counting.EQUILIBRIUM)},
     )
 
 
-def of_checks(found: list[Check]) -> xr.Dataset:
-    """Return the changes of a problem that must have a known effect."""
-    texts = {"name": "what is changed", "law": "adhesion model", "kind": "shape"}
-    numbers = {"error": "difference over the largest magnitude", "allowed": "difference that is allowed"}
-    attributes = {name: {"long_name": text} for name, text in texts.items()}
-    attributes |= {name: named(text) for name, text in numbers.items()}
-    return xr.Dataset({f"change_{name}": ("change", [getattr(each, name) for each in found], attrs)
-                       for name, attrs in attributes.items()})  # fmt: skip
+def equilibria_tried(count: int) -> list[list[float]]:
+    """Return how many equilibria are evaluated for a contact, [case, model]; to be called where nothing is compiled."""
+    return [[evaluations(case, model) for model in EQUILIBRIUM] for case in design(count)]
+
+
+def evaluations(case: Case, model: Literal["jkr", "dugdale"]) -> float:
+    """Return the equilibria evaluated to find the contact of the first asperity of a case; NaN where it is refused."""
+    shape = case.shapes()[0]
+    try:
+        strength = case.tabor / rm.tabor(shape, effective_modulus=case.effective_modulus, work=case.work, strength=1.0)
+        contact = Contact.of(shape, case.effective_modulus, Adhesion.checked(model, case.work, strength))
+    except rm.RoughmdrError:
+        return math.nan
+    with cProfile.Profile() as profile:
+        contact.law.state(case.distance, contact.params)
+    name = EQUILIBRIUM[model].__name__
+    return float(sum(call.callcount for call in profile.getstats() if getattr(call.code, "co_name", "") == name))

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -28,14 +28,8 @@ KINDS: dict[str, dict[str, float]] = {
 COHESIVE = ("paraboloid", "flat_punch", "power_law", "rounded_cone")
 """Kinds that are computed with adhesion of finite range too."""
 QUICK = ("paraboloid", "cone", "power_law")
-SAME_BITS = {
-    ("elastic", "paraboloid"),
-    ("elastic", "cone"),
-    ("elastic", "flat_punch"),
-    ("jkr", "cone"),
-    ("jkr", "flat_punch"),
-}
-"""Models that only add, multiply, divide and take square roots of what has no unit."""
+SAME_BITS = {"elastic": ("paraboloid", "cone", "flat_punch"), "jkr": ("cone", "flat_punch"), "dugdale": ()}
+"""Kinds for which a model only adds, multiplies, divides and takes square roots of what has no unit."""
 COUNT, LOW = 300, 200  # more than a block of the sum
 HEIGHT = 1.1e-6  # standard deviation of the heights [m]
 VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
@@ -46,16 +40,6 @@ UNITS = ((20, -13), (-7, 9), (3, 1))
 """Powers of two in which lengths and forces are counted."""
 _WORKS = 4.0 ** -np.arange(40.0)
 _SMALL, _LARGE = 1e-9, 1e-3  # relative: between them a difference has a single power of w
-
-
-class Check(NamedTuple):
-    """One change, for one adhesion model and shape."""
-
-    name: str
-    law: str
-    kind: str
-    error: float
-    allowed: float
 
 
 def material(model: str, kind: str) -> dict[str, Any]:
@@ -76,14 +60,9 @@ def ensemble(kind: str, seed: int = 3) -> xr.Dataset:
     return xr.Dataset(data, attrs={"shape": kind})
 
 
-def adhesion_range(given: dict[str, Any]) -> float:
-    """Return the range of the adhesion [m], 0 without one."""
-    return float(given["work"] / given["strength"]) if "strength" in given else 0.0
-
-
 def path(given: dict[str, Any]) -> Floats:
     """Return separations [m] from out of contact to half of the asperities in contact."""
-    return np.linspace(3.0 * HEIGHT + adhesion_range(given), -0.3 * HEIGHT, 9)
+    return np.linspace(3.0 * HEIGHT + given["work"] / given.get("strength", math.inf), -0.3 * HEIGHT, 9)
 
 
 def curves(data: xr.Dataset, separation: Floats, given: dict[str, Any]) -> dict[str, Floats]:
@@ -132,14 +111,14 @@ def without_adhesion(shape: Shape, given: dict[str, Any]) -> tuple[float, float]
     return wrong, rest
 
 
-def checks(quick: bool) -> list[Check]:
-    """Return all checks; of three shapes where ``quick``."""
+def checks(quick: bool) -> list[tuple[str, str, str, float, float]]:
+    """Return change, model, shape, difference over the largest magnitude, and what is allowed; quick: three shapes."""
     kinds = [kind for kind in KINDS if not quick or kind in QUICK]
     pairs = [(model, kind) for model in ("elastic", "jkr") for kind in kinds]
     pairs += [("dugdale", kind) for kind in kinds if kind in COHESIVE]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
-        return [Check(name, *pair, error, allowed) for pair in pairs for name, error, allowed in _checks(*pair)]
+        return [(name, *pair, error, allowed) for pair in pairs for name, error, allowed in _checks(*pair)]
 
 
 def _checks(model: str, kind: str) -> Iterator[tuple[str, float, float]]:
@@ -147,15 +126,14 @@ def _checks(model: str, kind: str) -> Iterator[tuple[str, float, float]]:
     separation = path(given)
     whole = curves(data, separation, given)
     worst = max(difference(in_other_units(data, given, *units), whole) for units in UNITS)
-    same = (model, kind) in SAME_BITS
-    yield "units, only + x / sqrt" if same else "units", worst, 0.0 if same else 1e-13
+    yield ("units, only + x / sqrt", worst, 0.0) if kind in SAME_BITS[model] else ("units", worst, 1e-13)
     shuffled = data.isel(asperity=rng.permutation(COUNT))
     yield "order", difference(curves(shuffled, separation, given), whole), 0.0
     parts = [curves(data.isel(asperity=part), separation, given) for part in (slice(0, 117), slice(117, None))]
     yield "two parts", difference({name: parts[0][name] + parts[1][name] for name in VARIABLES}, whole), 1e-14
-    low = ensemble(kind, seed=5).isel(asperity=slice(0, LOW))
-    below = separation.min() - adhesion_range(given) - rng.uniform(0.01, 5.0, LOW) * HEIGHT
-    more = xr.concat([data, low.assign(height=("asperity", below))], "asperity", combine_attrs="override")
+    below = separation.min() - given["work"] / given.get("strength", math.inf) - rng.uniform(0.01, 5.0, LOW) * HEIGHT
+    low = ensemble(kind, seed=5).isel(asperity=slice(0, LOW)).assign(height=("asperity", below))
+    more = xr.concat([data, low], "asperity", combine_attrs="override")
     yield "asperities out of reach", difference(curves(more, separation, given), whole), 0.0
     yield "visits of asperities out of reach", float(abs(visits(more, given) - visits(data, given))), 0.0
     if model != "elastic" and kind != "flat_punch":  # whose contact is the same without adhesion

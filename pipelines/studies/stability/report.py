@@ -1,54 +1,123 @@
-"""The report of the stability study: outcomes, worst results, refusals, equilibria evaluated, changes."""
+"""The stability study in words, and as a panel for every pair of axes, in each panel cells of some cases."""
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from studies.stability.judge import MODELS, REFUSED, RIGHT, WRONG
+from studies.stability.cases import AXES
+from studies.stability.judge import MODELS, OUTCOMES, WRONG
 from studies.study import table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+CELLS = 8  # along an axis
+_COLORS = {"right": "#1b6ca8", "refused": "#b8b8b8", "wrong": "#ff00c8"}
+_CELLS: dict[str, Any] = {"origin": "lower", "aspect": "auto"}
 
 
 def report(result: xr.Dataset) -> str:
-    """Return the report in Markdown."""
-    parts = [_outcomes(result), _reasons(result), _evaluated(result), _changes(result)]
-    return "\n\n".join(part for part in parts if part)
-
-
-def _outcomes(result: xr.Dataset) -> str:
-    rows = []
+    """Return outcomes and worst results, refusals, equilibria evaluated and changes, in Markdown."""
+    wrong = int(result.answers.sel(outcome=WRONG).sum())
+    outcomes = []
     for model in MODELS:
         chosen = result.sel(law=model)
-        answers = chosen.answers.sum("case")
-        worst = chosen.isel(case=int(chosen.excess.fillna(-1.0).argmax("case")))
-        cases = str(int((chosen.answers.sum("outcome") > 0).sum()))
-        outcomes = [str(int(answers.sel(outcome=outcome))) for outcome in (RIGHT, REFUSED, WRONG)]
-        excess = f"{float(worst.excess):.2f} ({float(worst.error):.1e} of {float(worst.allowed):.1e})"
-        rows.append([model, cases, *outcomes, excess])
-    wrong = int(result.answers.sel(outcome=WRONG).sum())
-    head = ["law", "cases", "right", "refused", "wrong", "worst error over what is allowed"]
-    return f"{f'{wrong} answers are wrong' if wrong else 'No answer is wrong'}.\n\n{table(head, rows)}"
-
-
-def _reasons(result: xr.Dataset) -> str:
-    names = ("law", "outcome", "answers", "text")
-    rows = zip(*(result[f"reason_{name}"].to_numpy().astype(str) for name in names), strict=True)
-    found = [list(map(str, row)) for row in rows]
-    return table(["law", "outcome", "answers", "reason"], found) if found else ""
-
-
-def _evaluated(result: xr.Dataset) -> str:
-    rows = []
+        cases, answers = int((chosen.answers.sum("outcome") > 0).sum()), chosen.answers.sum("case").to_numpy()
+        outcomes.append([model, *map(str, (cases, *answers)), f"{float(chosen.excess.max()):.2f}"])
+    reasons = zip(*(result[f"reason_{name}"].to_numpy() for name in ("law", "answers", "text")), strict=True)
+    evaluated, changes = [], []
     for model in result.counted_law.to_numpy():
-        for name, purpose in (("tried", "to find a contact"), ("tried_before", "to set up an asperity")):
-            values = result[name].sel(counted_law=model).dropna("counted_case").to_numpy()
-            if values.size:
-                rows.append([model, purpose, *(f"{np.quantile(values, part):.0f}" for part in (0.5, 0.99, 1.0))])
-    return table(["law", "equilibria evaluated", "median", "99 %", "most"], rows)
-
-
-def _changes(result: xr.Dataset) -> str:
-    rows = []
+        values = result.tried.sel(counted_law=model).dropna("counted_case").to_numpy()
+        evaluated.append([model, *(f"{np.quantile(values, part):.0f}" for part in (0.5, 0.99, 1.0))])
     for name in dict.fromkeys(result.change_name.to_numpy().tolist()):
         chosen = result.isel(change=np.flatnonzero(result.change_name == name))
         numbers = float(chosen.change_error.max()), float(chosen.change_allowed.max())
-        rows.append([name, str(chosen.sizes["change"]), *(f"{number:.1e}" if number else "0" for number in numbers)])
-    return table(["change", "laws and shapes", "worst difference", "allowed"], rows)
+        changes.append([name, str(chosen.sizes["change"]), *(f"{number:.1e}" if number else "0" for number in numbers)])
+    return "\n\n".join([
+        f"{wrong} answers are wrong." if wrong else "No answer is wrong.",
+        table(["law", "cases", *OUTCOMES, "worst error over what is allowed"], outcomes),
+        table(["law", "answers", "reason"], [list(map(str, row)) for row in reasons]),
+        table(["law", "equilibria evaluated for a contact: median", "99 %", "most"], evaluated),
+        table(["change", "laws and shapes", "worst difference", "allowed"], changes),
+    ])  # fmt: skip
+
+
+def cell_of(result: xr.Dataset, name: str) -> Any:
+    """Return the cell along an axis in which each case lies."""
+    return np.clip((AXES[name].fraction(result[name].to_numpy()) * CELLS).astype(int), 0, CELLS - 1)
+
+
+def worst_in(result: xr.Dataset, one: str, other: str, values: Any) -> Any:
+    """Return the largest of the values [case] in each cell of a pair of axes; NaN where there is none."""
+    grid = np.full((CELLS, CELLS), np.nan)
+    np.fmax.at(grid, (cell_of(result, other), cell_of(result, one)), values)
+    return grid
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw the worst error below the diagonal, equilibria evaluated above it, on it the outcomes along each axis."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    names, ends = list(AXES), (-0.5, 0.5 * CELLS - 0.5, CELLS - 0.5)
+    figure = Figure(figsize=(15, 13.5), layout="constrained")
+    panels = figure.subplots(len(names), len(names))
+    excess = LogNorm(1e-2, 1.0)
+    evaluated = LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0))))
+    counted = result.isel(case=slice(0, result.sizes["counted_case"]))
+    for (i, j), panel in np.ndenumerate(panels):
+        one, other = names[j], names[i]
+        chosen = result.sel(law=["dugdale"]) if "tabor" in (one, other) else result  # no other depends on it
+        panel.set(xticks=ends, xticklabels=(), yticks=() if i == j else ends, yticklabels=())
+        if j == i:
+            _draw_outcomes(panel, chosen, one)
+        elif j < i:
+            _draw_errors(panel, chosen, one, other, excess)
+        else:
+            most = worst_in(counted, one, other, counted.tried.max("counted_law").to_numpy())
+            panel.imshow(most, cmap="viridis", norm=evaluated, **_CELLS)
+        if i == len(names) - 1:
+            panel.set_xticklabels(_ticks(one), fontsize=8)
+            panel.set_xlabel(AXES[one].label)
+        if j == 0 and i > 0:
+            panel.set_yticklabels(_ticks(other), fontsize=8)
+            panel.set_ylabel(AXES[other].label)
+    below, above = "below: worst error over what is allowed", "above: most equilibria evaluated for a contact"
+    figure.colorbar(ScalarMappable(excess, "YlOrBr"), ax=panels, location="bottom", shrink=0.4, label=below)
+    figure.colorbar(ScalarMappable(evaluated, "viridis"), ax=panels, location="right", shrink=0.4, label=above)
+    handles = [Patch(color=color, label=outcome) for outcome, color in _COLORS.items()]
+    figure.legend(handles=handles, loc="outside upper right", ncols=3, title="refused: no float holds it; white: none")
+    figure.suptitle("Results over seven axes, without adhesion, with JKR and with Dugdale", x=0.02, ha="left")
+    return figure
+
+
+def _ticks(name: str) -> list[str]:
+    """Return the values at the ends and in the middle of an axis."""
+    return [f"{AXES[name].at(part):.3g}" for part in (0.0, 0.5, 1.0)]
+
+
+def _draw_errors(panel: "Axes", result: xr.Dataset, one: str, other: str, excess: Any) -> None:
+    """Draw the worst error in each cell; over it where answers are wrong, under it where they are refused."""
+    from matplotlib.colors import ListedColormap
+
+    worst = worst_in(result, one, other, result.excess.max("law").to_numpy())
+    for layer, outcome in enumerate(("refused", "wrong")):
+        answers = result.answers.sum("law").sel(outcome=outcome)
+        grid = worst_in(result, one, other, np.where(answers > 0, 1.0, np.nan))
+        panel.imshow(grid, cmap=ListedColormap([_COLORS[outcome]]), zorder=2 * layer, **_CELLS)
+    panel.imshow(np.maximum(worst, excess.vmin), cmap="YlOrBr", norm=excess, zorder=1, **_CELLS)
+
+
+def _draw_outcomes(panel: "Axes", result: xr.Dataset, name: str) -> None:
+    """Draw the fraction of each outcome along an axis."""
+    answers = result.answers.sum("law").to_numpy()
+    count = np.zeros((CELLS, answers.shape[1]))
+    np.add.at(count, cell_of(result, name), answers)
+    fraction = count / np.maximum(count.sum(axis=1, keepdims=True), 1.0)
+    for number, color in enumerate(_COLORS.values()):
+        panel.bar(np.arange(CELLS), fraction[:, number], 1.0, fraction[:, :number].sum(axis=1), color=color)
+    panel.set(xlim=(-0.5, CELLS - 0.5), ylim=(0.0, 1.0), title=AXES[name].label)

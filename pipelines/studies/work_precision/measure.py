@@ -5,14 +5,14 @@ times are those of a curve of 50 to 200 states. A method joins by a line in ``ME
 """
 
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from studies.study import named
 from studies.work_precision import surface, tip
-from studies.work_precision.points import QUANTITIES, Method, Point, Reference
+from studies.work_precision.points import QUANTITIES, Method, Reference
 
 import roughmdr as rm
 
@@ -24,42 +24,34 @@ class Part(NamedTuple):
     methods: tuple[Method, ...]
     reference: Callable[..., Reference]
 
-    def points(self, quick: bool) -> Iterator[tuple[str, Method, Point]]:
-        """Measure all methods on all scenes; quick without the last scene."""
-        for title, scene in list(self.scenes.items())[: -1 if quick else None]:
-            exact = self.reference(scene, quick=quick)
-            for method in self.methods:
-                for point in method.points(scene, exact, quick):
-                    yield title, method, point
 
-
-PARTS = (
-    Part(tip.TIPS, tip.METHODS, tip.reference),
-    Part(surface.SURFACES, surface.METHODS, surface.reference),
-)
+PARTS = (Part(tip.TIPS, tip.METHODS, tip.reference), Part(surface.SURFACES, surface.METHODS, surface.reference))
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Return all points."""
+    """Return the points of all methods on all scenes; quick without the last scene of each part."""
+    found = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)  # all methods suppose the same
-        titles, methods, points = zip(*(each for part in PARTS for each in part.points(quick)), strict=True)
-    evaluations = [float(point.evaluations) for point in points]
+        for part in PARTS:
+            for title, scene in list(part.scenes.items())[: -1 if quick else None]:
+                exact = part.reference(scene, quick=quick)
+                for method in part.methods:
+                    found += [(title, method, *point) for point in method.points(scene, exact, quick)]
+    titles, methods, settings, errors, seconds, evaluations = map(list, zip(*found, strict=True))
+    counted = named("evaluations of a state, a profile, an integrand or a spring for a curve")
+    competes = [int(method.competes) for method in methods]
     return xr.Dataset(
         {
-            "error": (("point", "quantity"), [point.errors for point in points], named("relative error of a quantity")),
-            "seconds": ("point", [point.seconds for point in points], named("run time of a curve", "s")),
-            "evaluations": (
-                "point",
-                evaluations,
-                named("evaluations of a state, a profile, an integrand or a spring for a curve"),
-            ),
-            "setting": ("point", [float(point.setting) for point in points], named("what the error is set by")),
+            "error": (("point", "quantity"), errors, named("relative error of a quantity")),
+            "seconds": ("point", seconds, named("run time of a curve", "s")),
+            "evaluations": ("point", np.array(evaluations, dtype=float), counted),
+            "setting": ("point", np.array(settings, dtype=float), named("what the error is set by")),
             "setting_of": ("point", [method.setting for method in methods]),
-            "competes": ("point", [int(each.competes) for each in methods], named("whether it may be the cheapest")),
+            "competes": ("point", competes, named("whether it may be the cheapest")),
         },
         {
-            "scene": ("point", list(titles)),
+            "scene": ("point", titles),
             "method": ("point", [method.name for method in methods]),
             "quantity": list(QUANTITIES),
         },

@@ -9,7 +9,7 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
-_LONG = 0.5  # [s]
+_LONG = 0.5  # [s], after which a curve is not timed again
 QUANTITIES = ("force", "contact area", "pull-off force")
 Errors = tuple[float, float, float]
 """Relative error of each of the ``QUANTITIES``."""
@@ -22,10 +22,10 @@ class Curve(NamedTuple):
     """[N], along the path."""
     area: Floats
     """[m2], along the path."""
-    pull_off: float
-    """The greatest tension, with its sign [N]."""
     evaluations: int
     """How often a state of a contact, an integrand, a profile or a spring was evaluated."""
+    pull_off: float | None = None
+    """The greatest tension, with its sign [N]; None for that of the path."""
 
 
 class Reference(NamedTuple):
@@ -40,22 +40,21 @@ class Reference(NamedTuple):
 
     def errors(self, curve: Curve) -> Errors:
         """Return the r.m.s. error over the steps, over the largest value of the reference."""
+        pull_off = float(curve.force.min()) if curve.pull_off is None else curve.pull_off
         return (
-            _rms(curve.force[self.steps] - self.force) / float(np.abs(self.force).max()),
-            _rms(curve.area[self.area_steps] - self.area) / float(self.area.max()),
-            abs(curve.pull_off / self.pull_off - 1.0) if self.pull_off else math.nan,
+            float(root_mean_square(curve.force[self.steps] - self.force) / np.abs(self.force).max()),
+            float(root_mean_square(curve.area[self.area_steps] - self.area) / self.area.max()),
+            abs(pull_off / self.pull_off - 1.0) if self.pull_off else math.nan,
         )
 
 
 class Point(NamedTuple):
-    """A method with one setting."""
+    """A method with one setting: errors, run time and evaluations of a curve."""
 
     setting: float
     errors: Errors
     seconds: float
-    """Of a curve."""
     evaluations: float
-    """For a curve."""
 
 
 Points = Callable[[Any, Reference, bool], Iterator[Point]]
@@ -67,39 +66,31 @@ class Method(NamedTuple):
 
     name: str
     setting: str
-    """What its error is set by."""
+    """Name of the number that sets its error."""
     points: Points
     competes: bool = True
     """For the cheapest: not a method that chooses among others, or that is a part of one."""
 
 
-def timed(action: Callable[[], Curve], repeats: int) -> tuple[Curve, float]:
-    """Return the result of an action and its shortest wall time [s]; it is repeated unless it takes long."""
-    seconds = list[float]()
-    while len(seconds) < repeats and sum(seconds) < _LONG:
-        started = time.perf_counter()
-        curve = action()
-        seconds.append(time.perf_counter() - started)
-    return curve, min(seconds)
-
-
 def each_setting(settings: tuple[float, ...], prepare: Callable[[Any, float], Callable[[], Curve]]) -> Points:
-    """Return the points of a method that ``prepare`` makes ready for a setting; every other setting where quick."""
+    """Return the points of a method that ``prepare`` makes ready for a setting; every other setting where quick.
+
+    The run time is the shortest of three, or of those that begin within half a second.
+    """
 
     def points(scene: Any, exact: Reference, quick: bool) -> Iterator[Point]:
         prepare(scene, settings[0])()  # compiled before the clock runs
         for setting in settings[:: 2 if quick else 1]:
-            curve, seconds = timed(prepare(scene, setting), 1 if quick else 3)
-            yield Point(setting, exact.errors(curve), seconds, curve.evaluations)
+            action, seconds = prepare(scene, setting), list[float]()
+            while len(seconds) < (1 if quick else 3) and sum(seconds) < _LONG:
+                started = time.perf_counter()
+                curve = action()
+                seconds.append(time.perf_counter() - started)
+            yield Point(setting, exact.errors(curve), min(seconds), curve.evaluations)
 
     return points
 
 
-def root_mean_square(errors: list[Errors]) -> Errors:
-    """Return the r.m.s. of each quantity."""
-    force, area, pull_off = np.sqrt(np.mean(np.square(errors), axis=0)).tolist()
-    return force, area, pull_off
-
-
-def _rms(values: Floats) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
+def root_mean_square(errors: Any) -> Any:
+    """Return the r.m.s. over the first axis."""
+    return np.sqrt(np.mean(np.square(errors), axis=0))

@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from functools import cache, partial
-from typing import Any, NamedTuple
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -18,64 +18,51 @@ from roughmdr.batch import tasks
 from roughmdr.batch.plan import Cell, make_plan, simulate_realization
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Problem, set_up, totals_of
-from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
-from roughmdr.scene import read
+from roughmdr.scene import Scene, read
 
 UM, MODULUS, WORK = 1e-6, 4e6, 0.05
 COUNT = 1000  # asperities of a realisation
 VARIABLES = ["force", "contact_area"]
 DIGITS = 12
 _STEPS = {False: (10, 20, 30, 40), True: (10, 30, 45, 55, 62, 68)}  # of the reference, loading only or both ways
-_NODES = (1, 2, 3, 4, 6, 8, 12, 16)
 _ERRORS = (0.1, 0.03, 0.01, 0.003)
 _MIN_GROUPS = 4  # whose r.m.s. is taken
 _SEEDS = 12  # runs to an asked error, of which the mean counts
-
-
-class Surface(NamedTuple):
-    """Paraboloids of normal heights, loaded by a flat and, with adhesion, unloaded."""
-
-    rough: Rough
-
-    def table(self, **sections: Any) -> dict[str, Any]:
-        """Return the scene; other sections as they are given."""
-        rough = self.rough
-        lognormal = {"distribution": "lognormal", "mean": rough.radius, "std": rough.radius_std}
-        return {
-            "material": {"effective_modulus": rough.effective_modulus},
-            "adhesion": {"model": "jkr", "work": rough.work},
-            "asperities": {
-                "source": "random",
-                "shape": "paraboloid",
-                "count": COUNT,
-                "patch": "1 mm",
-                "height": {"distribution": "normal", "std": rough.std},
-                "radius": lognormal if rough.radius_std else rough.radius,
-            },
-            "path": {"separation": {"start": 3 * UM, "stop": -0.5 * UM, "steps": 50}, "unload": bool(rough.work)},
-            "output": {"variables": VARIABLES},
-            **sections,
-        }
-
-
 SURFACES = {
-    "Hertz, lognormal radii": Surface(Rough("normal", UM, 50 * UM, 5 * UM, MODULUS)),
-    "JKR, equal radii": Surface(Rough("normal", UM, 50 * UM, 0.0, MODULUS, WORK)),
-    "JKR, lognormal radii": Surface(Rough("normal", UM, 50 * UM, 5 * UM, MODULUS, WORK)),
+    "Hertz, lognormal radii": Rough("normal", UM, 50 * UM, 5 * UM, MODULUS),
+    "JKR, equal radii": Rough("normal", UM, 50 * UM, 0.0, MODULUS, WORK),
+    "JKR, lognormal radii": Rough("normal", UM, 50 * UM, 5 * UM, MODULUS, WORK),
 }
 
 
+def scene_of(rough: Rough, **sections: Any) -> Scene:
+    """Return paraboloids of normal heights, loaded by a flat and, with adhesion, unloaded; other sections as given."""
+    lognormal = {"distribution": "lognormal", "mean": rough.radius, "std": rough.radius_std}
+    return read({
+        "material": {"effective_modulus": rough.effective_modulus},
+        "adhesion": {"model": "jkr", "work": rough.work},
+        "asperities": {
+            "source": "random", "shape": "paraboloid", "count": COUNT, "patch": "1 mm",
+            "height": {"distribution": "normal", "std": rough.std},
+            "radius": lognormal if rough.radius_std else rough.radius,
+        },
+        "path": {"separation": {"start": 3 * UM, "stop": -0.5 * UM, "steps": 50}, "unload": bool(rough.work)},
+        "output": {"variables": VARIABLES},
+        **sections,
+    })  # fmt: skip
+
+
 @cache
-def _cell(surface: Surface) -> Cell:
-    return make_plan(read(surface.table())).cells[0]
+def _cell(rough: Rough) -> Cell:
+    return make_plan(scene_of(rough)).cells[0]
 
 
-def reference(surface: Surface, *, quick: bool) -> Reference:
+def reference(rough: Rough, *, quick: bool) -> Reference:
     """Compute double integrals with ``DIGITS`` digits; the pull-off force at the lowest step of the expected curve."""
-    separation, rough = _cell(surface).path.separation, surface.rough
-    lowest, turn = int(np.argmin(simulate(surface, "expected").force)), int(np.argmin(separation))
+    separation = _cell(rough).path.separation
+    lowest, turn = int(np.argmin(simulate(rough, "expected").force)), int(np.argmin(separation))
 
     def mean(quantity: Callable[..., float], step: int) -> float:
         closest = float(separation[turn]) if step > turn else None
@@ -87,56 +74,51 @@ def reference(surface: Surface, *, quick: bool) -> Reference:
     return Reference(steps, force, steps[::2], area, mean(rough.force, lowest) if rough.work else 0.0)
 
 
-def _curve(force: Floats, area: Floats, evaluations: int) -> Curve:
-    return Curve(force, area, float(force.min()), evaluations)
-
-
-def simulate(surface: Surface, estimator: str, realization: int = 0) -> Curve:
+def simulate(rough: Rough, estimator: str, realization: int = 0) -> Curve:
     """Compute one realisation, or the expected curve."""
-    found = simulate_realization(*_cell(surface), realization, VARIABLES, estimator)
-    return _curve(found.variables["force"], found.variables["contact_area"], found.visits)
+    found = simulate_realization(*_cell(rough), realization, VARIABLES, estimator)
+    return Curve(found.variables["force"], found.variables["contact_area"], found.visits)
 
 
-def _by_nodes(surface: Surface, order: float) -> Callable[[], Curve]:
+def _by_nodes(rough: Rough, order: float) -> Callable[[], Curve]:
     """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
-    scene, path = _cell(surface)
+    scene, path = _cell(rough)
     problem = Problem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
-    steps = list(range(path.separation.size))
 
     def action() -> Curve:
         nodes = set_up(problem, Rule.smooth(int(order)))
-        total, products = totals_of(nodes, path.separation, problem.rows, steps)
-        return _curve(COUNT * total[FORCE], COUNT * total[AREA], products)
+        total, products = totals_of(nodes, path.separation, problem.rows, list(range(path.separation.size)))
+        return Curve(COUNT * total[FORCE], COUNT * total[AREA], products)
 
     return action
 
 
-def expected_by_nodes(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
+def expected_by_nodes(rough: Rough, exact: Reference, quick: bool) -> Iterator[Point]:
     """Return the points of ``_by_nodes``; none where all radii are equal."""
-    if surface.rough.radius_std:
-        yield from each_setting(_NODES, _by_nodes)(surface, exact, quick)
+    if rough.radius_std:
+        yield from each_setting((1, 2, 3, 4, 6, 8, 12, 16), _by_nodes)(rough, exact, quick)
 
 
-Draw = Callable[[Surface, int], Curve]
+Draw = Callable[[Rough, int], Curve]
 """(surface, number) -> one realisation."""
 
 
 def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
     """Return a point for 1, 2, 4 ... of ``count`` realisations: the r.m.s. error of all such groups."""
 
-    def points(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
-        draw(surface, 0)  # compiled before the clock runs
+    def points(rough: Rough, exact: Reference, quick: bool) -> Iterator[Point]:
+        draw(rough, 0)  # compiled before the clock runs
         total = quick_count if quick else count
         curves, seconds = [], []
         for number in range(total):
             started = time.perf_counter()
-            curves.append(draw(surface, number))
+            curves.append(draw(rough, number))
             seconds.append(time.perf_counter() - started)
         each, visits = float(np.median(seconds)), float(np.mean([curve.evaluations for curve in curves]))
         drawn = [np.array([getattr(curve, name) for curve in curves]) for name in ("force", "area")]
         for size in 2 ** np.arange(int(math.log2(total / _MIN_GROUPS)) + 1):
             means = [values.reshape(-1, size, values.shape[-1]).mean(axis=1) for values in drawn]
-            errors = [exact.errors(_curve(force, area, 0)) for force, area in zip(*means, strict=True)]
+            errors = [exact.errors(Curve(force, area, 0)) for force, area in zip(*means, strict=True)]
             yield Point(float(size), root_mean_square(errors), float(size) * each, float(size) * visits)
 
     return points
@@ -145,13 +127,13 @@ def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
 def _plain(sum_up: Callable[..., Sums]) -> Draw:
     """Return realisations drawn and summed by a plain script."""
 
-    def draw(surface: Surface, number: int) -> Curve:
-        rng, rough = np.random.default_rng(number), surface.rough
+    def draw(rough: Rough, number: int) -> Curve:
+        rng = np.random.default_rng(number)
         spread = math.sqrt(math.log1p((rough.radius_std / rough.radius) ** 2))
         radius = rough.radius * np.exp(spread * rng.standard_normal(COUNT) - 0.5 * spread**2)
         height = rough.std * rng.standard_normal(COUNT)
-        found = sum_up(height, radius, _cell(surface).path.separation, rough.effective_modulus, rough.work)
-        return _curve(found.force, found.area, found.visits)
+        found = sum_up(height, radius, _cell(rough).path.separation, rough.effective_modulus, rough.work)
+        return Curve(found.force, found.area, found.visits)
 
     return draw
 
@@ -159,10 +141,10 @@ def _plain(sum_up: Callable[..., Sums]) -> Draw:
 def _to_error(method: str) -> Points:
     """Return a point for each error that is asked for: r.m.s. error and mean cost of runs with several seeds."""
 
-    def points(surface: Surface, exact: Reference, quick: bool) -> Iterator[Point]:
-        _run(surface, method, _ERRORS[-1], 0)  # all is loaded before the clock runs
+    def points(rough: Rough, exact: Reference, quick: bool) -> Iterator[Point]:
+        _run(rough, method, _ERRORS[-1], 0)  # all is loaded before the clock runs
         for relative in _ERRORS[:2] if quick else _ERRORS:
-            runs = [_run(surface, method, relative, seed) for seed in range(2 if quick else _SEEDS)]
+            runs = [_run(rough, method, relative, seed) for seed in range(2 if quick else _SEEDS)]
             errors = root_mean_square([exact.errors(curve) for curve, _ in runs])
             seconds, visits = np.mean([(spent, curve.evaluations) for curve, spent in runs], axis=0)
             yield Point(relative, errors, float(seconds), float(visits))
@@ -170,11 +152,11 @@ def _to_error(method: str) -> Points:
     return points
 
 
-def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Curve, float]:
+def _run(rough: Rough, method: str, relative: float, seed: int) -> tuple[Curve, float]:
     """Return the mean curve of a run to an asked error, and its time [s] without planning, of all that was tried."""
     accuracy = {"relative": relative, "max_realizations": 4096, "method": method}
     output = {"variables": VARIABLES, "keep": "statistics"}
-    plan = make_plan(read(surface.table(seed=seed, accuracy=accuracy, output=output)))
+    plan = make_plan(scene_of(rough, seed=seed, accuracy=accuracy, output=output))
     visits = list[int]()
 
     def counted(*args: Any) -> LoadSeparation:
@@ -186,16 +168,16 @@ def _run(surface: Surface, method: str, relative: float, seed: int) -> tuple[Cur
         started = time.perf_counter()
         result = execute(plan, None, Backend(workers=1), quiet=True).variables
         seconds = time.perf_counter() - started
-    return _curve(result["force_mean"].values, result["contact_area_mean"].values, sum(visits)), seconds
+    return Curve(result["force_mean"].values, result["contact_area_mean"].values, sum(visits)), seconds
 
 
 METHODS = (
-    Method("sampled", "realisations", _drawn(lambda surface, n: simulate(surface, "sampled", n), 1024, 64)),
-    Method("stratified", "realisations", _drawn(lambda surface, n: simulate(surface, "stratified", n), 1024, 64)),
+    Method("sampled", "realisations", _drawn(lambda rough, n: simulate(rough, "sampled", n), 1024, 64)),
+    Method("stratified", "realisations", _drawn(lambda rough, n: simulate(rough, "stratified", n), 1024, 64)),
     Method("sampled, error asked for", "error", _to_error("sampled"), competes=False),
     Method("stratified, error asked for", "error", _to_error("stratified"), competes=False),
     Method("auto, error asked for", "error", _to_error("auto"), competes=False),
-    Method("expected", "-", each_setting((1.0,), lambda surface, _: partial(simulate, surface, "expected"))),
+    Method("expected", "-", each_setting((1.0,), lambda rough, _: partial(simulate, rough, "expected"))),
     Method("expected, nodes given", "nodes", expected_by_nodes, competes=False),
     Method("plain NumPy", "realisations", _drawn(_plain(with_numpy), 128, 16)),
     Method("brentq", "realisations", _drawn(_plain(with_brentq), 4, 4)),

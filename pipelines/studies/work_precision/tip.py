@@ -37,24 +37,20 @@ class Tip(NamedTuple):
     reduced_load: Formula
 
     @property
-    def fold(self) -> tuple[float, float]:
-        """Radius [m] and depth [m] of pull-off under fixed grips."""
-        off = rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK)
-        return float(off.contact_radius), -float(off.indentation)
+    def fold(self) -> float:
+        """Radius [m] of pull-off under fixed grips."""
+        return float(rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK).contact_radius)
 
     @property
     def indentation(self) -> Floats:
         """The path [m]."""
-        return self.fold[1] * (DEPTHS - 1.0)
+        depth = -float(rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK).indentation)
+        return depth * (DEPTHS - 1.0)
 
 
-def _paraboloid(radius: float) -> Tip:
+def _paraboloid(R: float) -> Tip:
     return Tip(
-        rm.Paraboloid(radius),
-        lambda r: r / radius,
-        lambda x: x * x / radius,
-        lambda x: 2.0 * x / radius,
-        lambda x: 2.0 * x**3 / (3.0 * radius),
+        rm.Paraboloid(R), lambda r: r / R, lambda x: x * x / R, lambda x: 2 * x / R, lambda x: 2 * x**3 / (3 * R)
     )
 
 
@@ -114,14 +110,7 @@ def by_package(tip: Tip, shape: Shape) -> Curve:
     """Compute by the package, for a shape."""
     state = rm.indent(shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation)
     off = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="force")
-    return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), float(off.force), DEPTHS.size + 1)
-
-
-def as_table(tip: Tip, points: int) -> Shape:
-    """Return the profile as a table, to 1.5 times the largest contact radius."""
-    farthest = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=float(tip.indentation[-1]))
-    r = np.linspace(0.0, 1.5 * float(farthest.contact_radius), points)
-    return rm.Tabulated(r, tip.shape.f(r))
+    return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), DEPTHS.size + 1, float(off.force))
 
 
 def by_springs(tip: Tip, count: int) -> Curve:
@@ -130,16 +119,12 @@ def by_springs(tip: Tip, count: int) -> Curve:
         tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation, method="springs", springs=count
     )
     pull_off = Springs.of(tip.shape, MODULUS, WORK, count).pull_off_force()
-    return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), pull_off, (DEPTHS.size + 1) * count)
+    return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), (DEPTHS.size + 1) * count, pull_off)
 
 
 def by_root_finder(tip: Tip, g: Formula, reduced_load: Formula, tolerance: float, weight: int = 1) -> Curve:
-    """Compute by scipy's brentq for each indentation, and its minimiser for the pull-off force.
-
-    Each g and each reduced load count ``weight`` evaluations.
-    """
-    fold, _ = tip.fold
-    count = 0
+    """Compute by scipy's brentq and minimiser; each g and each reduced load count ``weight`` evaluations."""
+    fold, count = tip.fold, 0
 
     def excess(a: float, delta: float) -> float:
         nonlocal count
@@ -153,24 +138,22 @@ def by_root_finder(tip: Tip, g: Formula, reduced_load: Formula, tolerance: float
 
     # xtol is a length: its default, 2e-12 m, leaves 2e-8 of such contacts
     xtol, rtol = tolerance * fold, max(tolerance, _MIN_RTOL)
-    radii = np.array(
-        [brentq(excess, fold, _DEEPEST * fold, args=(d,), xtol=xtol, rtol=rtol) for d in tip.indentation.tolist()]
-    )
+    ends = fold, _DEEPEST * fold
+    radii = np.array([brentq(excess, *ends, args=(d,), xtol=xtol, rtol=rtol) for d in tip.indentation.tolist()])
     lowest = minimize_scalar(tension, bounds=(fold, 8.0 * fold), method="bounded", options={"xatol": xtol})
-    return Curve(load(reduced_load, radii), math.pi * radii**2, float(lowest.fun), count + weight * radii.size)
+    return Curve(load(reduced_load, radii), math.pi * radii**2, count + weight * radii.size, float(lowest.fun))
 
 
 def by_vectors(tip: Tip, newton_steps: int) -> Curve:
     """Compute by Newton's method on ln a for all indentations at once, from beyond the deepest; the least P."""
-    a = np.full(DEPTHS.size, _DEEPEST * tip.fold[0])
+    a = np.full(DEPTHS.size, _DEEPEST * tip.fold)
     for _ in range(newton_steps):
         excess = tip.g(a) - stretch(a) - tip.indentation
         a = a * np.exp(-excess / (a * tip.dg(a) - 0.5 * stretch(a)))
-    force = load(tip.reduced_load, a)
-    return Curve(force, math.pi * a * a, float(force.min()), (newton_steps + 1) * a.size)
+    return Curve(load(tip.reduced_load, a), math.pi * a * a, (newton_steps + 1) * a.size)
 
 
-def _by_quadrature(tip: Tip, nodes: float) -> Callable[[], Curve]:
+def by_quadrature(tip: Tip, nodes: float) -> Callable[[], Curve]:
     """Prepare g and ∫ x g' dx by Gauss's rule on f' over the angle, in brentq."""
     x, weights = np.polynomial.legendre.leggauss(int(nodes))
     sine, weights = np.sin(0.25 * math.pi * (1.0 + x)), 0.25 * math.pi * weights
@@ -184,21 +167,25 @@ def _by_quadrature(tip: Tip, nodes: float) -> Callable[[], Curve]:
     return partial(by_root_finder, tip, g, reduced_load, 1e-14, int(nodes))
 
 
-_TABLES, _SPRINGS = (5, 10, 20, 40, 80, 160, 320), (10, 30, 100, 300, 1e3, 3e3, 1e4, 3e4, 1e5)
-_NODES, _TOLERANCES = (2, 3, 4, 6, 8, 12, 16, 32, 64, 128), tuple(10.0**-k for k in range(1, 15))
+def by_table(tip: Tip, points: float) -> Callable[[], Curve]:
+    """Prepare the profile as a table, to 1.5 times the largest contact radius."""
+    farthest = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=float(tip.indentation[-1]))
+    r = np.linspace(0.0, 1.5 * float(farthest.contact_radius), int(points))
+    return partial(by_package, tip, rm.Tabulated(r, tip.shape.f(r)))
+
+
+def by_brentq(tip: Tip, tolerance: float) -> Callable[[], Curve]:
+    """Prepare brentq with the closed forms."""
+    return partial(by_root_finder, tip, tip.g, tip.reduced_load, tolerance)
+
+
+_SPRINGS, _NODES = (10, 30, 100, 300, 1e3, 3e3, 1e4, 3e4, 1e5), (2, 3, 4, 6, 8, 12, 16, 32, 64, 128)
+_TOLERANCES, _STEPS = tuple(10.0**-k for k in range(1, 15)), tuple(range(2, 16))
 METHODS = (
     Method("closed forms", "-", each_setting((1.0,), lambda tip, _: partial(by_package, tip, tip.shape))),
-    Method("table", "points", each_setting(_TABLES, lambda tip, n: partial(by_package, tip, as_table(tip, int(n))))),
+    Method("table", "points", each_setting((5, 10, 20, 40, 80, 160, 320), by_table)),
     Method("springs", "springs", each_setting(_SPRINGS, lambda tip, n: partial(by_springs, tip, int(n)))),
-    Method("Abel quadrature", "nodes", each_setting(_NODES, _by_quadrature)),
-    Method(
-        "brentq",
-        "tolerance",
-        each_setting(_TOLERANCES, lambda tip, rtol: partial(by_root_finder, tip, tip.g, tip.reduced_load, rtol)),
-    ),
-    Method(
-        "plain NumPy",
-        "Newton steps",
-        each_setting(tuple(range(2, 16)), lambda tip, n: partial(by_vectors, tip, int(n))),
-    ),
+    Method("Abel quadrature", "nodes", each_setting(_NODES, by_quadrature)),
+    Method("brentq", "tolerance", each_setting(_TOLERANCES, by_brentq)),
+    Method("plain NumPy", "Newton steps", each_setting(_STEPS, lambda tip, n: partial(by_vectors, tip, int(n)))),
 )
