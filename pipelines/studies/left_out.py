@@ -163,20 +163,16 @@ def texts(result: xr.Dataset) -> list[list[str]]:
 
 
 def draw(result: xr.Dataset) -> "Figure":
-    """Draw how many times as much there is with each part forced on; a mark where there is nothing without."""
+    """Draw how many times as much there is with each part forced on; no bar where there is nothing without."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10, 0.34 * result.sizes["case"] + 1.2), layout="constrained")
     panel = figure.subplots()
     left, forced = result.counted.to_numpy().T
-    ratio = forced / np.where(left > 0.0, left, np.nan)
-    panel.barh(range(ratio.size), ratio - 1.0, left=1.0, color="#c8553d", height=0.7)
-    for y, (_, _, low, high, unit) in enumerate(texts(result)):
-        at = 1.12 if left[y] == 0.0 else ratio[y]
-        panel.annotate(f"{low} to {high} {unit}", (at, y), (4, 0), textcoords="offset points", va="center")
-    panel.plot(np.full(ratio.size, 1.08), np.where(left == 0.0, range(ratio.size), np.nan), ">", color="#c8553d")
-    panel.set(xscale="log", xlim=(0.9, 300.0 * float(np.nanmax(ratio))), xlabel="times as much with the part forced on")
-    panel.set_yticks(range(ratio.size), [f"{part} ({scene})" for part, scene, *_ in texts(result)])
+    ratio = forced / np.where(left > 0.0, left, forced)
+    bars = panel.barh([f"{part} ({scene})" for part, scene, *_ in texts(result)], ratio - 1.0, left=1.0)
+    panel.bar_label(bars, [f"{low} to {high} {unit}" for _, _, low, high, unit in texts(result)], padding=4)
+    panel.set(xscale="log", xlim=(0.9, 300.0 * ratio.max()), xlabel="times as much with the part forced on")
     panel.invert_yaxis()
     return figure
 

@@ -2,7 +2,6 @@
 
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -25,12 +24,8 @@ COLUMNS = {
 }
 
 
-class Group(NamedTuple):
-    """Some asperities of one shape, with or without adhesion."""
-
-    kind: str
-    adhesive: bool
-    seeds: range
+Group = tuple[str, bool, range]
+"""Some asperities: shape, whether with adhesion, and their numbers."""
 
 
 def groups(count: int) -> list[Group]:
@@ -39,19 +34,19 @@ def groups(count: int) -> list[Group]:
     found = []
     for kind, weight in weights.items():
         size = round(0.5 * count * weight / sum(weights.values()) + 0.5)
-        starts = range(0, size, _GROUP_SIZE)
-        found += [Group(kind, adhesive, range(start, min(start + _GROUP_SIZE, size)))
-                  for adhesive in (False, True) for start in starts]  # fmt: skip
+        seeds = [range(start, min(start + _GROUP_SIZE, size)) for start in range(0, size, _GROUP_SIZE)]
+        found += [(kind, adhesive, each) for adhesive in (False, True) for each in seeds]
     return found
 
 
 def rows_of(group: Group) -> list[tuple[str, int, int, float, float, float]]:
     """Return a row of ``COLUMNS`` for each asperity of a group."""
+    kind, adhesive, seeds = group
     rows = []
-    for seed in group.seeds:
-        one = random_error(group.kind, group.adhesive, seed)
+    for seed in seeds:
+        one = random_error(kind, adhesive, seed)
         relative = abs(one.error / one.force), abs(one.stated / one.force)
-        rows.append((group.kind, int(group.adhesive), seed, *relative, one.distance))
+        rows.append((kind, int(adhesive), seed, *relative, one.distance))
     return rows
 
 

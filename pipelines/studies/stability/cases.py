@@ -80,6 +80,4 @@ def design(count: int) -> list[Case]:
     axes = [*AXES.values(), _ASPECT, *[AXES["distance"]] * (ASPERITIES - 1)]
     rows = [[axis.at(float(fraction)) for axis, fraction in zip(axes, row, strict=True)] for row in fractions]
     first = len(AXES) + 1
-    return [
-        Case(**dict(zip(Case._fields, row[:first], strict=False)), other_distances=tuple(row[first:])) for row in rows
-    ]
+    return [Case._make([*row[:first], tuple(row[first:])]) for row in rows]

@@ -32,7 +32,7 @@ class Reference:
         return -self.jkr.indentation(self.jkr.fold("indentation"))
 
     def value(self, control: str, distance: float) -> Number:
-        """Return the control at a distance to the fold; a radius may be of another state where none is stable."""
+        """Return the control at a distance to the fold; where the state does not touch, the radius at pull-off."""
         jkr, branch = self.jkr, "force" if control == "force" else "indentation"
         if jkr.work:
             value = jkr.under(branch, jkr.fold(branch)) * (1 - mp.mpf(distance))
@@ -41,12 +41,12 @@ class Reference:
         return jkr.radius(branch, value) if control == "contact_radius" else value
 
     def numbers(self, control: str, value: Number) -> list[Number]:
-        """Return what floats must hold of the result."""
+        """Return the numbers of the result that floats must hold."""
         a = value if control == "contact_radius" else self.jkr.radius(control, value)
         return [*natural_scales(self.jkr), *numbers_at(self.jkr, a)]
 
     def judge(self, control: str, got: Results) -> dict[str, Judged]:
-        """Return the errors and what is allowed."""
+        """Return the errors and those allowed."""
         return judge(self.jkr, control, got)
 
     def contact(self, indentation: Number) -> tuple[Number, Number]:
@@ -89,23 +89,21 @@ class DugdaleReference(Reference):
 
 
 class Verdict(NamedTuple):
-    """The judgement on one question."""
+    """The judgement on one question, with the worst error over what is allowed, and why it was refused or is wrong."""
 
     outcome: str
-    judged: Judged = Judged(0.0, 1.0)
-    """The worst of the results."""
+    excess: float = 0.0
     reason: str = ""
-    """Why it was refused or is wrong."""
 
 
 def on_results(judged: dict[str, Judged]) -> Verdict:
-    """Return "right" where all results are within what is allowed."""
+    """Return "right" where no error is above the one that is allowed."""
     if not judged:
         return Verdict(RIGHT)
     name, worst = max(judged.items(), key=lambda item: math.inf if math.isnan(item[1].excess) else item[1].excess)
     if worst.excess <= 1.0:
-        return Verdict(RIGHT, worst)
-    return Verdict(WRONG, worst, f"{name} is off by {worst.error:.2g}, allowed {worst.allowed:.2g}")
+        return Verdict(RIGHT, worst.excess)
+    return Verdict(WRONG, worst.excess, f"{name} is off by {worst.error:.2g}, allowed {worst.allowed:.2g}")
 
 
 def on_error(error: Exception, numbers: list[Number]) -> Verdict:

@@ -33,13 +33,6 @@ COUNTED, COUNTED_QUICKLY = 128, 16
 """Number of cases for each model with adhesion in which equilibria are counted."""
 EQUILIBRIUM: dict[Literal["jkr", "dugdale"], Any] = {"jkr": jkr_power._distance, "dugdale": equilibrium.state_along}
 """The kernel that evaluates an equilibrium, by adhesion model."""
-CHECK = {
-    "name": {"long_name": "what is changed"},
-    "law": {"long_name": "adhesion model"},
-    "kind": {"long_name": "shape"},
-    "error": named("difference over the largest magnitude"),
-    "allowed": named("difference that is allowed"),
-}
 WORKERS = 2
 
 
@@ -53,11 +46,11 @@ def measure(quick: bool) -> xr.Dataset:
         counted = COUNTED_QUICKLY if quick else COUNTED
         tried = pool.submit(in_new_process, equilibria_tried, counted, NUMBA_DISABLE_JIT="1")
         found = list(pool.map(judge_case, cases, models, chunksize=1 if quick else 4))
-    columns = zip(CHECK.items(), zip(*changes.result(), strict=True), strict=True)
-    over = ("counted_case", "counted_law")
-    return of_verdicts(cases, found).assign(
-        {f"change_{name}": ("change", list(values), attributes) for (name, attributes), values in columns}
-        | {"tried": (over, tried.result(), named("equilibria evaluated to find a contact")), over[1]: list(EQUILIBRIUM)}
+    changed = zip(("name", "law", "kind", "error", "allowed"), zip(*changes.result(), strict=True), strict=True)
+    result = of_verdicts(cases, found).assign({f"change_{name}": ("change", list(values)) for name, values in changed})
+    return result.assign(
+        tried=(("counted_case", "counted_law"), tried.result(), named("equilibria evaluated to find a contact")),
+        counted_law=list(EQUILIBRIUM),
     )
 
 
@@ -73,11 +66,9 @@ def of_verdicts(cases: list[Case], found: list[list[list[Verdict]]]) -> xr.Datas
     reasons = Counter[tuple[str, str]]()
     for i, row in enumerate(found):
         for j, answers in enumerate(row):
-            worst[i, j] = max((each.judged.excess for each in answers if each.outcome != REFUSED), default=np.nan)
-            for each in answers:
-                count[i, j, OUTCOMES.index(each.outcome)] += 1
+            worst[i, j] = max((each.excess for each in answers if each.outcome != REFUSED), default=np.nan)
+            count[i, j] = [sum(each.outcome == outcome for each in answers) for outcome in OUTCOMES]
             reasons.update((MODELS[j], each.reason) for each in answers if each.reason)
-    listed = reasons.most_common()
     axes = {name: ("case", [getattr(case, name) for case in cases], named(axis.long_name, axis.units))
             for name, axis in AXES.items()}  # fmt: skip
     return xr.Dataset(
@@ -85,9 +76,9 @@ def of_verdicts(cases: list[Case], found: list[list[list[Verdict]]]) -> xr.Datas
             "excess": (("case", "law"), worst, named("largest error over what is allowed")),
             "answers": (("case", "law", "outcome"), count, named("number of results")),
             **axes,
-            "reason_law": ("reason", [law for (law, _), _ in listed], {"long_name": "model of the refused or wrong"}),
-            "reason_text": ("reason", [text for (_, text), _ in listed], {"long_name": "why"}),
-            "reason_answers": ("reason", [number for _, number in listed], named("results with this reason")),
+            "reason_law": ("reason", [law for law, _ in reasons]),
+            "reason_text": ("reason", [text for _, text in reasons]),
+            "reason_answers": ("reason", list(reasons.values()), named("results refused or wrong for a reason")),
         },
         {"law": list(MODELS), "outcome": list(OUTCOMES)},
     )

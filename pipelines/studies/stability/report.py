@@ -26,7 +26,8 @@ def report(result: xr.Dataset) -> str:
         chosen = result.sel(law=model)
         cases, answers = int((chosen.answers.sum("outcome") > 0).sum()), chosen.answers.sum("case").to_numpy()
         outcomes.append([model, *map(str, (cases, *answers)), f"{float(chosen.excess.max()):.2f}"])
-    reasons = zip(*(result[f"reason_{name}"].to_numpy() for name in ("law", "answers", "text")), strict=True)
+    listed = result.sortby("reason_answers", ascending=False)
+    reasons = zip(*(listed[f"reason_{name}"].to_numpy() for name in ("law", "answers", "text")), strict=True)
     evaluated, changes = [], []
     for model in result.counted_law.to_numpy():
         values = result.tried.sel(counted_law=model).dropna("counted_case").to_numpy()

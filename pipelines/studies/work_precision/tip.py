@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from oracles.jkr import Asperity
@@ -115,33 +115,30 @@ def by_package(tip: Tip, shape: Shape) -> Curve:
 
 def by_springs(tip: Tip, count: int) -> Curve:
     """Compute by a row of springs for each indentation, and by one under dead load."""
-    state = rm.indent(
-        tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation, method="springs", springs=count
-    )
+    method: Any = {"method": "springs", "springs": count}
+    state = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation, **method)
     pull_off = Springs.of(tip.shape, MODULUS, WORK, count).pull_off_force()
     return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), (DEPTHS.size + 1) * count, pull_off)
 
 
 def by_root_finder(tip: Tip, g: Formula, reduced_load: Formula, tolerance: float, weight: int = 1) -> Curve:
     """Compute by scipy's brentq and minimiser; each g and each reduced load count ``weight`` evaluations."""
-    fold, count = tip.fold, 0
 
     def excess(a: float, delta: float) -> float:
-        nonlocal count
-        count += weight
         return float(g(np.array([a]))[0]) - release_stretch(a, MODULUS, WORK) - delta
 
     def tension(a: float) -> float:
-        nonlocal count
-        count += weight
         return float(load(reduced_load, np.array([a]))[0])
 
+    fold = tip.fold
     # xtol is a length: its default, 2e-12 m, leaves 2e-8 of such contacts
-    xtol, rtol = tolerance * fold, max(tolerance, _MIN_RTOL)
-    ends = fold, _DEEPEST * fold
-    radii = np.array([brentq(excess, *ends, args=(d,), xtol=xtol, rtol=rtol) for d in tip.indentation.tolist()])
+    xtol = tolerance * fold
+    given: Any = {"xtol": xtol, "rtol": max(tolerance, _MIN_RTOL), "full_output": True}
+    roots = [brentq(excess, fold, _DEEPEST * fold, args=(delta,), **given) for delta in tip.indentation.tolist()]
+    radii, calls = np.array([root for root, _ in roots]), [found.function_calls for _, found in roots]
     lowest = minimize_scalar(tension, bounds=(fold, 8.0 * fold), method="bounded", options={"xatol": xtol})
-    return Curve(load(reduced_load, radii), math.pi * radii**2, count + weight * radii.size, float(lowest.fun))
+    evaluations = weight * (sum(calls) + lowest.nfev + radii.size)
+    return Curve(load(reduced_load, radii), math.pi * radii**2, evaluations, float(lowest.fun))
 
 
 def by_vectors(tip: Tip, newton_steps: int) -> Curve:
