@@ -40,15 +40,15 @@ class LoadSeparation(NamedTuple):
     numerical_error: float
     """Bound on the error of the force along the path, over the largest magnitude of the force."""
     extremes: ValidityLimits
-    """The most that any contact comes to."""
+    """The extremes of all contacts."""
     visits: int
     """How often an asperity was visited."""
     tabor: float
     """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
     model: str
-    """The law of adhesion that was taken."""
+    """The adhesion model that was used."""
     warnings: tuple[str, ...] = ()
-    """What makes the ensemble itself doubtful."""
+    """Warnings that concern the ensemble itself."""
 
     @classmethod
     def of(
@@ -61,7 +61,7 @@ class LoadSeparation(NamedTuple):
         tabor: float,
         model: str,
     ) -> LoadSeparation:
-        """The law that ``total`` [row, step] comes to; OutOfRange where a variable is not representable."""
+        """Return the law from ``total`` [row, step]; OutOfRange where a variable is not representable."""
         results = {name: total[totals.TOTAL_INDEX[name]] for name in names}
         for name in _PER_AREA.intersection(names):
             with np.errstate(over="ignore"):  # refused below
@@ -70,14 +70,14 @@ class LoadSeparation(NamedTuple):
                 raise OutOfRange(f"{name} is not representable on a nominal area of {nominal_area:g} m2")
         largest, error = float(np.max(np.abs(total[totals.FORCE]))), float(np.max(total[totals.ERROR]))
         relative = error / largest if largest > 0.0 else 0.0
-        taken = extremes._replace(tabor=tabor if model == "jkr" else math.inf)
-        return cls(results, relative, taken, visits, tabor, model)
+        extremes = extremes._replace(tabor=tabor if model == "jkr" else math.inf)
+        return cls(results, relative, extremes, visits, tabor, model)
 
 
 def compute(
-    ensemble: Ensemble, route: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    ensemble: Ensemble, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> LoadSeparation:
-    """The law of ``ensemble`` along a route; E* [Pa].
+    """Return the law of ``ensemble`` along a path; E* [Pa].
 
     SceneError where a variable needs a nominal area and there is none, OutOfRange where the contact of an asperity is
     not representable.
@@ -88,26 +88,26 @@ def compute(
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
-    reach = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
-    adhesion = adhesion.resolved(reach.jkr_error)
+    validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
+    adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
-    total, reached, visits = loop.add_asperities(
+    total, max_radius, visits = loop.add_asperities(
         law,
         ensemble.height,
         columns,
         effective_modulus,
         adhesion,
-        route.separation,
-        route.memory,
+        path.separation,
+        path.memory,
         {totals.ERROR, totals.FORCE, *(totals.TOTAL_INDEX[name] for name in names)},
     )
-    extremes = ensemble.validity_limits(reached)
-    found = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, reach.tabor, adhesion.model)
-    return found._replace(warnings=ensemble.warnings)
+    extremes = ensemble.validity_limits(max_radius)
+    result = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, validity.tabor, adhesion.model)
+    return result._replace(warnings=ensemble.warnings)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
-    """Compile the sum for a shape and a law of adhesion, once, before several threads or a clock need it."""
+    """Compile the sum for a shape and an adhesion model, once, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
@@ -190,19 +190,19 @@ def load_separation(
         asked = Adhesion.checked(adhesion, work, strength)
     except RoughmdrError as error:
         raise error if isinstance(error, OutOfRange) else SceneError(str(error)) from None
-    path = np.atleast_1d(check_values("separation", separation, "m"))
-    if path.size == 0:
+    separations = np.atleast_1d(check_values("separation", separation, "m"))
+    if separations.size == 0:
         raise OutOfRange("separation is empty; it must hold at least one number")
     names = [variables] if isinstance(variables, str) else list(variables)
     for name in names:
         if name not in CURVE_VARIABLES:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
-    route = LoadingPath.along(path, unload=unload, adhesive=asked.work > 0.0)
+    path = LoadingPath.along(separations, unload=unload, adhesive=asked.work > 0.0)
     result = compute(
-        Ensemble.from_dataset(ensemble), route, effective_modulus=effective_modulus, adhesion=asked, variables=names
+        Ensemble.from_dataset(ensemble), path, effective_modulus=effective_modulus, adhesion=asked, variables=names
     )
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
-    way = Array(("step",), route.separation, COORDINATES["separation"].attrs)
-    doubts = [*result.warnings, *result.extremes.warnings]
-    return Labelled(data, {"separation": way, "branch": route.branch()}, warn_limits(doubts)).to_xarray()
+    distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
+    warnings = [*result.warnings, *result.extremes.warnings]
+    return Labelled(data, {"separation": distance, "branch": path.branch()}, warn_limits(warnings)).to_xarray()

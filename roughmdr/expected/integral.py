@@ -89,7 +89,8 @@ def integrate(
     firsts, offsets, table = curve.first, curve.offset, curve.table
     s_low, s_high, coefficients, errors = table.low, table.high, table.coefficients, table.error_bound
     n = _NODES.size
-    s, z, weight, weight_of_s, u, density, value, before, earlier = np.empty((9, n))
+    s, z, weight, weight_of_s, u, density, value = np.empty((7, n))
+    before, earlier = np.empty(n), np.empty(n)  # apart, so that vector code may rely on no overlap
     nodes = s, z, weight, weight_of_s
     products = 0
     for i in range(steps.size):

@@ -17,7 +17,7 @@ _NEGLIGIBLE = 1e-16  # of the largest value: such coefficients are roundings, an
 _LAST = 2  # of the coefficients, which tell how far the series is off
 
 _NODES, _TO_COEFFICIENTS = chebyshev_nodes(ORDER)
-_ENDS = np.array([-1.0, 1.0]) * (1.0 - 2.0**-26)  # just inside: what a function does there alone, no node sees
+_ENDS = np.array([-1.0, 1.0]) * (1.0 - 2.0**-26)  # just inside the ends, beyond the outermost nodes
 _AT_ENDS = np.polynomial.chebyshev.chebvander(_ENDS, ORDER - 1)
 _POINTS = np.concatenate([_NODES, _ENDS])
 

@@ -1,1 +1,1 @@
-"""One asperity: jitted scalars, floats in and floats out, and the laws that bundle them."""
+"""Kernels of one asperity: jitted scalars, floats in and floats out; ``choose`` returns those of a shape."""

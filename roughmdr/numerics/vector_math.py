@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 SERIES_UP_TO = 0.4142
-"""Up to here differences are series; the difference itself loses a digit and a half there, with many digits nothing."""
+"""Differences of arguments up to here are computed as series: directly they would lose a digit and a half."""
 
 _LOG_2_HIGH, _LOG_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # the first times a whole number is exact
 _PER_LOG_2 = 1.0 / math.log(2.0)

@@ -1,7 +1,7 @@
 """One flat-ended punch, its contact pinned to its edge: P = 2 E* b delta, with adhesion down to -dl(b) (H 44).
 
-With adhesion all is measured from the depth dl(b), where it lets go (K. Kendall, J. Phys. D 4 (1971) 1186); the state
-is the indentation over it, and so without adhesion, where the depth is b.
+The natural depth is dl(b), where it detaches (K. Kendall, J. Phys. D 4 (1971) 1186), or b without adhesion. The state
+is the indentation over it.
 """
 
 import math

@@ -40,7 +40,7 @@ def state(x: float, params: Floats) -> float:
 def branch(x: float, before: float, touched: bool, params: Floats) -> float:
     """The branch, 1, 2, ... or 0 for none, after a path in one direction to x from a state on branch ``before``.
 
-    It begins where it is ``touched``, at ONSET, and moves to the next stable root where its branch ends.
+    A contact begins on the first branch where it is ``touched``, and jumps to the next where its branch ends.
     """
     j = int(before)
     if j == 0 and touched:

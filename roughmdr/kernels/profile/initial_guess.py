@@ -1,4 +1,5 @@
-"""The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts; outside power laws.
+"""The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts of them; power laws
+outside.
 
 y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
 ``layout``.

@@ -61,10 +61,11 @@ def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, pa
 
 
 def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
-    """One step of Newton's method on the last branch under fixed grips, not below its foot: t, how far it was away, and
-    dt/dx.
+    """One step of Newton's method on the last branch under fixed grips, not below its foot: the new t, the distance
+    that the old one had to the state, and dt/dx.
 
-    So far away is it as the step, or as the step makes of the value: that of a steep power changes more than t.
+    The distance is the step, or the relative change of the value times the distance to the foot if that is larger: the
+    value of a steep power changes more than t.
     """
     value, slope = law.indentation_at(t, params)
     lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0
