@@ -81,10 +81,9 @@ def indent(
     OutOfRange
         Where an argument is out of its range (a force below the pull-off force, or below 0 without adhesion; a contact
         radius below 0), or a float cannot hold the answer.
-    ShapeError
-        Where the shape is none, or contact_radius does not determine the state.
-    RoughmdrError
-        Unless exactly one control is given, and E* in exactly one way.
+    ShapeError, RoughmdrError
+        Where the shape is none, or contact_radius does not determine the state; RoughmdrError unless exactly one
+        control is given, and E* in exactly one way.
 
     References
     ----------
@@ -103,7 +102,8 @@ def indent(
     if method == "springs" and adhesion != "jkr":
         raise RoughmdrError(f"adhesion is {adhesion!r}; with method='springs' it must be 'jkr'")
     control, raw = exactly_one("indent", indentation=indentation, force=force, contact_radius=contact_radius)
-    values = check_values(control, raw, ASPERITY[control].units)
+    unit = ASPERITY[control].units
+    values = check_values(control, raw, unit)
     asked = Adhesion.checked(adhesion, work, strength)
     contact = _contact(shape, effective_modulus_of(indent, material), asked, method, springs)
     solve = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
@@ -113,8 +113,7 @@ def indent(
     for name, numbers in results.items():
         lost = ~np.isfinite(numbers) | ((name == "contact_area") & (numbers == 0.0) & (results["contact_radius"] > 0.0))
         if lost.any():
-            worst = np.atleast_1d(values)[lost][0]
-            raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
+            raise OutOfRange(f"{name} at {control} = {np.atleast_1d(values)[lost][0]:g} {unit} is not representable")
     attrs = warn_limits(_warnings(shape, results["contact_radius"], contact.effective_modulus, asked))
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, attrs)
 
@@ -130,14 +129,10 @@ def pull_off(
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
-    work : float or str
-        Work of adhesion [J/m^2].
+    shape, work, **material
+        Profile, work of adhesion [J/m^2], and E*, adhesion and strength as in ``indent``.
     control : {"displacement", "force"}, optional
         Retraction under fixed grips, or under dead load.
-    **material
-        E*, adhesion and strength as in ``indent``.
 
     Returns
     -------
@@ -174,10 +169,8 @@ def pull_off(
     radius = results["contact_radius"]
     for name in names:
         if not np.isfinite(results[name]).all() or (asked.model == "jkr" and (radius == 0.0).any()):
-            raise OutOfRange(
-                f"{name} at pull-off is not representable: "
-                f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
-            )
+            given = f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
+            raise OutOfRange(f"{name} at pull-off is not representable: {given}")
     attrs = warn_limits(_warnings(shape, radius, contact.effective_modulus, asked))
     return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
 
@@ -190,14 +183,10 @@ def tabor(shape: Shape, *, work: float | str, strength: float | str, **material:
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
-    work : float or str
-        Work of adhesion [J/m^2], above 0.
-    strength : float or str
-        Stress of the attraction [Pa], above 0.
-    **material
-        E* as in ``indent``.
+    shape, **material
+        Profile and E* as in ``indent``.
+    work, strength : float or str
+        Work of adhesion [J/m^2] and stress of the attraction [Pa], above 0.
 
     Returns
     -------
@@ -263,11 +252,6 @@ def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion:
 def _dataset(results: Results, control: str | None, attrs: dict[str, str]) -> xr.Dataset:
     import xarray as xr
 
-    def dims(numbers: Floats) -> tuple[str, ...]:
-        return (control,) if control is not None and numbers.ndim else ()
-
-    return xr.Dataset(
-        {name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name != control},
-        coords={name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name == control},
-        attrs=attrs,
-    )
+    arrays = {name: ((control,) if n.ndim else (), n, ASPERITY[name].attrs) for name, n in results.items()}
+    coords = {} if control is None else {control: arrays.pop(control)}
+    return xr.Dataset(arrays, coords=coords, attrs=attrs)

@@ -62,10 +62,8 @@ def rough_line(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError where spectrum is none, or E* not given in exactly one way.
 
     References
     ----------
@@ -93,8 +91,7 @@ def rough_line(
     flat = top - given.ravel()
     count = np.searchsorted(depth, flat)
     with np.errstate(over="ignore", invalid="ignore"):  # refused by ``representable``
-        force = np.asarray(spring * np.maximum(count * flat - below[count], 0.0))
-        stiffness = np.asarray(spring * count, dtype=np.float64)
+        force, stiffness = spring * np.maximum(count * flat - below[count], 0.0), spring * count
         return RoughLine(representable("force", force, given), representable("stiffness", stiffness, given))
 
 
@@ -111,10 +108,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
         C(q) [m4] between ``long_wave`` and ``short_wave``, such as ``SelfAffine``.
     length : float or str
         Period of the line [m], at least the longest wave.
-    points : int
-        Number of points, more than two in the shortest wave.
-    seed : int
-        Seed of the phases, at least 0.
+    points, seed : int
+        Number of points, more than two in the shortest wave, and seed of the phases, at least 0.
 
     Returns
     -------
@@ -123,10 +118,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none.
+    OutOfRange, RoughmdrError
+        As ``rough_line``.
 
     References
     ----------
@@ -162,9 +155,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
 
 def _check_whole(name: str, value: int) -> int:
     try:
-        number = index(value)
+        if (number := index(value)) >= 0:
+            return number
     except TypeError:
-        raise OutOfRange(f"{name} is {value!r}; it must be a whole number of at least 0") from None
-    if number < 0:
-        raise OutOfRange(f"{name} is {number}; it must be a whole number of at least 0")
-    return number
+        pass
+    raise OutOfRange(f"{name} is {value!r}; it must be a whole number of at least 0")

@@ -47,10 +47,8 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Unless E* is given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError unless E* is given in exactly one way.
 
     References
     ----------
@@ -97,10 +95,8 @@ def persson_separation(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError where spectrum is none, or E* not given in exactly one way.
 
     References
     ----------
@@ -137,12 +133,8 @@ def persson_pressure(
     ----------
     separation : array_like, shape () or (n,)
         Mean gaps [m], above 0.
-    spectrum : SelfAffine
-        The spectrum of the surface.
-    gamma : float, optional
-        As in ``persson_separation``.
-    **material
-        E* as in ``persson_contact_fraction``.
+    spectrum, gamma, **material
+        As in ``persson_separation``; the spectrum must be a ``SelfAffine``.
 
     Returns
     -------
@@ -151,10 +143,8 @@ def persson_pressure(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range, or a float cannot hold the pressure over the modulus.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        As ``persson_separation``; OutOfRange also where a float cannot hold the pressure over the modulus.
 
     References
     ----------
@@ -182,15 +172,9 @@ def persson_pressure(
 
     closest, furthest = gap(np.array([_LOG_MAX, _LOG_MIN]))
     if not ((given > closest) & (given < furthest)).all():
-        raise OutOfRange(
-            f"separation is from {np.min(given):g} to {np.max(given):g} m; "
-            f"it must be above {closest:g} and below {furthest:g} m"
-        )
-
-    def excess(logarithm: Floats, h: Floats) -> Floats:
-        return gap(logarithm) - h
-
-    root = find_root(excess, (_LOG_MIN, _LOG_MAX), args=(given,))
+        extremes = f"from {np.min(given):g} to {np.max(given):g} m"
+        raise OutOfRange(f"separation is {extremes}; it must be above {closest:g} and below {furthest:g} m")
+    root = find_root(lambda logarithm, h: gap(logarithm) - h, (_LOG_MIN, _LOG_MAX), args=(given,))
     return np.asarray(unit * np.exp(root.x))
 
 
