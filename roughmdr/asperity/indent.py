@@ -45,25 +45,18 @@ def indent(
 ) -> xr.Dataset:
     """Compute the contact of one asperity with an elastic half-space under one control.
 
-    Exactly one of indentation, force and contact_radius is given: a number, a string with a unit such as "2 nm", or a
-    one-dimensional array.
-
     Parameters
     ----------
     shape : Shape or callable
         The profile; with method="springs" also a function f(r) [m] of an array of radii [m].
-    indentation : array_like, shape () or (n,), optional
-        [m]. The contact as on retraction; beyond pull-off force and contact radius are 0.
-    force : array_like, shape () or (n,), optional
-        [N]. The branch that is stable under dead load.
-    contact_radius : array_like, shape () or (n,), optional
-        [m]. The equilibrium with that radius, stable or not.
+    indentation, force, contact_radius : array_like, shape () or (n,), optional
+        Exactly one of them, in SI or as strings with a unit such as "2 nm". indentation [m]: the contact as on
+        retraction; beyond pull-off force and contact radius are 0. force [N]: the branch that is stable under dead
+        load. contact_radius [m]: the equilibrium with that radius, stable or not.
     work : float or str, optional
         Work of adhesion [J/m^2]; 0 for none.
-    method : {"exact", "springs"}, optional
-        "springs" solves a row of springs (``roughmdr.springs``) in place of the closed forms.
-    springs : int, optional
-        The number of springs, with method="springs".
+    method, springs : {"exact", "springs"} and int, optional
+        "springs" solves a row of so many springs (``roughmdr.springs``) in place of the closed forms.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
         adhesion="dugdale" needs strength [Pa]: the surfaces attract each other with that stress up to a gap of

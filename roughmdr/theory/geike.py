@@ -91,7 +91,8 @@ def rough_line(
     flat = top - given.ravel()
     count = np.searchsorted(depth, flat)
     with np.errstate(over="ignore", invalid="ignore"):  # refused by ``representable``
-        force, stiffness = spring * np.maximum(count * flat - below[count], 0.0), spring * count
+        force = np.asarray(spring * np.maximum(count * flat - below[count], 0.0))
+        stiffness = np.asarray(spring * count, dtype=np.float64)
         return RoughLine(representable("force", force, given), representable("stiffness", stiffness, given))
 
 

@@ -174,7 +174,11 @@ def persson_pressure(
     if not ((given > closest) & (given < furthest)).all():
         extremes = f"from {np.min(given):g} to {np.max(given):g} m"
         raise OutOfRange(f"separation is {extremes}; it must be above {closest:g} and below {furthest:g} m")
-    root = find_root(lambda logarithm, h: gap(logarithm) - h, (_LOG_MIN, _LOG_MAX), args=(given,))
+
+    def excess(logarithm: Floats, h: Floats) -> Floats:
+        return gap(logarithm) - h
+
+    root = find_root(excess, (_LOG_MIN, _LOG_MAX), args=(given,))
     return np.asarray(unit * np.exp(root.x))
 
 

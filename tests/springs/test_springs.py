@@ -13,7 +13,7 @@ from scipy.special import gamma
 
 import roughmdr as rm
 from roughmdr.springs import Springs, row
-from roughmdr.springs.transform import mdr_transform
+from roughmdr.springs.profile import mdr_transform
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 

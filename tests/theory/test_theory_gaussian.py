@@ -22,7 +22,7 @@ ALPHA = 2.5
 
 
 def ellipse_by_johnson(ratio: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
-    """k2/k1 and the factors of force and area, all from E* = p0 = a = 1 in Hertz's theory as K. L. Johnson has it (1985)."""
+    """k2/k1 and the factors of force and area, all from E* = p0 = a = 1 in Hertz's theory of K. L. Johnson (1985)."""
     e2 = 1 - ratio**2
     K, E = mp.ellipk(e2), mp.ellipe(e2)
     A, B = ratio / e2 * (K - E), ratio / e2 * (E / ratio**2 - K)
