@@ -212,7 +212,7 @@ def _contact(
     method: str,
     springs: int | None,
 ) -> Contact | Springs:
-    """The contact by its closed forms, or as a row of springs."""
+    """Return the contact by its closed forms, or as a row of springs."""
     if method not in ("exact", "springs"):
         raise RoughmdrError(f"method is {method!r}; it must be 'exact' or 'springs'")
     if method == "springs":
@@ -233,7 +233,7 @@ def _tabor(shape: Shape, effective_modulus: float, adhesion: Adhesion) -> float:
 
 
 def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion: Adhesion) -> list[str]:
-    """Where the contact radii [m] of a shape, or the range of its adhesion, leave what the theory supposes."""
+    """Return warnings of contact radii [m] of a shape, or a range of its adhesion, for which the theory is doubtful."""
     if not isinstance(shape, Shape):
         return []
     limits = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))

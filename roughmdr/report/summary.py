@@ -169,9 +169,8 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
 def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield which adhesion models were used, if the Tabor number is known."""
     if {"tabor_number", "adhesion_law"} <= set(result.variables):
-        model = result.variables["adhesion_law"]
-        names = model.attrs["flag_meanings"].split()
-        values = model.values[layout.done_of(result)]
+        names = result.variables["adhesion_law"].attrs["flag_meanings"].split()
+        values = _values(result, "adhesion_law")[layout.done_of(result)]
         counts = ", ".join(f"{names[i]} in {int((values == i).sum())}" for i in np.unique(values))
         tabor = _values(result, "tabor_number")
         if np.isfinite(tabor).any():

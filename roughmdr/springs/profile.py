@@ -120,8 +120,8 @@ def mdr_transform(heights: Floats) -> Floats:
         g = x sum (change of slope) acos(r/x) + x^2 sum (change of curvature) sqrt(1 - (r/x)^2).
 
     Both kernels are smooth in r away from x. So the edges of a block that lies apart from a spring are replaced by a
-    few, those of Chebyshev's points, and blocks are the larger the further away they lie: N log N evaluations instead
-    of N^2 (L. Greengard, V. Rokhlin, J. Comput. Phys. 73 (1987) 325, in one dimension).
+    few, at Chebyshev's points, and blocks grow with their distance: N log N evaluations instead of N^2
+    (L. Greengard, V. Rokhlin, J. Comput. Phys. 73 (1987) 325, in one dimension).
     """
     slope, curvature = _lines(heights)
     steps = np.stack([np.diff(slope, prepend=0.0), np.diff(curvature, prepend=0.0)])

@@ -38,10 +38,8 @@ def bush_gibson_thomas(
         4 sqrt(m0/(pi alpha)) above it.
     m0, m2, m4 : float
         Moments of the spectrum of a profile [m2], [1], [1/m2]: see ``roughmdr.spectrum.Moments``.
-    variable : {"pressure", "contact_fraction", "contact_density"}, optional
-        Force over nominal area [Pa], real over nominal area of contact [1], contacts per unit area [1/m2].
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+    variable, **material
+        "pressure" [Pa], "contact_fraction" [1] or "contact_density" [1/m2], and E*, as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -125,7 +123,7 @@ def bush_gibson_thomas_asymptote(*, pressure: ArrayLike, rms_slope: float, **mat
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
     rms_slope, **material
-        h' = sqrt(<|grad h|^2>) = sqrt(2 m2) [1], above 0; E* as in ``bush_gibson_thomas``.
+        h' = sqrt(<|grad h|^2>) = sqrt(2 m2) [1], above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------

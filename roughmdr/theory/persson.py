@@ -35,10 +35,8 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
     ----------
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
-    rms_slope : float
-        h' = sqrt(<|grad h|^2>) [1] over all waves, above 0.
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+    rms_slope, **material
+        h' = sqrt(<|grad h|^2>) [1] over all waves, above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -83,10 +81,8 @@ def persson_separation(
         Force over nominal area p [Pa], above 0: without pressure there is no finite gap.
     spectrum : Spectrum
         C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave`` [m], such as ``SelfAffine``.
-    gamma : float, optional
-        From 0 to 1; 0.4 to 0.5 in the literature [1]_, 1 in [2]_.
-    **material
-        E* as in ``persson_contact_fraction``.
+    gamma, **material
+        gamma from 0 to 1; 0.4 to 0.5 in the literature [1]_, 1 in [2]_. E* as in ``greenwood_williamson``.
 
     Returns
     -------

@@ -128,7 +128,7 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
         off = rm.pull_off(shape, effective_modulus=6.1e10, work=0.8)
         errors = []
         for count in counts:
-            coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).rows.row(length * float(off.contact_radius))
+            coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).row(length * float(off.contact_radius))
             errors.append(abs(float(coarse.release_indentation[:-1].min() / off.indentation) - 1.0))
         assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(expected, abs=0.5)
 
