@@ -29,8 +29,7 @@ class Contact(NamedTuple):
     effective_modulus: float
     adhesion: Adhesion
     params: Any
-    depth: tuple[float, float]
-    """Natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it."""
+    depth: tuple[float, float]  # natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it
     radius: float
     force: float
     stiffness: float

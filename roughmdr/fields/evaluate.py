@@ -208,7 +208,7 @@ def axis_stress(
 
 
 def _dataset(results: dict[str, Floats], name: str, at: Floats, attrs: dict[str, str]) -> xr.Dataset:
-    """``results`` over the coordinate ``name``, numbers without dimension; OutOfRange where they are not finite."""
+    """Return ``results`` over the coordinate ``name``, or without dimension; OutOfRange where they are not finite."""
     import xarray as xr
 
     for variable, numbers in results.items():

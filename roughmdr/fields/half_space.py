@@ -27,17 +27,14 @@ class HalfSpace(NamedTuple):
     """The half-space under one contact."""
 
     shape: Shape
-    profile: Profile | None
-    """None for a flat punch."""
+    profile: Profile | None  # None for a flat punch
     indentation: float
     radius: float
-    stretch: float
-    """delta - g(a) [m]: the indentation of the flat punch of the size of the contact, which is superposed."""
+    stretch: float  # delta - g(a) [m]: indentation of the flat punch of the size of the contact, which is superposed
     t: float
     width: float
     rise: float
-    params: Any
-    """Those of the shape, with room for what its profile precomputes."""
+    params: Any  # those of the shape, with room for what its profile precomputes
 
     @classmethod
     def of(cls, shape: Shape, modulus: float, work: float | str, **controls: float | str | None) -> "HalfSpace":
@@ -162,6 +159,6 @@ class HalfSpace(NamedTuple):
 
     @property
     def warnings(self) -> list[str]:
-        """Where the contact leaves the range in which the theory holds."""
+        """Warnings of a contact for which the theory is doubtful."""
         radius = np.array([self.radius])
         return validity.ValidityLimits.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings

@@ -32,15 +32,12 @@ class Integrand(NamedTuple):
     """The integrand on one piece of the profile."""
 
     weight: int
-    far: float
-    """r or z over width, of which the weight is a function."""
+    far: float  # r or z over width, of which the weight is a function
     substitution: int
     scale: float
-    base: float
-    """The profile is smooth in v = sqrt(x^2 - base^2)."""
+    base: float  # the profile is smooth in v = sqrt(x^2 - base^2)
     begin: float
-    rate: float
-    """t is begin + rate v; where the rate is 0 it is found from x."""
+    rate: float  # t is begin + rate v; where the rate is 0 it is found from x
 
 
 class Piece(NamedTuple):
@@ -48,8 +45,7 @@ class Piece(NamedTuple):
 
     low: float
     high: float
-    base: float
-    """The profile is smooth in v = sqrt(x^2 - base^2), over width, from ``v_low`` to ``v_high``."""
+    base: float  # the profile is smooth in v = sqrt(x^2 - base^2), over width, from v_low to v_high
     v_low: float
     v_high: float
 

@@ -1,6 +1,6 @@
 """Pictures of a result: mean and standard error of its variables over each loading and unloading."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,46 +29,23 @@ _MAX_LABELS = 16
 class OverlayLine(NamedTuple):
     """A curve drawn over a result: a variable in one cell, over the whole path."""
 
-    label: str
-    """Name of the theory curve; ``EXPECTED`` for the expected law of the scene."""
+    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene
     variable: str
     cell: int
     separation: Floats
-    values: Floats
-    """NaN where the theory gives none."""
+    values: Floats  # NaN where the theory gives none
 
 
 class _Curve(NamedTuple):
     """A variable in one cell of a result, over one loading or unloading."""
 
     cell: int
-    pass_number: int
-    """Counts the loadings and unloadings of the path, from 0."""
+    pass_number: int  # counts the loadings and unloadings of the path, from 0
     branch: str
     separation: Floats
     mean: Floats
-    error: Floats
-    """Standard error of the mean; NaN if there is none."""
-    runs: Floats
-    """[realization, step]; computed realisations, none if only statistics were kept."""
-
-
-class _Panel(NamedTuple):
-    """The curves of one variable, a label for each cell, and overlaid lines, each with its style."""
-
-    curves: list[_Curve]
-    labels: list[str]
-    overlay: list[tuple[OverlayLine, dict[str, Any]]]
-    h_scale: float
-    scale: float
-    """Separation and variable are divided by these."""
-
-    def draw_means(self, ax: "Axes", linewidth: float) -> None:
-        for curve in self.curves:
-            style = _curve_style(curve, self.labels)
-            ax.plot(curve.separation / self.h_scale, curve.mean / self.scale, lw=linewidth, **style)
-        for line, style in self.overlay:
-            ax.plot(line.separation / self.h_scale, line.values / self.scale, **style)
+    error: Floats  # standard error of the mean; NaN if there is none
+    runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
 
 
 def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[OverlayLine] = ()) -> None:
@@ -83,7 +60,8 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Overlay
 
     if not done_of(result).any():
         raise StoreError("there is nothing to draw: no run was computed")
-    rows, columns = -(-len(names) // min(2, len(names))), min(2, len(names))
+    columns = min(2, len(names))
+    rows = -(-len(names) // columns)
     cells, overlays = cells_of(result), list(dict.fromkeys(line.label for line in lines))
     legend_height = 0.2 * (min(len(cells), _MAX_LABELS) + len(overlays)) if len(cells) > 1 else 0.0
     figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + legend_height), layout="constrained")
@@ -148,7 +126,14 @@ def _draw_panel(
     h_scale, h_prefix = _si_scale(np.concatenate([curve.separation for curve in curves]))
     visible = _visible_values(name, curves)
     scale, prefix = (1.0, "") if units == "1" else _si_scale(visible, power=2 if units == "m2" else 1)
-    panel = _Panel(curves, labels, overlay, h_scale, scale)
+
+    def draw_means(axes: "Axes", linewidth: float) -> None:
+        for curve in curves:
+            style = _curve_style(curve, labels)
+            axes.plot(curve.separation / h_scale, curve.mean / scale, lw=linewidth, **style)
+        for line, style in overlay:
+            axes.plot(line.separation / h_scale, line.values / scale, **style)
+
     for curve in curves:
         h, mean, error = curve.separation / h_scale, curve.mean / scale, curve.error / scale
         colour = _curve_style(curve, labels)["color"]
@@ -156,11 +141,12 @@ def _draw_panel(
             ax.plot(h, curve.runs.T / scale, color=colour, lw=0.3, alpha=0.25)
         if name != "stiffness" or curve.branch == "loading":  # where contacts detach its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
-    panel.draw_means(ax, 2.6 if len(labels) == 1 else 1.6)
+    draw_means(ax, 2.6 if len(labels) == 1 else 1.6)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
-        _add_tension_inset(ax, panel)
+        h = np.concatenate([curve.separation for curve in curves]) / h_scale
+        _add_tension_inset(ax, h, np.concatenate([curve.mean for curve in curves]) / scale, draw_means)
     low, high = float(visible.min()) / scale, float(visible.max()) / scale
     if high > low:
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
@@ -202,16 +188,14 @@ def _cell_colour(cell: int, cells: int) -> Any:
     return colormaps["viridis"](0.92 * cell / (cells - 1))
 
 
-def _add_tension_inset(ax: "Axes", panel: _Panel) -> None:
+def _add_tension_inset(ax: "Axes", h: Floats, values: Floats, draw_means: "Callable[[Axes, float], None]") -> None:
     """Add an inset of the tension if it is too small beside the compression to be seen."""
-    h = np.concatenate([curve.separation for curve in panel.curves]) / panel.h_scale
-    values = np.concatenate([curve.mean for curve in panel.curves]) / panel.scale
     lowest = float(values.min())
     tense = h[values < 0.02 * lowest]
     if not -0.2 * values.max() < lowest < 0.0 or np.ptp(tense) == 0.0:
         return
     inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
-    panel.draw_means(inset, 1.8)
+    draw_means(inset, 1.8)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     inset.set(xlim=(tense.min(), tense.max()), ylim=(1.3 * lowest, -1.3 * lowest))
     inset.tick_params(labelsize=7)

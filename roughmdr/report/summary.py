@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from roughmdr.batch.plan import Plan
 
 _MAX_CELLS = 30
+_NOT_KNOWN = "not known: no run was computed"
 _HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 
 
@@ -37,9 +38,9 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
 
 
 def _memory(estimate: "Estimate") -> str:
-    total, resident = format_bytes(estimate.memory), format_bytes(estimate.resident)
+    total, resident, available = map(format_bytes, (estimate.memory, estimate.resident, estimate.available_memory))
     too_much = estimate.memory - estimate.resident > estimate.available_memory
-    warning = f"; it can get only {format_bytes(estimate.available_memory)} more" if too_much else ""
+    warning = f"; it can get only {available} more" if too_much else ""
     return f"about {total}, of which {resident} for Python and its packages{warning}"
 
 
@@ -57,6 +58,10 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run."""
     attrs = result.attrs
     realizations, steps = layout.realizations_of(result), result.sizes["step"]
+    time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
+    if elapsed is not None:
+        time = f"{format_seconds(elapsed)}; {time}, over all workers"
+    errors = _values(result, "numerical_error")[layout.done_of(result)]
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(layout.stored_variables(result))),
@@ -66,8 +71,8 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
         *_indent("failed", describe_failed(result).splitlines()),
         *_indent("warning", attrs.get("warnings", "").splitlines()),
-        ("run time", _run_time(result, elapsed)),
-        ("error", _error(result)),
+        ("run time", time),
+        ("error", f"numerical error at most {errors.max():.1e} of the largest force" if errors.size else _NOT_KNOWN),
     ]
     return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines())])
 
@@ -118,18 +123,6 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
 
 
-def _run_time(result: Labelled, elapsed: float | None) -> str:
-    work = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
-    return work if elapsed is None else f"{format_seconds(elapsed)}; {work}, over all workers"
-
-
-def _error(result: Labelled) -> str:
-    errors = _values(result, "numerical_error")[layout.done_of(result)]
-    if not errors.size:
-        return "not known: no run was computed"
-    return f"numerical error at most {errors.max():.1e} of the largest force"
-
-
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the pull-off force of each cell, and how it is defined."""
     if "force" not in layout.stored_variables(result):
@@ -160,7 +153,7 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
     mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
     tensile = int(pull_off.tensile[cell])
     if tensile == 0:
-        return "none: never tensile" if pull_off.curves[cell] else "not known: no run was computed"
+        return "none: never tensile" if pull_off.curves[cell] else _NOT_KNOWN
     spread = "" if math.isnan(error) else f" ± {error:.2g} N"
     share = "" if tensile == pull_off.curves[cell] else f", {tensile} of {pull_off.curves[cell]} tensile"
     return f"{mean:.4g} N{spread} [{pull_off.change[cell]:.1g} N]{share}"

@@ -28,8 +28,7 @@ class TheoryCurve(NamedTuple):
     evaluate: Callable[[Cell, Variable], Floats]
     """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
     variables: tuple[Variable, ...] = get_args(Variable)
-    note: str = ""
-    """How the theory differs from the scene."""
+    note: str = ""  # how the theory differs from the scene
 
 
 class _Heights(NamedTuple):

@@ -211,8 +211,7 @@ class _Summits(NamedTuple):
     contact: Contact
     heights: Heights
     density: float
-    attraction: float = 0.0
-    """Force [N] that is taken from that of every contact."""
+    attraction: float = 0.0  # force [N] that is taken from that of every contact
 
     @classmethod
     def of(

@@ -35,14 +35,10 @@ _S_MAX = 64.0  # heights up to 39, and 9 deviations beyond
 class Ellipses(NamedTuple):
     """Hertz's contacts of paraboloids with principal curvatures k1 >= k2 by the ratio b/a of their axes."""
 
-    spread: Floats
-    """(k1 - k2)/(k1 + k2)."""
-    spread_slope: Floats
-    """Its derivative with respect to b/a."""
-    force: Floats
-    """P/[4/3 E* (k1 k2)^(-1/4) delta^(3/2)]."""
-    area: Floats
-    """A/[pi (k1 k2)^(-1/2) delta]."""
+    spread: Floats  # (k1 - k2)/(k1 + k2)
+    spread_slope: Floats  # its derivative with respect to b/a
+    force: Floats  # P/[4/3 E* (k1 k2)^(-1/4) delta^(3/2)]
+    area: Floats  # A/[pi (k1 k2)^(-1/2) delta]
 
     @classmethod
     def of(cls, ratio: Floats) -> "Ellipses":

@@ -39,14 +39,17 @@ class Heights(NamedTuple):
 
     density: Callable[[Floats], Floats]
     edges: Floats
-    endless: bool = False
-    """Whether the support goes on beyond the last edge."""
+    endless: bool = False  # whether the support goes on beyond the last edge
 
     @classmethod
     def of(cls, owner: str, std: float | str | None, heights: Distribution | None) -> "Heights":
         """Return normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
         exactly_one(owner, std=std, heights=heights)
-        return _of_distribution(heights) if std is None else _normal(check_number("std", std, "m"))
+        if std is None:
+            return _of_distribution(heights)
+        deviation = check_number("std", std, "m")
+        scale = 1.0 / (deviation * math.sqrt(2.0 * math.pi))
+        return cls(lambda z: scale * np.exp(-0.5 * (z / deviation) ** 2), deviation * NORMAL_EDGES)
 
     def mean(self, start: Floats, value: Callable[[Rows, Floats], Floats]) -> Floats:
         """Return ∫ value(row, z - start) density(z) dz over z >= start, for each start.
@@ -73,11 +76,6 @@ class Heights(NamedTuple):
                     "heights have too heavy a tail: the mean over the summits is not finite, or does not converge"
                 )
         return values
-
-
-def _normal(std: float) -> Heights:
-    scale = 1.0 / (std * math.sqrt(2.0 * math.pi))
-    return Heights(lambda z: scale * np.exp(-0.5 * (z / std) ** 2), std * NORMAL_EDGES)
 
 
 def _of_distribution(given: Distribution | None) -> Heights:

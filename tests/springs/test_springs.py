@@ -12,7 +12,7 @@ from figures.springs_pictures import PICTURES
 from scipy.special import gamma
 
 import roughmdr as rm
-from roughmdr.springs import Springs, row
+from roughmdr.springs import Springs
 from roughmdr.springs.profile import mdr_transform
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
@@ -245,7 +245,7 @@ def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, o
 
 
 def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(row, "_LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
+    monkeypatch.setattr("roughmdr.springs._LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
     with pytest.raises(rm.OutOfRange, match="grows without end"):
         rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 
