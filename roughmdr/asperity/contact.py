@@ -149,7 +149,7 @@ class Contact(NamedTuple):
         a = np.where(in_contact, radius, self.radius)
         state = apply(law.state_of_radius, a, self.radius, self.params)
         beside_fold = state
-        if law.adhesive and not law.iterative:  # the folds of rows lie between the floats
+        if law.adhesive and not law.iterative:  # other folds lie between the floats
             above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             beside_fold = np.where(state == 0.0, above, state)
         force, stiffness = self._radius_force_stiffness(state)[1], self._radius_force_stiffness(beside_fold)[2]
