@@ -32,38 +32,18 @@ if TYPE_CHECKING:
         TruncatedParaboloid,
     )
 
-_HOME = {
-    "CappedParaboloid": "shapes",
-    "Cone": "shapes",
-    "FlatPunch": "shapes",
-    "LimitWarning": "errors",
-    "OutOfRange": "errors",
-    "Paraboloid": "shapes",
-    "PowerLaw": "shapes",
-    "PowerSeries": "shapes",
-    "RoughmdrError": "errors",
-    "RoundedCone": "shapes",
-    "RoundedPunch": "shapes",
-    "Scene": "scene",
-    "SceneError": "errors",
-    "ShapeError": "errors",
-    "Sphere": "shapes",
-    "Tabulated": "shapes",
-    "StoreError": "errors",
-    "TruncatedCone": "shapes",
-    "TruncatedParaboloid": "shapes",
-    "axis_stress": "fields.evaluate",
-    "effective_modulus": "schema.material",
-    "equilibria": "asperity.equilibria",
-    "generate": "ensemble",
-    "indent": "asperity.indent",
-    "load_separation": "aggregate",
-    "pressure": "fields.evaluate",
-    "pull_off": "asperity.indent",
-    "run": "runner.run",
-    "surface_displacement": "fields.evaluate",
-    "tabor": "asperity.indent",
+_ROOMS = {
+    "aggregate": ("load_separation",),
+    "asperity.equilibria": ("equilibria",),
+    "asperity.indent": ("indent", "pull_off", "tabor"),
+    "ensemble": ("generate",),
+    "errors": ("LimitWarning", "OutOfRange", "RoughmdrError", "SceneError", "ShapeError", "StoreError"),
+    "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
+    "runner.run": ("run",),
+    "scene": ("Scene",),
+    "schema.material": ("effective_modulus",),
 }
+"""Public names by the module that holds them; the others are modules, or shapes."""
 
 __all__ = [
     "CappedParaboloid",
@@ -106,9 +86,9 @@ def __getattr__(name: str) -> Any:
         return import_module("importlib.metadata").version("roughmdr")
     if name in ("spectrum", "theory"):
         return import_module(f"roughmdr.{name}")
-    if name in _HOME:
-        value = getattr(import_module(f"roughmdr.{_HOME[name]}"), name)
-        globals()[name] = value
+    if name in __all__:
+        module = next((module for module, names in _ROOMS.items() if name in names), "shapes")
+        value = globals()[name] = getattr(import_module(f"roughmdr.{module}"), name)
         return value
     raise AttributeError(f"module 'roughmdr' has no attribute {name!r}")
 

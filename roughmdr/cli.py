@@ -107,14 +107,8 @@ def run(
         from roughmdr.runner.run import execute
 
         planned = make_plan(validated)
-    result = execute(
-        planned,
-        output,
-        Backend(scheduler, workers, _tls(**tls_files)),
-        resume=resume,
-        quiet=quiet,
-        command=_command_line(),
-    )
+    backend = Backend(scheduler, workers, _tls(**tls_files))
+    result = execute(planned, output, backend, resume=resume, quiet=quiet, command=_command_line())
     if not quiet:
         print_text(describe_result(result, time.perf_counter() - started))
         print_text(f"result       {click.format_filename(output)}")
@@ -124,15 +118,16 @@ def run(
         sys.exit(INCOMPLETE)
 
 
-def _tls(tls_ca: Path | None, tls_cert: Path | None, tls_key: Path | None) -> "Tls | None":
+def _tls(**files: Path | None) -> "Tls | None":
     """Return the TLS files, None if none is given; RoughmdrError if only some are."""
-    if tls_ca is None and tls_cert is None and tls_key is None:
+    given = {option.removeprefix("tls_"): str(file) for option, file in files.items() if file is not None}
+    if not given:
         return None
-    if tls_ca is None or tls_cert is None or tls_key is None:
+    if len(given) < len(files):
         raise RoughmdrError("--tls-ca, --tls-cert and --tls-key must be given together")
     from roughmdr.runner.cluster import Tls
 
-    return Tls(str(tls_ca), str(tls_cert), str(tls_key))
+    return Tls(**given)
 
 
 @main.command()
@@ -185,15 +180,12 @@ def plot(
         from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
 
         planned = plan_of_result(result, data)
-        for wanted, title, overlay in (
-            (with_expected, "expected", overlay_expected),
-            (with_theory, "theory", overlay_theory),
-        ):
-            if wanted:
-                drawn = overlay(planned, names)
-                lines += drawn.lines
-                for remark in drawn.remarks:
-                    print_text(f"{title:<12} {remark}")
+        wanted = [("expected", overlay_expected)] * with_expected + [("theory", overlay_theory)] * with_theory
+        for title, overlay in wanted:
+            drawn = overlay(planned, names)
+            lines += drawn.lines
+            for remark in drawn.remarks:
+                print_text(f"{title:<12} {remark}")
     plot(data, output, names, lines)
     print_text(f"picture      {click.format_filename(output)}")
 
@@ -206,17 +198,14 @@ def info(result: Path, cells: bool) -> None:
 
     Prints sizes, the pull-off force with its error, run time, seed, versions and the scene.
     """
+    from roughmdr.report.summary import describe_cells, describe_origin, describe_result
     from roughmdr.storage.result_file import read_result
 
     data = read_result(result)
     _warn_if_changed(result, data)
     if cells:
-        from roughmdr.report.cell_table import describe_cells
-
         print_text(describe_cells(data))
         return
-    from roughmdr.report.summary import describe_origin, describe_result
-
     print_text(describe_result(data))
     print_text(describe_origin(data, result.stat().st_size))
 
@@ -249,11 +238,7 @@ def new(scene: Path) -> None:
 @click.argument("scene", type=_FILE)
 @click.option("-o", "--output", type=_OUTPUT, required=True, help="netCDF file to write.")
 @click.option(
-    "--realization",
-    type=click.IntRange(0, 999_999_999),
-    default=0,
-    show_default=True,
-    help="Which realisation.",
+    "--realization", type=click.IntRange(0, 999_999_999), default=0, show_default=True, help="Which realisation."
 )
 @_fresh
 @_changes

@@ -8,14 +8,10 @@ from typing import NamedTuple
 class Fault(NamedTuple):
     """One thing that is wrong with a scene; printed as "location: key = value: message"."""
 
-    key: str
-    """Dotted key; empty if no single key is at fault."""
-    value: str
-    """Value as it stands in the scene; empty if there is none to show."""
-    message: str
-    """What is wrong with it, and what is allowed."""
-    location: str = ""
-    """File and line, or "--set"; empty if there is none."""
+    key: str  # dotted; empty if no single key is at fault
+    value: str  # as it stands in the scene; empty if there is none to show
+    message: str  # the fault, and what is allowed
+    location: str = ""  # file and line, or "--set"; empty if there is none
 
     def __str__(self) -> str:
         subject = f"{self.key} = {self.value}" if self.value else self.key

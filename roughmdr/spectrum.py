@@ -24,12 +24,9 @@ MIN_ALPHA = 1.5
 class Moments(NamedTuple):
     """Moments of the spectrum of a profile (M. S. Longuet-Higgins, Phil. Trans. R. Soc. A 249 (1957) 321)."""
 
-    m0: float
-    """<h^2> [m2]."""
-    m2: float
-    """<(dh/dx)^2> [1]; the r.m.s. slope of the surface is sqrt(2 m2)."""
-    m4: float
-    """<(d2h/dx2)^2> [1/m2]."""
+    m0: float  # <h^2> [m2]
+    m2: float  # <(dh/dx)^2> [1]; the r.m.s. slope of the surface is sqrt(2 m2)
+    m4: float  # <(d2h/dx2)^2> [1/m2]
 
     @classmethod
     def checked(cls, m0: float | str, m2: float, m4: float | str) -> Moments:
@@ -99,14 +96,10 @@ def check_wavelengths(long_wave: float | str, short_wave: float | str) -> tuple[
 class SelfAffine(NamedTuple):
     """A self-affine spectrum: C(q) = level (q/q0)^(-2 - 2 hurst) between the wave numbers q0 and q1, 0 elsewhere."""
 
-    hurst: float
-    """Hurst exponent [1]."""
-    long_wave: float
-    """2 pi/q0 [m]."""
-    short_wave: float
-    """2 pi/q1 [m]."""
-    level: float
-    """C(q0) [m4]."""
+    hurst: float  # exponent [1]
+    long_wave: float  # 2 pi/q0 [m]
+    short_wave: float  # 2 pi/q1 [m]
+    level: float  # C(q0) [m4]
 
     @classmethod
     def of(
@@ -126,10 +119,8 @@ class SelfAffine(NamedTuple):
             Hurst exponent [1], from 0 to 1.
         long_wave, short_wave : float or str
             Longest and shortest wavelength [m].
-        rms_height : float or str, optional
-            sqrt(<h^2>) [m]. Exactly one of rms_height and rms_slope is given.
-        rms_slope : float, optional
-            sqrt(<|grad h|^2>) [1].
+        rms_height, rms_slope : float or str, optional
+            One of sqrt(<h^2>) [m] and sqrt(<|grad h|^2>) [1].
 
         Returns
         -------
@@ -138,10 +129,8 @@ class SelfAffine(NamedTuple):
 
         Raises
         ------
-        OutOfRange
-            Where a number is out of its range.
-        RoughmdrError
-            Unless exactly one of rms_height and rms_slope is given.
+        OutOfRange, RoughmdrError
+            Where a number is out of its range; RoughmdrError unless exactly one of rms_height and rms_slope is given.
 
         References
         ----------

@@ -53,7 +53,7 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
     contact = Springs.of(tip, MODULUS, WORK, DRAWN)
     state = contact.follow(path)
     radius, force = state["contact_radius"], state["force"]
-    row, _, _ = next(contact.rows.fitted(path.max(keepdims=True), loaded=False))
+    row, _, _ = next(contact.fitted(path.max(keepdims=True), loaded=False))
     exact = rm.indent(tip, **_MATERIAL, indentation=path).force.to_numpy()
     exact[:points][loading < 0.0] = 0.0  # not yet in contact
     stages = {

@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
@@ -28,8 +29,7 @@ class Contact(NamedTuple):
     effective_modulus: float
     adhesion: Adhesion
     params: Any
-    depth: tuple[float, float]
-    """Natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it."""
+    depth: tuple[float, float]  # natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it
     radius: float
     force: float
     stiffness: float
@@ -53,13 +53,9 @@ class Contact(NamedTuple):
                 raise OutOfRange(f"{strength}, {reason}; it must be larger")
             scales = law.scales(effective_modulus, adhesion.work, width, rise, params)
             contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
-        contact._check(
-            indentation=contact.depth[0],
-            contact_radius=contact.radius,
-            force=contact.force,
-            stiffness=contact.stiffness,
-        )
-        return contact._replace(depth=contact._exact(contact.depth, params))
+        depth, radius, force, stiffness = scales
+        contact._check(indentation=depth[0], contact_radius=radius, force=force, stiffness=stiffness)
+        return contact._replace(depth=contact._exact(depth, params))
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
         """Return the force [N] that force control is reduced by, its radius [m], and params under dead load."""
@@ -110,13 +106,8 @@ class Contact(NamedTuple):
         one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
         beside_fold = np.where(delta == onset, apply(law.state, one_step_above, self.params), state)
         radius, force, _ = self._radius_force_stiffness(state)
-        results = {
-            "force": force,
-            "contact_radius": radius,
-            "stiffness": self._radius_force_stiffness(beside_fold)[2],
-            **self._cohesive_radius(state),
-        }
-        return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
+        stiffness = self._radius_force_stiffness(beside_fold)[2]
+        return self._results(in_contact, state, force=force, contact_radius=radius, stiffness=stiffness)
 
     def at_force(self, force: Floats) -> Results:
         """Return the contact on the branch that is stable under dead load; OutOfRange where there is none."""
@@ -131,13 +122,9 @@ class Contact(NamedTuple):
         radius, _, stiffness = self._radius_force_stiffness(state)
         if law.radius_of_force is not None:
             radius = scale_radius * apply(law.radius_of_force, distance, params)
-        results = {
-            "indentation": self._indentation(state),
-            "contact_radius": radius,
-            "stiffness": stiffness,
-            **self._cohesive_radius(state),
-        }
-        return {**{name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}, "force": force}
+        delta = self._indentation(state)
+        results = self._results(in_contact, state, indentation=delta, contact_radius=radius, stiffness=stiffness)
+        return {**results, "force": force}
 
     def at_radius(self, radius: Floats) -> Results:
         """Return the equilibrium with each radius, stable or not; zeros where it is 0."""
@@ -148,13 +135,12 @@ class Contact(NamedTuple):
             raise ShapeError(
                 f"contact_radius does not determine the state of a flat punch: it is always {shape.limit:g} m"
             )
-        if shape.flat:
-            on_the_flat = (radius > 0.0) & (radius < self.radius)
-            if on_the_flat.any():
-                raise ShapeError(
-                    f"contact_radius is {radius[on_the_flat][0]:g} m, on the flat of the {shape.name}, where contacts "
-                    f"are not stable; it must be 0, or at least {self.radius:g} m"
-                )
+        on_the_flat = (radius > 0.0) & (radius < self.radius) & shape.flat
+        if on_the_flat.any():
+            raise ShapeError(
+                f"contact_radius is {radius[on_the_flat][0]:g} m, on the flat of the {shape.name}, where contacts "
+                f"are not stable; it must be 0, or at least {self.radius:g} m"
+            )
         if self.adhesion.cohesive and (radius == 0.0).any():
             raise ShapeError(
                 "contact_radius is 0 m, which does not determine the state: the surfaces can attract each other"
@@ -163,16 +149,12 @@ class Contact(NamedTuple):
         a = np.where(in_contact, radius, self.radius)
         state = apply(law.state_of_radius, a, self.radius, self.params)
         beside_fold = state
-        if law.adhesive and not law.iterative:  # the folds of rows lie between the floats
+        if law.adhesive and not law.iterative:  # other folds lie between the floats
             above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             beside_fold = np.where(state == 0.0, above, state)
-        results = {
-            "indentation": self._indentation(state),
-            "force": self._radius_force_stiffness(state)[1],
-            "stiffness": self._radius_force_stiffness(beside_fold)[2],
-            **self._cohesive_radius(state),
-        }
-        return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
+        force, stiffness = self._radius_force_stiffness(state)[1], self._radius_force_stiffness(beside_fold)[2]
+        delta = self._indentation(state)
+        return self._results(in_contact, state, indentation=delta, force=force, stiffness=stiffness)
 
     def _radius_force_stiffness(self, state: Floats) -> tuple[Floats, Floats, Floats]:
         """Return contact radius [m], force [N] and stiffness [N/m] of each state."""
@@ -181,18 +163,16 @@ class Contact(NamedTuple):
             parts = apply_all(law.radius_force_stiffness, state, params)
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
-    def _cohesive_radius(self, state: Floats) -> Results:
-        """Return the cohesive radius [m] of each state, where adhesion has a range."""
-        if not self.law.cohesive:
-            return {}
-        return {"cohesive_radius": self.radius * apply(self.law.cohesive_radius, state, self.params)}
+    def _results(self, in_contact: NDArray[np.bool_], state: Floats, **results: Floats) -> Results:
+        """Return results, with the cohesive radius [m] where adhesion has a range; zeros out of contact."""
+        if self.law.cohesive:
+            results["cohesive_radius"] = self.radius * apply(self.law.cohesive_radius, state, self.params)
+        return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
 
     def _indentation(self, state: Floats) -> Floats:
         """Return the indentation [m] of each state."""
         distance = apply(self.law.reduced_control, state, self.params)
-        if not self.law.adhesive:
-            return self.depth[0] * distance
-        return self.depth[0] * (distance - 1.0) - self.depth[1]
+        return self.depth[0] * (distance - 1.0) - self.depth[1] if self.law.adhesive else self.depth[0] * distance
 
 
 def _prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:

@@ -13,7 +13,6 @@ from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
-from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_scalar
 from roughmdr.schema.material import Material, effective_modulus_of
 from roughmdr.shapes import Shape
@@ -22,7 +21,6 @@ from roughmdr.variables import ASPERITY
 if TYPE_CHECKING:
     import xarray as xr
 
-_NAMES = ("contact_radius", "force", "contact_area", "stiffness")
 _SMALLEST = 1e-150  # of the radius of the first fold: where the search for a small contact begins
 
 
@@ -35,14 +33,10 @@ def equilibria(
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
-    work : float or str
-        Work of adhesion [J/m^2], with JKR; 0 for none.
-    indentation : float or str
-        [m].
-    **material
-        E* as in ``indent``.
+    shape, **material
+        The profile, and E* as in ``indent``.
+    work, indentation : float or str
+        Work of adhesion [J/m^2], with JKR, 0 for none; approach past first touch [m].
 
     Returns
     -------
@@ -58,7 +52,7 @@ def equilibria(
 
     References
     ----------
-    .. [1] D. Maugis, Contact, Adhesion and Rupture of Elastic Solids (2000), chapter 4.
+    .. [1] D. Maugis, Contact, Adhesion and Rupture of Elastic Solids (2000).
 
     Examples
     --------
@@ -76,21 +70,18 @@ def equilibria(
     with np.errstate(all="ignore"):  # what overflows is refused below
         states = sorted([*_stable(contact, delta), *_unstable(contact, delta)])
     a, force, stiffness = np.array(states, dtype=np.float64).reshape(-1, 3).T
-    results = dict(zip(_NAMES, (a, force, math.pi * a * a, stiffness), strict=True))
+    results = {"contact_radius": a, "force": force, "contact_area": math.pi * a * a, "stiffness": stiffness}
     for name, values in results.items():
         if not np.isfinite(values).all():
             raise OutOfRange(f"{name} at indentation = {delta:g} m is not representable")
     # k/(2 E* a) is at most 1 where the contact is stable under fixed grips, and at least 3 where it is not.
     stable = stiffness <= 4.0 * effective_modulus * a
-    data = {name: ("equilibrium", values, ASPERITY[name].attrs) for name, values in results.items()}
-    return xr.Dataset(
-        {
-            **data,
-            "stable_displacement": ("equilibrium", stable, {"long_name": "stable under fixed grips"}),
-            "stable_force": ("equilibrium", stable & (stiffness > 0.0), {"long_name": "stable under dead load"}),
-        },
-        coords={"indentation": ((), delta, ASPERITY["indentation"].attrs)},
-    )
+    stable_force = stable & (stiffness > 0.0)
+    data = {name: ("equilibrium", values, ASPERITY[name].attrs) for name, values in results.items()} | {
+        "stable_displacement": ("equilibrium", stable, {"long_name": "stable under fixed grips"}),
+        "stable_force": ("equilibrium", stable_force, {"long_name": "stable under dead load"}),
+    }
+    return xr.Dataset(data, coords={"indentation": ((), delta, ASPERITY["indentation"].attrs)})
 
 
 def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, float]]:
@@ -148,14 +139,9 @@ def _falling_ranges(contact: Contact) -> Iterator[tuple[float, float]]:
     """Yield pairs of contact radii between which the indentation falls."""
     if contact.law.iterative:
         params = contact.params
-        radii: Floats = np.array(
-            [
-                contact.radius * contact.law.radius(params[column + j], params)
-                for j in range(int(params[COUNT]))
-                for column in (FOOT, TOP)[: 1 + (j < params[COUNT] - 1)]
-            ]
-        )
+        count = int(params[COUNT])
+        turns = [params[column + j] for j in range(count) for column in (FOOT, TOP)[: 1 + (j < count - 1)]]
+        radii = [float(contact.radius * contact.law.radius(turn, params)) for turn in turns]
     else:
-        radii = contact.pull_off("displacement")["contact_radius"]
-    turns = [radii[0] * _SMALLEST, *radii.tolist()]
-    yield from list(pairwise(turns))[::2]
+        radii = contact.pull_off("displacement")["contact_radius"].tolist()
+    yield from list(pairwise([radii[0] * _SMALLEST, *radii]))[::2]

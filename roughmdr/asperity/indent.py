@@ -45,25 +45,18 @@ def indent(
 ) -> xr.Dataset:
     """Compute the contact of one asperity with an elastic half-space under one control.
 
-    Exactly one of indentation, force and contact_radius is given: a number, a string with a unit such as "2 nm", or a
-    one-dimensional array.
-
     Parameters
     ----------
     shape : Shape or callable
         The profile; with method="springs" also a function f(r) [m] of an array of radii [m].
-    indentation : array_like, shape () or (n,), optional
-        [m]. The contact as on retraction; beyond pull-off force and contact radius are 0.
-    force : array_like, shape () or (n,), optional
-        [N]. The branch that is stable under dead load.
-    contact_radius : array_like, shape () or (n,), optional
-        [m]. The equilibrium with that radius, stable or not.
+    indentation, force, contact_radius : array_like, shape () or (n,), optional
+        Exactly one of them, in SI or as strings with a unit such as "2 nm". indentation [m]: the contact as on
+        retraction; beyond pull-off force and contact radius are 0. force [N]: the branch that is stable under dead
+        load. contact_radius [m]: the equilibrium with that radius, stable or not.
     work : float or str, optional
         Work of adhesion [J/m^2]; 0 for none.
-    method : {"exact", "springs"}, optional
-        "springs" solves a row of springs (``roughmdr.springs``) in place of the closed forms.
-    springs : int, optional
-        The number of springs, with method="springs".
+    method, springs : {"exact", "springs"} and int, optional
+        "springs" solves a row of so many springs (``roughmdr.springs``) in place of the closed forms.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
         adhesion="dugdale" needs strength [Pa]: the surfaces attract each other with that stress up to a gap of
@@ -81,10 +74,9 @@ def indent(
     OutOfRange
         Where an argument is out of its range (a force below the pull-off force, or below 0 without adhesion; a contact
         radius below 0), or a float cannot hold the answer.
-    ShapeError
-        Where the shape is none, or contact_radius does not determine the state.
-    RoughmdrError
-        Unless exactly one control is given, and E* in exactly one way.
+    ShapeError, RoughmdrError
+        Where the shape is none, or contact_radius does not determine the state; RoughmdrError unless exactly one
+        control is given, and E* in exactly one way.
 
     References
     ----------
@@ -103,7 +95,8 @@ def indent(
     if method == "springs" and adhesion != "jkr":
         raise RoughmdrError(f"adhesion is {adhesion!r}; with method='springs' it must be 'jkr'")
     control, raw = exactly_one("indent", indentation=indentation, force=force, contact_radius=contact_radius)
-    values = check_values(control, raw, ASPERITY[control].units)
+    unit = ASPERITY[control].units
+    values = check_values(control, raw, unit)
     asked = Adhesion.checked(adhesion, work, strength)
     contact = _contact(shape, effective_modulus_of(indent, material), asked, method, springs)
     solve = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
@@ -113,8 +106,7 @@ def indent(
     for name, numbers in results.items():
         lost = ~np.isfinite(numbers) | ((name == "contact_area") & (numbers == 0.0) & (results["contact_radius"] > 0.0))
         if lost.any():
-            worst = np.atleast_1d(values)[lost][0]
-            raise OutOfRange(f"{name} at {control} = {worst:g} {ASPERITY[control].units} is not representable")
+            raise OutOfRange(f"{name} at {control} = {np.atleast_1d(values)[lost][0]:g} {unit} is not representable")
     attrs = warn_limits(_warnings(shape, results["contact_radius"], contact.effective_modulus, asked))
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, attrs)
 
@@ -130,14 +122,10 @@ def pull_off(
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
-    work : float or str
-        Work of adhesion [J/m^2].
+    shape, work, **material
+        Profile, work of adhesion [J/m^2], and E*, adhesion and strength as in ``indent``.
     control : {"displacement", "force"}, optional
         Retraction under fixed grips, or under dead load.
-    **material
-        E*, adhesion and strength as in ``indent``.
 
     Returns
     -------
@@ -174,10 +162,8 @@ def pull_off(
     radius = results["contact_radius"]
     for name in names:
         if not np.isfinite(results[name]).all() or (asked.model == "jkr" and (radius == 0.0).any()):
-            raise OutOfRange(
-                f"{name} at pull-off is not representable: "
-                f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
-            )
+            given = f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
+            raise OutOfRange(f"{name} at pull-off is not representable: {given}")
     attrs = warn_limits(_warnings(shape, radius, contact.effective_modulus, asked))
     return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
 
@@ -190,14 +176,10 @@ def tabor(shape: Shape, *, work: float | str, strength: float | str, **material:
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
-    work : float or str
-        Work of adhesion [J/m^2], above 0.
-    strength : float or str
-        Stress of the attraction [Pa], above 0.
-    **material
-        E* as in ``indent``.
+    shape, **material
+        Profile and E* as in ``indent``.
+    work, strength : float or str
+        Work of adhesion [J/m^2] and stress of the attraction [Pa], above 0.
 
     Returns
     -------
@@ -230,7 +212,7 @@ def _contact(
     method: str,
     springs: int | None,
 ) -> Contact | Springs:
-    """The contact by its closed forms, or as a row of springs."""
+    """Return the contact by its closed forms, or as a row of springs."""
     if method not in ("exact", "springs"):
         raise RoughmdrError(f"method is {method!r}; it must be 'exact' or 'springs'")
     if method == "springs":
@@ -251,7 +233,7 @@ def _tabor(shape: Shape, effective_modulus: float, adhesion: Adhesion) -> float:
 
 
 def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion: Adhesion) -> list[str]:
-    """Where the contact radii [m] of a shape, or the range of its adhesion, leave what the theory supposes."""
+    """Return warnings of contact radii [m] of a shape, or a range of its adhesion, for which the theory is doubtful."""
     if not isinstance(shape, Shape):
         return []
     limits = validity.ValidityLimits.of(radius, shape.df(radius), np.array(shape.end))
@@ -263,11 +245,6 @@ def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion:
 def _dataset(results: Results, control: str | None, attrs: dict[str, str]) -> xr.Dataset:
     import xarray as xr
 
-    def dims(numbers: Floats) -> tuple[str, ...]:
-        return (control,) if control is not None and numbers.ndim else ()
-
-    return xr.Dataset(
-        {name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name != control},
-        coords={name: (dims(n), n, ASPERITY[name].attrs) for name, n in results.items() if name == control},
-        attrs=attrs,
-    )
+    arrays = {name: ((control,) if n.ndim else (), n, ASPERITY[name].attrs) for name, n in results.items()}
+    coords = {} if control is None else {control: arrays.pop(control)}
+    return xr.Dataset(arrays, coords=coords, attrs=attrs)

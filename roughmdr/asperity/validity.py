@@ -11,7 +11,7 @@ STEEP = 0.3
 """The slope at the edge of a contact above which there is a warning.
 
 Linear elasticity supposes small strains, and a half-space: a contact small against the radii of the bodies (K. L.
-Johnson, Contact Mechanics, 1985, section 4.1). At a/R = 0.3 a sphere and its paraboloid differ by 3 % in g.
+Johnson, Contact Mechanics, 1985). At a/R = 0.3 a sphere and its paraboloid differ by 3 % in g.
 """
 
 TABOR = 3.0
@@ -23,12 +23,9 @@ _UPRIGHT = float(np.finfo(np.float64).max)  # slope of a vertical flank
 class ValidityLimits(NamedTuple):
     """The extremes over all contacts."""
 
-    slope: float = 0.0
-    """Largest f'(a) [1]."""
-    extent: float = 0.0
-    """Largest a over the radius where the profile ends."""
-    tabor: float = math.inf
-    """Least Tabor number of contacts that are computed with JKR."""
+    slope: float = 0.0  # largest f'(a) [1]
+    extent: float = 0.0  # largest a over the radius where the profile ends
+    tabor: float = math.inf  # least Tabor number of contacts that are computed with JKR
 
     @classmethod
     def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "ValidityLimits":
@@ -42,9 +39,8 @@ class ValidityLimits(NamedTuple):
 
     def joined(self, other: "ValidityLimits") -> "ValidityLimits":
         """Return the more extreme of both."""
-        return ValidityLimits(
-            max(self.slope, other.slope), max(self.extent, other.extent), min(self.tabor, other.tabor)
-        )
+        slope, extent = max(self.slope, other.slope), max(self.extent, other.extent)
+        return ValidityLimits(slope, extent, min(self.tabor, other.tabor))
 
     @property
     def warnings(self) -> list[str]:

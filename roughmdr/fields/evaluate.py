@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Unpack, cast
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.fields.half_space import HalfSpace
-from roughmdr.fields.quadrature import DEEP, DISPLACEMENT, PRESSURE, STEEP
+from roughmdr.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values
 from roughmdr.schema.material import Material, effective_modulus_of
@@ -38,18 +38,14 @@ def pressure(
 
     Parameters
     ----------
-    shape : Shape
-        The profile.
+    shape, **material
+        The profile, and E* as in ``indent``.
     r : array_like, shape () or (n,)
         Distances from the axis [m], at least 0.
-    contact_radius : float or str, optional
-        [m]. The equilibrium with that radius. Exactly one of contact_radius and indentation is given.
-    indentation : float or str, optional
-        [m]. The contact as on retraction; p is 0 out of contact.
+    contact_radius, indentation : float or str, optional
+        One of them [m]: the equilibrium with that radius, or the contact as on retraction; p is 0 out of contact.
     work : float or str, optional
         Work of adhesion [J/m^2], with JKR; 0 for none.
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
 
     Returns
     -------
@@ -61,10 +57,8 @@ def pressure(
     OutOfRange
         Where an argument is out of its range, or p is infinite: at the edge of the contact with adhesion and of a flat
         punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
-    ShapeError
-        Where the shape is none, or contact_radius does not determine the state (a flat punch).
-    RoughmdrError
-        Unless exactly one control is given, and E* in exactly one way.
+    ShapeError, RoughmdrError
+        As ``indent``.
 
     References
     ----------
@@ -78,14 +72,14 @@ def pressure(
     >>> [f"{value:.4g}" for value in p.values]
     ['3.183e+07', '2.917e+07', '0']
     """
-    state = HalfSpace.of(shape, effective_modulus_of(pressure, material), work, contact_radius, indentation)
+    modulus = effective_modulus_of(pressure, material)
+    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
-    p = np.zeros_like(at)
-    inside = at < state.radius
+    p, inside = np.zeros_like(at), at < state.radius
     with np.errstate(all="ignore"):
-        p[inside] = state.effective_modulus / math.pi * state.total(PRESSURE, at[inside])
+        p[inside] = modulus / math.pi * state.total(PRESSURE, at[inside])
     return _array("pressure", p, values, warn_limits(state.warnings))
 
 
@@ -130,7 +124,7 @@ def surface_displacement(
     ['2e-09', '3.797e-11']
     """
     modulus = effective_modulus_of(surface_displacement, material)
-    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     u = np.zeros_like(at)
@@ -162,8 +156,7 @@ def axis_stress(
     z : array_like, shape () or (n,)
         Depths [m], at least 0; 0 is refused where the pressure is infinite at r = 0.
     **material
-        poisson [1] of the half-space, above -1 and at most 1/2, in any case; with it effective_modulus [Pa], or modulus
-        [Pa] (and counter_modulus with counter_poisson).
+        poisson [1] of the half-space in any case; with it effective_modulus [Pa], or modulus [Pa] as in ``indent``.
 
     Returns
     -------
@@ -189,19 +182,17 @@ def axis_stress(
     >>> f"{float(stress.largest_shear_depth):.3g}"  # 0.48 of the contact radius
     '2.4e-08'
     """
-    given = dict(material)
-    if given.get("poisson") is None:
+    if material.get("poisson") is None:
         raise RoughmdrError("axis_stress needs the poisson of the half-space, with effective_modulus as with modulus")
     poisson = check_poisson("poisson", material["poisson"])
-    if given.get("effective_modulus") is not None and given.get("modulus") is None:
-        del given["poisson"]
-    modulus = effective_modulus_of(axis_stress, cast(Material, given))
-    state = HalfSpace.of(shape, modulus, work, contact_radius, indentation)
+    if material.get("effective_modulus") is not None and material.get("modulus") is None:
+        del material["poisson"]
+    modulus = effective_modulus_of(axis_stress, material)
+    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("z", check_values("z", z, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)
-    stress = state.effective_modulus / math.pi
-    weights = 0.5 - poisson, 3.5 - poisson
+    stress, weights = modulus / math.pi, (0.5 - poisson, 3.5 - poisson)
     with np.errstate(all="ignore"):
         steep, deep = state.below(STEEP, at), state.below(DEEP, at)
         results = {
@@ -217,7 +208,7 @@ def axis_stress(
 
 
 def _dataset(results: dict[str, Floats], name: str, at: Floats, attrs: dict[str, str]) -> xr.Dataset:
-    """``results`` over the coordinate ``name``, numbers without dimension; OutOfRange where they are not finite."""
+    """Return ``results`` over the coordinate ``name``, or without dimension; OutOfRange where they are not finite."""
     import xarray as xr
 
     for variable, numbers in results.items():

@@ -8,14 +8,14 @@ import numpy as np
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact
 from roughmdr.errors import OutOfRange
-from roughmdr.fields import integrals
-from roughmdr.fields.quadrature import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN
+from roughmdr.fields.integrals import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN, field_kernel
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_scalar, exactly_one
 from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
+from roughmdr.shapes.profile import Profile
 
 _ROUNDING = 1e-12  # of the slope at the edge: a smaller slope of the tip, or jump, is rounding
 _DEPTH_MIN, _DEPTH_MAX, _STEPS_PER_DECADE = 1e-6, 10.0, 8  # of the search for the largest shear, over a radius
@@ -27,60 +27,50 @@ class HalfSpace(NamedTuple):
     """The half-space under one contact."""
 
     shape: Shape
-    effective_modulus: float
+    profile: Profile | None  # None for a flat punch
     indentation: float
     radius: float
-    stretch: float
-    """delta - g(a) [m]: the indentation of the flat punch of the size of the contact, which is superposed."""
+    stretch: float  # delta - g(a) [m]: indentation of the flat punch of the size of the contact, which is superposed
     t: float
     width: float
     rise: float
-    params: Any
-    """Those of the shape, with room for what its profile precomputes."""
+    params: Any  # those of the shape, with room for what its profile precomputes
 
     @classmethod
-    def of(
-        cls,
-        shape: Shape,
-        effective_modulus: float,
-        work: float | str,
-        contact_radius: float | str | None,
-        indentation: float | str | None,
-    ) -> "HalfSpace":
-        """Return the state under the one control that is given; errors as ``indent``."""
-        control, raw = exactly_one("a field", contact_radius=contact_radius, indentation=indentation)
+    def of(cls, shape: Shape, modulus: float, work: float | str, **controls: float | str | None) -> "HalfSpace":
+        """Return the state under the one of two controls that is given; errors as ``indent``."""
+        control, raw = exactly_one("a field", **controls)
         value = check_scalar(control, raw, "m")
         adhesion, values = Adhesion.checked("jkr", work, None), np.array([value])
-        contact = Contact.of(shape, effective_modulus, adhesion)
-        law = contact.law
+        contact = Contact.of(shape, modulus, adhesion)
         with np.errstate(all="ignore"):
             if control == "contact_radius":
                 radius, depth = values, contact.at_radius(values)["indentation"]
-                t = apply(law.state_of_radius, radius, contact.radius, contact.params)
+                t = apply(contact.law.state_of_radius, radius, contact.radius, contact.params)
             else:
                 radius, depth = contact.at_indentation(values)["contact_radius"], values
                 distance = np.where(radius > 0.0, contact.reduced(values, contact.depth), 1.0)
-                t = apply(law.state, distance, contact.params)
+                t = apply(contact.law.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
         if not (math.isfinite(a) and math.isfinite(delta)):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
         width, rise, params = shape.nondimensional()
         params = np.concatenate([np.atleast_1d(np.asarray(params, dtype=np.float64)), [0.0]])
-        if shape.pinned:
-            stretch = delta
-        else:
-            profile_of(type(shape)).precompute(params)
-            stretch = -release_stretch(a, contact.effective_modulus, adhesion.work)
+        profile = None if shape.pinned else profile_of(type(shape))
+        if profile is not None:
+            profile.precompute(params)
+        stretch = delta if shape.pinned else -release_stretch(a, modulus, adhesion.work)
         state = float(t[0]) if shape.uses_profile else a / width
-        return cls(shape, contact.effective_modulus, delta, a, stretch, state, width, rise, params)
+        return cls(shape, profile, delta, a, stretch, state, width, rise, params)
+
+    def slope(self, r: float) -> float:
+        """Return the slope f' at r over width, in units of rise over width."""
+        return 0.0 if self.profile is None else float(self.profile.f_and_slope(r, self.params)[1])
 
     @property
     def sharp(self) -> bool:
         """Whether the pressure is infinite at r = 0."""
-        if self.radius == 0.0 or self.shape.pinned:
-            return False
-        height = profile_of(type(self.shape)).f_and_slope
-        return bool(height(0.0, self.params)[1] > _ROUNDING * height(self.radius / self.width, self.params)[1])
+        return self.radius > 0.0 and self.slope(0.0) > _ROUNDING * self.slope(self.radius / self.width)
 
     def singular(self) -> dict[float, str]:
         """Return the radii [m] where the pressure is infinite, and what lies there."""
@@ -89,12 +79,10 @@ class HalfSpace(NamedTuple):
             return infinite
         if self.sharp:
             infinite[0.0] = "the sharp tip of the profile"
-        if not self.shape.pinned and (profile := profile_of(type(self.shape))).corner:
+        if (profile := self.profile) is not None and profile.corner:
             for index in range(profile.breakpoint_count(self.params)):
                 edge = profile.breakpoint(index, self.params)[0]
-                before, after = (
-                    profile.f_and_slope(math.nextafter(edge, to), self.params)[1] for to in (0.0, math.inf)
-                )
+                before, after = self.slope(math.nextafter(edge, 0.0)), self.slope(math.nextafter(edge, math.inf))
                 if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.params):
                     infinite[edge * self.width] = "a corner of the profile"
         if self.stretch != 0.0:
@@ -112,14 +100,13 @@ class HalfSpace(NamedTuple):
     def total(self, kind: int, at: Floats) -> Floats:
         """Return the integral of a weight with d(g - delta) to the edge of the contact, the jump there included."""
         body = np.zeros_like(at)
-        if not self.shape.pinned:
-            kernel = integrals.build(type(self.shape))
-            body = apply(kernel, at, kind, self.radius, self.t, self.width, self.params)
-            if np.isnan(body).any():
-                raise OutOfRange(
-                    f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m needs "
-                    f"more digits than a float has: {self.shape}"
-                )
+        if self.profile is not None:
+            body = apply(field_kernel(type(self.shape)), at, kind, self.radius, self.t, self.width, self.params)
+        if np.isnan(body).any():
+            raise OutOfRange(
+                f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m needs "
+                f"more digits than a float has: {self.shape}"
+            )
         return np.asarray(self.rise * body / self.width ** _POWER[kind] + self.stretch * self._edge(kind, at))
 
     def _edge(self, kind: int, at: Floats) -> Floats:
@@ -149,19 +136,18 @@ class HalfSpace(NamedTuple):
         if self.radius == 0.0:
             return 0.0, 0.0
         smallest = self.radius
-        if not self.shape.pinned and (profile := profile_of(type(self.shape))).breakpoint_count(self.params):
-            smallest = min(smallest, profile.breakpoint(0, self.params)[0] * self.width)
+        if self.profile is not None and self.profile.breakpoint_count(self.params):
+            smallest = min(smallest, self.profile.breakpoint(0, self.params)[0] * self.width)
         decades = math.log10(_DEPTH_MAX / _DEPTH_MIN) + math.log10(self.radius / smallest)
         depths = np.geomspace(_DEPTH_MIN * smallest, _DEPTH_MAX * self.radius, int(_STEPS_PER_DECADE * decades))
-        depths = np.concatenate([[0.0], depths])
+        depths = np.append(0.0, depths)
 
         def shear(depth: Floats) -> Floats:
             return np.abs(steep * self.below(STEEP, depth) + deep * self.below(DEEP, depth))
 
         def slope(depth: float) -> float:
             at = np.array([depth])
-            gradient = (deep - 2.0 * steep) * self.total(STEEP_TURN, at) - deep * self.total(DEEP_TURN, at)
-            return float(gradient[0])
+            return float(((deep - 2.0 * steep) * self.total(STEEP_TURN, at) - deep * self.total(DEEP_TURN, at))[0])
 
         largest = int(np.argmax(shear(depths)))
         depth = float(depths[largest])
@@ -173,6 +159,6 @@ class HalfSpace(NamedTuple):
 
     @property
     def warnings(self) -> list[str]:
-        """Where the contact leaves what the theory supposes."""
+        """Warnings of a contact for which the theory is doubtful."""
         radius = np.array([self.radius])
         return validity.ValidityLimits.of(radius, self.shape.df(radius), np.array(self.shape.end)).warnings

@@ -1,6 +1,7 @@
 """Curves drawn over a result: the expected law of its scene, and the theory curves that apply to it."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 from roughmdr.batch.plan import Cell, Plan, make_plan, simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.plot_data import EXPECTED, OverlayLine, separations
+from roughmdr.report.plots import EXPECTED, OverlayLine, separations
 from roughmdr.report.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.scene import read
 from roughmdr.schema.wording import count_by_cell
@@ -28,11 +29,10 @@ _SEPARATION_RTOL = 1e-9  # of the largest separation
 
 
 class Overlay(NamedTuple):
-    """Lines to draw, and remarks on them."""
+    """Lines to draw, and remarks on whether they are drawn, and if not why."""
 
     lines: list[OverlayLine]
     remarks: list[str]
-    """Whether lines are drawn, and if not why."""
 
 
 def plan_of_result(file: Path, result: Labelled) -> Plan:
@@ -66,12 +66,12 @@ def overlay_theory(plan: Plan, names: list[str]) -> Overlay:
 
     Remarks begin with the name of the theory curve.
     """
-    lines, remarks = [], []
-    for label, curve in THEORY_CURVES.items():
-        overlay = _evaluate_cells(plan, label, curve.note, _evaluator(curve, names))
-        lines += overlay.lines
-        remarks += [f"{label}: {remark}" for remark in overlay.remarks]
-    return Overlay(lines, remarks)
+    found = {
+        label: _evaluate_cells(plan, label, curve.note, partial(_evaluate_curve, curve, names))
+        for label, curve in THEORY_CURVES.items()
+    }
+    lines = [line for overlay in found.values() for line in overlay.lines]
+    return Overlay(lines, [f"{label}: {remark}" for label, overlay in found.items() for remark in overlay.remarks])
 
 
 def _evaluate_cells(plan: Plan, label: str, note: str, evaluate: Callable[[Cell], dict[str, Floats]]) -> Overlay:
@@ -87,18 +87,14 @@ def _evaluate_cells(plan: Plan, label: str, note: str, evaluate: Callable[[Cell]
     return Overlay(lines, count_by_cell(remarks, len(plan.cells)))
 
 
-def _evaluator(curve: TheoryCurve, names: list[str]) -> Callable[[Cell], dict[str, Floats]]:
-    """Return a function that evaluates a theory curve in a cell; RoughmdrError if it gives none of the variables."""
-    given = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
-    given = {name: (variable, per_area) for name, (variable, per_area) in given.items() if variable in curve.variables}
-
-    def evaluate(cell: Cell) -> dict[str, Floats]:
-        if not given:
-            raise RoughmdrError(f"it gives no {' or '.join(names)}")
-        values = {variable: curve.evaluate(cell, variable) for variable in {variable for variable, _ in given.values()}}
-        area = cell.scene.asperities.nominal_area
-        if area is None:
-            raise AssertionError("theory curves apply to random asperities, which are on a patch")
-        return {name: values[variable] * (area if per_area else 1.0) for name, (variable, per_area) in given.items()}
-
-    return evaluate
+def _evaluate_curve(curve: TheoryCurve, names: list[str], cell: Cell) -> dict[str, Floats]:
+    """Return those of the variables that a theory curve gives in a cell; RoughmdrError if it gives none."""
+    known = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
+    given = {name: (variable, per_area) for name, (variable, per_area) in known.items() if variable in curve.variables}
+    if not given:
+        raise RoughmdrError(f"it gives no {' or '.join(names)}")
+    values = {variable: curve.evaluate(cell, variable) for variable in {variable for variable, _ in given.values()}}
+    area = cell.scene.asperities.nominal_area
+    if area is None:
+        raise AssertionError("theory curves apply to random asperities, which are on a patch")
+    return {name: values[variable] * (area if per_area else 1.0) for name, (variable, per_area) in given.items()}

@@ -1,6 +1,6 @@
-"""Pictures of a result."""
+"""Pictures of a result: mean and standard error of its variables over each loading and unloading."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.plot_data import EXPECTED, Curve, OverlayLine, result_curves
-from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words
+from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
+from roughmdr.result.statistics import mean_and_error
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.atomic import replace_atomically
 from roughmdr.storage.labelled import Labelled
@@ -18,6 +18,7 @@ from roughmdr.variables import CURVE_VARIABLES
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+EXPECTED = "expected"
 _BRANCH_COLOURS = {"loading": "#1b6ca8", "unloading": "#c8553d"}
 _BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 _THEORY_COLOURS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
@@ -25,24 +26,26 @@ _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"
 _MAX_LABELS = 16
 
 
-class _Panel(NamedTuple):
-    """The curves of one variable."""
+class OverlayLine(NamedTuple):
+    """A curve drawn over a result: a variable in one cell, over the whole path."""
 
-    curves: list[Curve]
-    labels: list[str]
-    """One for each cell."""
-    overlay: list[tuple[OverlayLine, dict[str, Any]]]
-    """Each with its style."""
-    h_scale: float
-    scale: float
-    """Separation and variable are divided by these."""
+    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene
+    variable: str
+    cell: int
+    separation: Floats
+    values: Floats  # NaN where the theory gives none
 
-    def draw_means(self, ax: "Axes", linewidth: float) -> None:
-        for curve in self.curves:
-            style = _curve_style(curve, self.labels)
-            ax.plot(curve.separation / self.h_scale, curve.mean / self.scale, lw=linewidth, **style)
-        for line, style in self.overlay:
-            ax.plot(line.separation / self.h_scale, line.values / self.scale, **style)
+
+class _Curve(NamedTuple):
+    """A variable in one cell of a result, over one loading or unloading."""
+
+    cell: int
+    pass_number: int  # counts the loadings and unloadings of the path, from 0
+    branch: str
+    separation: Floats
+    mean: Floats
+    error: Floats  # standard error of the mean; NaN if there is none
+    runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
 
 
 def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[OverlayLine] = ()) -> None:
@@ -59,8 +62,7 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Overlay
         raise StoreError("there is nothing to draw: no run was computed")
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
-    cells = cells_of(result)
-    overlays = list(dict.fromkeys(line.label for line in lines))
+    cells, overlays = cells_of(result), list(dict.fromkeys(line.label for line in lines))
     legend_height = 0.2 * (min(len(cells), _MAX_LABELS) + len(overlays)) if len(cells) > 1 else 0.0
     figure = Figure(figsize=(5.2 * columns, 3.6 * rows + 0.4 + legend_height), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
@@ -68,22 +70,28 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Overlay
     for ax, name in zip(axes.flat, names, strict=False):
         selected = [line for line in lines if line.variable == name]
         overlay = [(line, _overlay_style(line.label, overlays, line.cell, len(cells))) for line in selected]
-        _draw_panel(ax, name, list(result_curves(result, name)), labels, overlay)
+        _draw_panel(ax, name, list(_curves_of(result, name)), labels, overlay)
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     handles, named = axes.flat[0].get_legend_handles_labels()
     handles += [Line2D([], [], label=label, **_overlay_style(label, overlays, None, len(cells))) for label in overlays]
-    if len(cells) > 1:
-        figure.legend(handles=handles, loc="outside lower left", frameon=False, fontsize=8)
-    else:
-        axes.flat[0].legend(handles=handles, frameon=False)
     note = realizations_in_words(result)
     if len(cells) > 1:
+        figure.legend(handles=handles, loc="outside lower left", frameon=False, fontsize=8)
         note += ", unloading dashed"
         note += f", {len(named)} of {len(cells)} cells named" if len(named) < len(cells) else ""
+    else:
+        axes.flat[0].legend(handles=handles, frameon=False)
     figure.suptitle(f"{escape_controls(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
     with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format=format_of(path))
+
+
+def separations(result: Labelled) -> Floats:
+    """Return the separation [m] of every cell, over the swept keys and step."""
+    separation, sizes = result.coordinates["separation"], swept_sizes(result)
+    shape = [size if name in separation.dims else 1 for name, size in sizes.items()]
+    return np.broadcast_to(separation.values.reshape(*shape, -1), (*sizes.values(), separation.values.shape[-1]))
 
 
 def format_of(path: Path) -> str:
@@ -94,14 +102,38 @@ def format_of(path: Path) -> str:
     return suffix
 
 
+def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:
+    """Yield the curves of a variable, cell by cell."""
+    branches = result.coordinates["branch"].values
+    passes = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    if name in result.variables:
+        runs, done = result.variables[name].values, done_of(result)
+        mean, error = mean_and_error(runs, done)
+    else:
+        mean, error = (result.variables[f"{name}_{statistic}"].values for statistic in ("mean", "sem"))
+        runs, done = np.empty((*mean.shape[:-1], 0, branches.size)), np.empty((*mean.shape[:-1], 0), dtype=bool)
+    separation = separations(result)
+    for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
+        for pass_number, steps in enumerate(passes):
+            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], runs[cell][done[cell]][:, steps]
+            yield _Curve(number, pass_number, str(branches[steps[0]]), *columns)
+
+
 def _draw_panel(
-    ax: "Axes", name: str, curves: list[Curve], labels: list[str], overlay: list[tuple[OverlayLine, dict[str, Any]]]
+    ax: "Axes", name: str, curves: list[_Curve], labels: list[str], overlay: list[tuple[OverlayLine, dict[str, Any]]]
 ) -> None:
     units = CURVE_VARIABLES[name].units
     h_scale, h_prefix = _si_scale(np.concatenate([curve.separation for curve in curves]))
     visible = _visible_values(name, curves)
     scale, prefix = (1.0, "") if units == "1" else _si_scale(visible, power=2 if units == "m2" else 1)
-    panel = _Panel(curves, labels, overlay, h_scale, scale)
+
+    def draw_means(axes: "Axes", linewidth: float) -> None:
+        for curve in curves:
+            style = _curve_style(curve, labels)
+            axes.plot(curve.separation / h_scale, curve.mean / scale, lw=linewidth, **style)
+        for line, style in overlay:
+            axes.plot(line.separation / h_scale, line.values / scale, **style)
+
     for curve in curves:
         h, mean, error = curve.separation / h_scale, curve.mean / scale, curve.error / scale
         colour = _curve_style(curve, labels)["color"]
@@ -109,11 +141,12 @@ def _draw_panel(
             ax.plot(h, curve.runs.T / scale, color=colour, lw=0.3, alpha=0.25)
         if name != "stiffness" or curve.branch == "loading":  # where contacts detach its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
-    panel.draw_means(ax, 2.6 if len(labels) == 1 else 1.6)
+    draw_means(ax, 2.6 if len(labels) == 1 else 1.6)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
-        _add_tension_inset(ax, panel)
+        h = np.concatenate([curve.separation for curve in curves]) / h_scale
+        _add_tension_inset(ax, h, np.concatenate([curve.mean for curve in curves]) / scale, draw_means)
     low, high = float(visible.min()) / scale, float(visible.max()) / scale
     if high > low:
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
@@ -122,7 +155,7 @@ def _draw_panel(
     ax.set_xlabel(f"separation [{h_prefix}m]")
 
 
-def _curve_style(curve: Curve, labels: list[str]) -> dict[str, Any]:
+def _curve_style(curve: _Curve, labels: list[str]) -> dict[str, Any]:
     """Return colour, line style and label: by branch for a single cell, else by cell."""
     if len(labels) == 1:
         return {"color": _BRANCH_COLOURS[curve.branch], "label": curve.branch if curve.pass_number < 2 else None}
@@ -155,22 +188,20 @@ def _cell_colour(cell: int, cells: int) -> Any:
     return colormaps["viridis"](0.92 * cell / (cells - 1))
 
 
-def _add_tension_inset(ax: "Axes", panel: _Panel) -> None:
+def _add_tension_inset(ax: "Axes", h: Floats, values: Floats, draw_means: "Callable[[Axes, float], None]") -> None:
     """Add an inset of the tension if it is too small beside the compression to be seen."""
-    h = np.concatenate([curve.separation for curve in panel.curves]) / panel.h_scale
-    values = np.concatenate([curve.mean for curve in panel.curves]) / panel.scale
     lowest = float(values.min())
     tense = h[values < 0.02 * lowest]
     if not -0.2 * values.max() < lowest < 0.0 or np.ptp(tense) == 0.0:
         return
     inset = ax.inset_axes((0.46, 0.3, 0.5, 0.36))
-    panel.draw_means(inset, 1.8)
+    draw_means(inset, 1.8)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     inset.set(xlim=(tense.min(), tense.max()), ylim=(1.3 * lowest, -1.3 * lowest))
     inset.tick_params(labelsize=7)
 
 
-def _visible_values(name: str, curves: list[Curve]) -> Floats:
+def _visible_values(name: str, curves: list[_Curve]) -> Floats:
     """Return the values that the axis must show; of stiffness, unbounded below at a detachment, the mean curve."""
     means = np.concatenate([curve.mean for curve in curves if np.isfinite(curve.mean).all()])
     if name == "stiffness":
@@ -183,6 +214,5 @@ def _si_scale(values: Floats, power: int = 1) -> tuple[float, str]:
     largest = float(np.max(np.abs(values), initial=0.0))
     if largest == 0.0:
         return 1.0, ""
-    exponent = 3 * int(np.floor((np.log10(largest) + power - 1) / (3 * power)))
-    exponent = min(max(exponent, -12), 12)
+    exponent = min(max(3 * int(np.floor((np.log10(largest) + power - 1) / (3 * power))), -12), 12)
     return 10.0 ** (exponent * power), _PREFIXES[exponent]

@@ -1,30 +1,24 @@
 """Summaries of plans, results and ensembles, for the command line."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.result.layout import (
-    cell_label,
-    cells_of,
-    done_of,
-    estimator_of,
-    realizations_of,
-    stored_variables,
-    swept_sizes,
-)
+from roughmdr.result import layout
 from roughmdr.result.pull_off import PullOff, pull_off_force
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import FAILED
+from roughmdr.variables import DONE, FAILED
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
     from roughmdr.batch.plan import Plan
 
 _MAX_CELLS = 30
+_NOT_KNOWN = "not known: no run was computed"
+_HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 
 
 def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
@@ -39,14 +33,14 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
     ]
-    lines += [*_indent("warning", tuple(plan.warnings)), *_indent("cannot run", estimate.failures)]
+    lines += [*_indent("warning", plan.warnings), *_indent("cannot run", estimate.failures)]
     return _format_table([*lines, *_indent("left out", plan.left_out)])
 
 
 def _memory(estimate: "Estimate") -> str:
-    total, resident = format_bytes(estimate.memory), format_bytes(estimate.resident)
+    total, resident, available = map(format_bytes, (estimate.memory, estimate.resident, estimate.available_memory))
     too_much = estimate.memory - estimate.resident > estimate.available_memory
-    warning = f"; it can get only {format_bytes(estimate.available_memory)} more" if too_much else ""
+    warning = f"; it can get only {available} more" if too_much else ""
     return f"about {total}, of which {resident} for Python and its packages{warning}"
 
 
@@ -63,20 +57,24 @@ def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
 def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run."""
     attrs = result.attrs
-    realizations, steps = realizations_of(result), result.sizes["step"]
+    realizations, steps = layout.realizations_of(result), result.sizes["step"]
+    time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
+    if elapsed is not None:
+        time = f"{format_seconds(elapsed)}; {time}, over all workers"
+    errors = _values(result, "numerical_error")[layout.done_of(result)]
     lines = [
-        ("computed", f"{printable(attrs['title'])}: {_sizes(swept_sizes(result), realizations, steps)}"),
-        ("variables", ", ".join(stored_variables(result))),
+        ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
+        ("variables", ", ".join(layout.stored_variables(result))),
         *_pull_off(result),
         *_contacts_at_ends(result),
         *_adhesion(result),
-        *_indent("accuracy", tuple(attrs.get("accuracy", "").splitlines())),
-        *_indent("failed", tuple(describe_failed(result).splitlines())),
-        *_indent("warning", tuple(attrs.get("warnings", "").splitlines())),
-        ("run time", _run_time(result, elapsed)),
-        ("error", _error(result)),
+        *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
+        *_indent("failed", describe_failed(result).splitlines()),
+        *_indent("warning", attrs.get("warnings", "").splitlines()),
+        ("run time", time),
+        ("error", f"numerical error at most {errors.max():.1e} of the largest force" if errors.size else _NOT_KNOWN),
     ]
-    return _format_table([*lines, *_indent("left out", tuple(attrs["left_out"].splitlines()))])
+    return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines())])
 
 
 def describe_ensemble(ensemble: Labelled) -> str:
@@ -93,7 +91,7 @@ def describe_ensemble(ensemble: Labelled) -> str:
             ("", "each is a paraboloid through a point above its eight neighbours, fitted to these"),
             ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
         ]
-    return _format_table([*lines, *_indent("warning", tuple(attrs.get("warnings", "").splitlines()))])
+    return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 
 def describe_origin(result: Labelled, size: float) -> str:
@@ -105,7 +103,15 @@ def describe_origin(result: Labelled, size: float) -> str:
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),
     ]
-    return _format_table([*lines, *_indent("scene", tuple(attrs["scene"].strip().splitlines()))])
+    return _format_table([*lines, *_indent("scene", attrs["scene"].strip().splitlines())])
+
+
+def describe_cells(result: Labelled) -> str:
+    """Return a table with a line for each cell; columns that are empty for all cells are left out."""
+    lines = [_HEADINGS, *(_cell_line(result, number, cell) for number, cell in enumerate(layout.cells_of(result)))]
+    columns = [column for column in range(len(_HEADINGS)) if any(line[column] for line in lines[1:])]
+    widths = {column: max(len(line[column]) for line in lines) for column in columns}
+    return "\n".join("  ".join(f"{line[column]:<{widths[column]}}" for column in columns).rstrip() for line in lines)
 
 
 def _values(result: Labelled, name: str) -> np.ndarray:
@@ -117,38 +123,26 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
 
 
-def _run_time(result: Labelled, elapsed: float | None) -> str:
-    work = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
-    return work if elapsed is None else f"{format_seconds(elapsed)}; {work}, over all workers"
-
-
-def _error(result: Labelled) -> str:
-    errors = _values(result, "numerical_error")[done_of(result)]
-    if not errors.size:
-        return "not known: no run was computed"
-    return f"numerical error at most {errors.max():.1e} of the largest force"
-
-
 def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the pull-off force of each cell, and how it is defined."""
-    if "force" not in stored_variables(result):
+    if "force" not in layout.stored_variables(result):
         return
     if "unloading" not in result.coordinates["branch"].values:
         yield "pull-off", "none: the path has no unloading"
         return
     pull_off = pull_off_force(result)
-    cells = cells_of(result)
+    cells = layout.cells_of(result)
     forces = [_force(pull_off, cell) for cell in cells[:_MAX_CELLS]]
     width = max(map(len, forces))
     for number, (force, cell) in enumerate(zip(forces, cells, strict=False)):
-        yield "" if number else "pull-off", f"{force:<{width}}  {cell_label(result, cell)}".rstrip()
+        yield "" if number else "pull-off", f"{force:<{width}}  {layout.cell_label(result, cell)}".rstrip()
     if len(cells) > _MAX_CELLS:
         yield "", f"... and {len(cells) - _MAX_CELLS} more cells"
     if "force" not in result.variables:
         definition = "largest tension of the mean curve during unloading ± its standard error there"
-    elif estimator_of(result) == "expected":
+    elif layout.estimator_of(result) == "expected":
         definition = "lowest point of the expected law; realisations detach contact by contact and go a little deeper"
-    elif realizations_of(result) == 1:
+    elif layout.realizations_of(result) == 1:
         definition = "largest tension during unloading; one realisation has no standard error"
     else:
         definition = "largest tension of each realisation during unloading, or 0: mean ± standard error"
@@ -159,7 +153,7 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
     mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
     tensile = int(pull_off.tensile[cell])
     if tensile == 0:
-        return "none: never tensile" if pull_off.curves[cell] else "not known: no run was computed"
+        return "none: never tensile" if pull_off.curves[cell] else _NOT_KNOWN
     spread = "" if math.isnan(error) else f" ± {error:.2g} N"
     share = "" if tensile == pull_off.curves[cell] else f", {tensile} of {pull_off.curves[cell]} tensile"
     return f"{mean:.4g} N{spread} [{pull_off.change[cell]:.1g} N]{share}"
@@ -168,9 +162,8 @@ def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
 def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield which adhesion models were used, if the Tabor number is known."""
     if {"tabor_number", "adhesion_law"} <= set(result.variables):
-        model = result.variables["adhesion_law"]
-        names = model.attrs["flag_meanings"].split()
-        values = model.values[done_of(result)]
+        names = result.variables["adhesion_law"].attrs["flag_meanings"].split()
+        values = _values(result, "adhesion_law")[layout.done_of(result)]
         counts = ", ".join(f"{names[i]} in {int((values == i).sum())}" for i in np.unique(values))
         tabor = _values(result, "tabor_number")
         if np.isfinite(tabor).any():
@@ -180,11 +173,10 @@ def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
 def describe_failed(result: Labelled) -> str:
     """Return how many runs failed, and why the first did; empty if none did."""
     status = _values(result, "status")
-    failed = status == FAILED
+    failed, reason = status == FAILED, ""
     if not failed.any():
         return ""
     counted = "runs" if "realization" in result.sizes else "cells"
-    reason = ""
     if "remark" in result.coordinates:
         reason = f" ({printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
     return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; the same command computes them again"
@@ -198,13 +190,47 @@ def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
     count = result.variables[name].values
     first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))
     if first or last:
-        total = f"{int(done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
+        total = f"{int(layout.done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
         yield "note", f"in contact at the first step in {first}, at the last in {last} of {total}"
 
 
-def _indent(name: str, lines: tuple[str, ...]) -> list[tuple[str, str]]:
+def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:
     return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
 
 
 def _format_table(lines: list[tuple[str, str]]) -> str:
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
+
+
+def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[str, ...]:
+    def values(name: str) -> np.ndarray:
+        return np.atleast_1d(result.variables[name].values[cell])
+
+    status = values("status")
+    done, failed = int((status == DONE).sum()), int((status == FAILED).sum())
+    outcome = (f"{failed} failed" if done else "failed") if failed else ("done" if done else "not run")
+    count = int(values("realization_count")[0]) if "realization_count" in result.variables else status.size
+    time, error = values("run_time"), values("numerical_error")
+    reached = values("accuracy_reached")[0] if "accuracy_reached" in result.variables else np.nan
+    return (
+        layout.cell_label(result, cell) or str(number),
+        outcome,
+        str(count),
+        format_seconds(float(np.nansum(time))),
+        f"{np.nanmax(error):.1e}" if np.isfinite(error).any() else "-",
+        "" if np.isnan(reached) else f"{reached:.2g}",
+        layout.method_of(result, cell),
+        _first_remark(result, cell),
+    )
+
+
+def _first_remark(result: Labelled, cell: tuple[int, ...]) -> str:
+    """Return the first remark on a cell, and on which realisation it is."""
+    if "remark" not in result.coordinates:
+        return ""
+    remarks = np.atleast_1d(result.coordinates["remark"].values[cell])
+    present = np.flatnonzero(remarks != "")
+    if not present.size:
+        return ""
+    prefix = f"realisation {present[0]}: " if "realization" in result.coordinates["remark"].dims else ""
+    return prefix + printable(str(remarks[present[0]]).split("\n")[0])

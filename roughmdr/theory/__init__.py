@@ -1,10 +1,8 @@
 """Named theories of rough contact from the literature, to stand beside computed curves. Arrays in and out, SI."""
 
 from roughmdr.theory.bush import bush_gibson_thomas, bush_gibson_thomas_asymptote, greenwood_elliptic
-from roughmdr.theory.fuller import fuller_tabor
+from roughmdr.theory.equal_summits import dmt_maugis, fuller_tabor, greenwood_williamson
 from roughmdr.theory.geike import RoughLine, line_heights, rough_line
-from roughmdr.theory.greenwood import greenwood_williamson
-from roughmdr.theory.maugis import dmt_maugis
 from roughmdr.theory.persson import persson_contact_fraction, persson_pressure, persson_separation
 
 __all__ = [

@@ -38,23 +38,18 @@ def bush_gibson_thomas(
         4 sqrt(m0/(pi alpha)) above it.
     m0, m2, m4 : float
         Moments of the spectrum of a profile [m2], [1], [1/m2]: see ``roughmdr.spectrum.Moments``.
-    variable : {"pressure", "contact_fraction", "contact_density"}, optional
-        Force over nominal area [Pa], real over nominal area of contact [1], contacts of a unit of area [1/m2].
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+    variable, **material
+        "pressure" [Pa], "contact_fraction" [1] or "contact_density" [1/m2], and E*, as in ``greenwood_williamson``.
 
     Returns
     -------
     numpy.ndarray
-        The variable, in the shape of separation; right to about 1e-12 of itself to six standard deviations of the
-        surface.
+        The variable in the shape of separation, right to about 1e-12 of itself up to six standard deviations of height.
 
     Raises
     ------
-    OutOfRange
-        Where an argument is not above 0, or m0 m4/m2^2 not above 3/2.
-    RoughmdrError
-        Where the variable is unknown, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is not above 0, or m0 m4/m2^2 not above 3/2; RoughmdrError as ``greenwood_williamson``.
 
     References
     ----------
@@ -69,7 +64,7 @@ def bush_gibson_thomas(
     '1.158e+05'
     """
     modulus = effective_modulus_of(bush_gibson_thomas, material)
-    return mean_over_summits("elliptic", separation, modulus, Moments.checked(m0, m2, m4), variable)
+    return mean_over_summits(True, separation, modulus, Moments.checked(m0, m2, m4), variable)
 
 
 def greenwood_elliptic(
@@ -115,7 +110,7 @@ def greenwood_elliptic(
     '1.136e+05'
     """
     modulus = effective_modulus_of(greenwood_elliptic, material)
-    return mean_over_summits("circular", separation, modulus, Moments.checked(m0, m2, m4), variable)
+    return mean_over_summits(False, separation, modulus, Moments.checked(m0, m2, m4), variable)
 
 
 def bush_gibson_thomas_asymptote(*, pressure: ArrayLike, rms_slope: float, **material: Unpack[Material]) -> Floats:
@@ -127,10 +122,8 @@ def bush_gibson_thomas_asymptote(*, pressure: ArrayLike, rms_slope: float, **mat
     ----------
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
-    rms_slope : float
-        h' = sqrt(<|grad h|^2>) = sqrt(2 m2) [1], above 0.
-    **material
-        E* as in ``bush_gibson_thomas``.
+    rms_slope, **material
+        h' = sqrt(<|grad h|^2>) = sqrt(2 m2) [1], above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -139,10 +132,8 @@ def bush_gibson_thomas_asymptote(*, pressure: ArrayLike, rms_slope: float, **mat
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Unless E* is given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; unless E* is given in exactly one way.
 
     References
     ----------

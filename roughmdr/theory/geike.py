@@ -19,12 +19,10 @@ from roughmdr.theory.equal_summits import representable
 
 
 class RoughLine(NamedTuple):
-    """The result of ``rough_line``, in the shape of its separation."""
+    """Normal force [N] of a rough line and its growth on approach [N/m], in the shape of the separation."""
 
     force: Floats
-    """Normal force [N]."""
     stiffness: Floats
-    """Growth of the force on approach [N/m]."""
 
 
 def rough_line(
@@ -41,7 +39,7 @@ def rough_line(
     The surface with the spectrum C(q) becomes a line of ``line_heights``, each of its points on a spring of stiffness
     E* dx that does not feel its neighbours: F = E* dx sum of (z - h) over all z > h, and k = E* dx times their number.
 
-    What it gives is how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long
+    It gives how stiffness grows with force: as F^(1/(1 + H)) while the longest of self-affine waves is as long
     as the line, the power law that boundary elements find in surfaces of that size [2]_, and only there [3]_. Its
     separation and its contact area are NOT those of the surface: at a given gap it carries about a fifth of the force
     that boundary elements find, and the length in contact is no area [4]_.
@@ -50,10 +48,8 @@ def rough_line(
     ----------
     separation : array_like, shape () or (n,)
         Separations h [m] of the flat from the mean of the line.
-    spectrum, length, points, seed
-        As in ``line_heights``.
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+    spectrum, length, points, seed, **material
+        As in ``line_heights``; E* as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -62,10 +58,8 @@ def rough_line(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError where spectrum is none, or E* not given in exactly one way.
 
     References
     ----------
@@ -101,9 +95,8 @@ def rough_line(
 def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: int) -> Floats:
     """Generate a periodic line of heights with random phases, at evenly spaced points.
 
-    Its spectrum is C1(q) = pi q C(q), so that <h^2> = 2 ∫ C1 dq is that of the surface, for every line whatever its
-    phases. Its <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave of the line represents the waves nearest
-    to it.
+    Its spectrum is C1(q) = pi q C(q), so that <h^2> = 2 ∫ C1 dq is that of the surface, whatever the phases. Its
+    <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave of the line represents the waves nearest to it.
 
     Parameters
     ----------
@@ -111,10 +104,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
         C(q) [m4] between ``long_wave`` and ``short_wave``, such as ``SelfAffine``.
     length : float or str
         Period of the line [m], at least the longest wave.
-    points : int
-        Number of points, more than two in the shortest wave.
-    seed : int
-        Seed of the phases, at least 0.
+    points, seed : int
+        Number of points, more than two in the shortest wave, and seed of the phases, at least 0.
 
     Returns
     -------
@@ -123,10 +114,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none.
+    OutOfRange, RoughmdrError
+        As ``rough_line``.
 
     References
     ----------
@@ -162,9 +151,8 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
 
 def _check_whole(name: str, value: int) -> int:
     try:
-        number = index(value)
+        if (number := index(value)) >= 0:
+            return number
     except TypeError:
-        raise OutOfRange(f"{name} is {value!r}; it must be a whole number of at least 0") from None
-    if number < 0:
-        raise OutOfRange(f"{name} is {number}; it must be a whole number of at least 0")
-    return number
+        pass
+    raise OutOfRange(f"{name} is {value!r}; it must be a whole number of at least 0")

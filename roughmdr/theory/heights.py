@@ -39,14 +39,17 @@ class Heights(NamedTuple):
 
     density: Callable[[Floats], Floats]
     edges: Floats
-    endless: bool = False
-    """Whether the support goes on beyond the last edge."""
+    endless: bool = False  # whether the support goes on beyond the last edge
 
     @classmethod
     def of(cls, owner: str, std: float | str | None, heights: Distribution | None) -> "Heights":
         """Return normal heights of mean 0, or those of a distribution; RoughmdrError unless exactly one is given."""
         exactly_one(owner, std=std, heights=heights)
-        return _of_distribution(heights) if std is None else _normal(check_number("std", std, "m"))
+        if std is None:
+            return _of_distribution(heights)
+        deviation = check_number("std", std, "m")
+        scale = 1.0 / (deviation * math.sqrt(2.0 * math.pi))
+        return cls(lambda z: scale * np.exp(-0.5 * (z / deviation) ** 2), deviation * NORMAL_EDGES)
 
     def mean(self, start: Floats, value: Callable[[Rows, Floats], Floats]) -> Floats:
         """Return ∫ value(row, z - start) density(z) dz over z >= start, for each start.
@@ -66,23 +69,13 @@ class Heights(NamedTuple):
 
         edges = np.sqrt(np.maximum(self.edges - block_start, 0.0))
         values = integrate(integrand, edges)
-        if self.endless:
-            self._check_tail(integrand, edges, values)
+        if self.endless:  # then the last panel must be negligible
+            last, inside = integrate(integrand, edges[:, -2:]), edges[:, -2] > 0.0
+            if (np.abs(last)[inside] > 1e-12 * np.abs(values)[inside]).any():
+                raise OutOfRange(
+                    "heights have too heavy a tail: the mean over the summits is not finite, or does not converge"
+                )
         return values
-
-    def _check_tail(self, integrand: Callable[[Rows, Floats], Floats], edges: Floats, values: Floats) -> None:
-        """Raise OutOfRange where the last panel is not negligible."""
-        last = integrate(integrand, edges[:, -2:])
-        inside = edges[:, -2] > 0.0
-        if (np.abs(last)[inside] > 1e-12 * np.abs(values)[inside]).any():
-            raise OutOfRange(
-                "heights have too heavy a tail: the mean over the summits is not finite, or does not converge"
-            )
-
-
-def _normal(std: float) -> Heights:
-    scale = 1.0 / (std * math.sqrt(2.0 * math.pi))
-    return Heights(lambda z: scale * np.exp(-0.5 * (z / std) ** 2), std * NORMAL_EDGES)
 
 
 def _of_distribution(given: Distribution | None) -> Heights:

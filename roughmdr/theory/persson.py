@@ -35,10 +35,8 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
     ----------
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
-    rms_slope : float
-        h' = sqrt(<|grad h|^2>) [1] over all waves, above 0.
-    **material
-        E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+    rms_slope, **material
+        h' = sqrt(<|grad h|^2>) [1] over all waves, above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -47,10 +45,8 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Unless E* is given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError unless E* is given in exactly one way.
 
     References
     ----------
@@ -85,10 +81,8 @@ def persson_separation(
         Force over nominal area p [Pa], above 0: without pressure there is no finite gap.
     spectrum : Spectrum
         C(q) [m4], with kinks at most between its ends ``long_wave`` and ``short_wave`` [m], such as ``SelfAffine``.
-    gamma : float, optional
-        From 0 to 1; 0.4 to 0.5 in the literature [1]_, 1 in [2]_.
-    **material
-        E* as in ``persson_contact_fraction``.
+    gamma, **material
+        gamma from 0 to 1; 0.4 to 0.5 in the literature [1]_, 1 in [2]_. E* as in ``greenwood_williamson``.
 
     Returns
     -------
@@ -97,10 +91,8 @@ def persson_separation(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        Where an argument is out of its range; RoughmdrError where spectrum is none, or E* not given in exactly one way.
 
     References
     ----------
@@ -137,12 +129,8 @@ def persson_pressure(
     ----------
     separation : array_like, shape () or (n,)
         Mean gaps [m], above 0.
-    spectrum : SelfAffine
-        The spectrum of the surface.
-    gamma : float, optional
-        As in ``persson_separation``.
-    **material
-        E* as in ``persson_contact_fraction``.
+    spectrum, gamma, **material
+        As in ``persson_separation``; the spectrum must be a ``SelfAffine``.
 
     Returns
     -------
@@ -151,10 +139,8 @@ def persson_pressure(
 
     Raises
     ------
-    OutOfRange
-        Where an argument is out of its range, or a float cannot hold the pressure over the modulus.
-    RoughmdrError
-        Where spectrum is none, or E* is not given in exactly one way.
+    OutOfRange, RoughmdrError
+        As ``persson_separation``; OutOfRange also where a float cannot hold the pressure over the modulus.
 
     References
     ----------
@@ -182,10 +168,8 @@ def persson_pressure(
 
     closest, furthest = gap(np.array([_LOG_MAX, _LOG_MIN]))
     if not ((given > closest) & (given < furthest)).all():
-        raise OutOfRange(
-            f"separation is from {np.min(given):g} to {np.max(given):g} m; "
-            f"it must be above {closest:g} and below {furthest:g} m"
-        )
+        extremes = f"from {np.min(given):g} to {np.max(given):g} m"
+        raise OutOfRange(f"separation is {extremes}; it must be above {closest:g} and below {furthest:g} m")
 
     def excess(logarithm: Floats, h: Floats) -> Floats:
         return gap(logarithm) - h

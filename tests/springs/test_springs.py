@@ -12,8 +12,8 @@ from figures.springs_pictures import PICTURES
 from scipy.special import gamma
 
 import roughmdr as rm
-from roughmdr.springs import Springs, row
-from roughmdr.springs.transform import mdr_transform
+from roughmdr.springs import Springs
+from roughmdr.springs.profile import mdr_transform
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 
@@ -128,7 +128,7 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
         off = rm.pull_off(shape, effective_modulus=6.1e10, work=0.8)
         errors = []
         for count in counts:
-            coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).rows.row(length * float(off.contact_radius))
+            coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).row(length * float(off.contact_radius))
             errors.append(abs(float(coarse.release_indentation[:-1].min() / off.indentation) - 1.0))
         assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(expected, abs=0.5)
 
@@ -245,7 +245,7 @@ def test_refusals(error: type[rm.RoughmdrError], text: str, changed: dict[str, o
 
 
 def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(row, "_LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
+    monkeypatch.setattr("roughmdr.springs._LENGTH_NUMBER_MAX", 480)  # 2^60 m are enough
     with pytest.raises(rm.OutOfRange, match="grows without end"):
         rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 

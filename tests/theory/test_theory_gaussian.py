@@ -13,7 +13,7 @@ from scipy.special import erfcx
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import panel_rule
-from roughmdr.theory.ellipse import Ellipses
+from roughmdr.theory.gaussian import Ellipses
 
 LAWS = {"elliptic": rm.theory.bush_gibson_thomas, "circular": rm.theory.greenwood_elliptic}
 SURFACE = {"effective_modulus": 2e9, "m0": 1e-14, "m2": 1e-3, "m4": 2.5e8}
@@ -22,7 +22,7 @@ ALPHA = 2.5
 
 
 def ellipse_by_johnson(ratio: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
-    """k2/k1 and the factors of force and area, all from E* = p0 = a = 1 in K. L. Johnson's eq. (4.26) to (4.32)."""
+    """k2/k1 and the factors of force and area, all from E* = p0 = a = 1 in Hertz's theory of K. L. Johnson (1985)."""
     e2 = 1 - ratio**2
     K, E = mp.ellipk(e2), mp.ellipe(e2)
     A, B = ratio / e2 * (K - E), ratio / e2 * (E / ratio**2 - K)

@@ -1,0 +1,160 @@
+"""Theory curves beside a result: to which scenes each applies, and its values along the path of the flat."""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr import theory
+from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
+from roughmdr.batch.plan import Cell
+from roughmdr.ensemble import Ensemble, NayakAsperities, RandomAsperities
+from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+from roughmdr.theory.equal_summits import Variable
+
+_DMT_MAX_TABOR = 0.1
+"""Tabor number below which DMT holds: K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326."""
+
+
+class TheoryCurve(NamedTuple):
+    """A theory as it is drawn over a result."""
+
+    evaluate: Callable[[Cell, Variable], Floats]
+    """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
+    variables: tuple[Variable, ...] = get_args(Variable)
+    note: str = ""  # how the theory differs from the scene
+
+
+class _Heights(NamedTuple):
+    """Distribution of the heights above the datum plane, with the methods of scipy.stats that theories call."""
+
+    distribution: Distribution
+
+    def pdf(self, x: ArrayLike) -> Floats:
+        return self.distribution.density(np.asarray(x, dtype=np.float64))
+
+    def ppf(self, q: ArrayLike) -> Floats:
+        return self.distribution.quantile(np.asarray(q, dtype=np.float64))
+
+    def support(self) -> Floats:
+        return self.ppf([0.0, 1.0])
+
+
+def _equal_summits(scene: Scene) -> dict[str, Any]:
+    """Return the arguments of theories of equal summits; RoughmdrError if the summits are not equal."""
+    section = scene.asperities
+    if not isinstance(section, RandomAsperities):
+        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'random'")
+    if section.shape != "paraboloid":
+        raise RoughmdrError(f"asperities.shape is {section.shape!r}, not 'paraboloid'")
+    if section.second is not None:
+        raise RoughmdrError("there are two populations of asperities")
+    radius = section.distributions["radius"].constant
+    if radius is None:
+        raise RoughmdrError("radii differ")
+    if section.height.constant is not None:
+        raise RoughmdrError("all heights are the same")
+    density, heights = section.expected_count / section.nominal_area, _Heights(section.height)
+    return {"effective_modulus": scene.effective_modulus, "radius": radius, "density": density, "heights": heights}
+
+
+def _check_no_adhesion(scene: Scene) -> None:
+    if scene.work > 0.0:
+        raise RoughmdrError("the scene has adhesion")
+
+
+def _jkr_validity(scene: Scene, radius: float) -> JkrValidity:
+    """Return how the adhesion range limits JKR; RoughmdrError if there is no adhesion."""
+    if scene.work == 0.0:
+        raise RoughmdrError("the scene has no adhesion")
+    one = Ensemble("paraboloid", np.zeros(1), {"radius": np.array([radius])})
+    modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+    return jkr_validity(one.shape, scene.asperities.sigma, one.nondimensional(), modulus, adhesion)
+
+
+def _greenwood_williamson(cell: Cell, variable: Variable) -> Floats:
+    arguments = _equal_summits(cell.scene)
+    _check_no_adhesion(cell.scene)
+    return theory.greenwood_williamson(separation=cell.path.separation, variable=variable, **arguments)
+
+
+def _fuller_tabor(cell: Cell, variable: Variable) -> Floats:
+    """Evaluate the loading, and the unloading with the closest separation as its turning point."""
+    arguments, h = _equal_summits(cell.scene), cell.path.separation
+    if cell.scene.adhesion_model.resolved(_jkr_validity(cell.scene, arguments["radius"]).jkr_error).model != "jkr":
+        raise RoughmdrError("the adhesion is of finite range, not that of JKR")
+    turn = int(h.argmin())
+    if (np.diff(h[: turn + 1]) > 0.0).any() or (np.diff(h[turn:]) < 0.0).any():
+        raise RoughmdrError("the path is not one loading and one unloading")
+    arguments |= {"work": cell.scene.work, "variable": variable}
+    loading = theory.fuller_tabor(separation=h[: turn + 1], **arguments)
+    return np.append(loading, theory.fuller_tabor(separation=h[turn + 1 :], turning=h[turn], **arguments))
+
+
+def _dmt_maugis(cell: Cell, variable: Variable) -> Floats:
+    arguments = _equal_summits(cell.scene) | {"work": cell.scene.work, "variable": variable}
+    tabor = _jkr_validity(cell.scene, arguments["radius"]).tabor
+    if not cell.scene.adhesion_model.tabor_known:
+        raise RoughmdrError("neither strength nor range of the adhesion is given")
+    if not tabor < _DMT_MAX_TABOR:
+        raise RoughmdrError(f"the Tabor number is {tabor:.3g}, not below {_DMT_MAX_TABOR:g}")
+    return theory.dmt_maugis(separation=cell.path.separation, **arguments)
+
+
+def _gaussian_surface(scene: Scene) -> NayakAsperities:
+    """Return the surface of a scene; RoughmdrError unless it is Gaussian and without adhesion."""
+    section = scene.asperities
+    if not isinstance(section, NayakAsperities):
+        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'nayak'")
+    _check_no_adhesion(scene)
+    return section
+
+
+def _gaussian_summits(compute: Callable[..., Floats], cell: Cell, variable: Variable) -> Floats:
+    """Evaluate a theory of all summits of a surface, which is given by the moments of its spectrum."""
+    moments = _gaussian_surface(cell.scene).summits.moments._asdict()
+    modulus, h = cell.scene.effective_modulus, cell.path.separation
+    return compute(separation=h, effective_modulus=modulus, variable=variable, **moments)
+
+
+def _asymptote(cell: Cell, _: Variable) -> Floats:
+    pressure = _gaussian_summits(theory.bush_gibson_thomas, cell, "pressure")
+    modulus, slope = cell.scene.effective_modulus, math.sqrt(2.0 * _gaussian_surface(cell.scene).summits.moments.m2)
+    return theory.bush_gibson_thomas_asymptote(pressure=pressure, effective_modulus=modulus, rms_slope=slope)
+
+
+def _persson(cell: Cell, variable: Variable) -> Floats:
+    spectrum, modulus, h = _gaussian_surface(cell.scene).spectrum, cell.scene.effective_modulus, cell.path.separation
+    if spectrum is None:
+        raise RoughmdrError("it needs a self-affine spectrum, but the scene gives m0, m2 and m4")
+    values = np.full_like(h, math.nan)
+    open_ = h > 0.0  # at full contact the mean gap is 0
+    values[open_] = theory.persson_pressure(separation=h[open_], effective_modulus=modulus, spectrum=spectrum)
+    if variable == "contact_fraction":
+        values[open_] = theory.persson_contact_fraction(
+            pressure=values[open_], effective_modulus=modulus, rms_slope=spectrum.rms_slope
+        )
+    return values
+
+
+_DEFORMED = "its separation is the mean gap to the deformed surface, the scene's is from the undeformed mean plane"
+THEORY_CURVES = {
+    "greenwood_williamson": TheoryCurve(_greenwood_williamson),
+    "fuller_tabor": TheoryCurve(_fuller_tabor),
+    "dmt_maugis": TheoryCurve(_dmt_maugis, note="it neglects the attraction of summits that do not touch"),
+    "bush_gibson_thomas": TheoryCurve(partial(_gaussian_summits, theory.bush_gibson_thomas)),
+    "bush_gibson_thomas_asymptote": TheoryCurve(
+        _asymptote, ("contact_fraction",), "at the pressure of bush_gibson_thomas"
+    ),
+    "greenwood_elliptic": TheoryCurve(partial(_gaussian_summits, theory.greenwood_elliptic)),
+    "persson_separation": TheoryCurve(_persson, ("pressure",), _DEFORMED),
+    "persson_contact_fraction": TheoryCurve(
+        _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}"
+    ),
+}
