@@ -8,7 +8,7 @@ from roughmdr.numerics.arguments import Floats
 
 
 def update_contact(count: int, block: Block, memory: Staircase, begin: int, end: int) -> None:
-    """Set which of the first ``count`` asperities are in contact, by steps begin to end of the staircase."""
+    """Set which of the first ``count`` asperities are in contact, by the pairs begin to end of the staircase."""
     z, depth, in_contact, bottom, top = block.z, block.scales[DEPTH], block.in_contact, memory.bottom, memory.top
     low, high = bottom[begin], top[begin]
     for i in range(count):
@@ -56,7 +56,7 @@ def solve_iterative(
 ) -> None:
     """Do as ``solve_closed`` by Newton's method: one step for all contacts at a time, so that none waits for another.
 
-    Where a contact can be on one of several branches ``block.in_contact``, from the step before, is its number.
+    With several branches, ``block.in_contact`` holds the number of the branch at the step before, and then the new one.
     """
     z, params, in_contact, last_step = block.z, block.params, block.in_contact, block.scratch
     depth, per_depth, state = block.scales[DEPTH], block.scales[PER_DEPTH], block.contacts[STATE]

@@ -57,7 +57,7 @@ def count_above(height: Floats, lowest: float) -> int:
 
 
 def lowest_in_contact(h: float, begin: int, end: int, memory: Staircase, deepest: float) -> float:
-    """Return the height above which an asperity can be in contact: within its fold of a step of the staircase."""
+    """Return the lowest height that can be in contact: the least max(bottom, top - deepest) of the staircase."""
     if not law.adhesive:
         return float(np.nextafter(h, math.inf))  # at z = h there is no contact
     lowest = math.inf
@@ -77,8 +77,9 @@ def _loop(
 ) -> int:
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
-    That is _NOT_REPRESENTABLE where a scale of an asperity in contact is so. ``memory.bottom`` is lower by the adhesion
-    range than the flat was: from so far away the surfaces attract each other.
+    Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. The caller has lowered
+    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``_compiled`` says which
+    functions the names of ``law`` stand for.
     """
     visits = 0
     turn = np.argmin(separation)
