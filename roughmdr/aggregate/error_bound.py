@@ -19,14 +19,14 @@ u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the
 import math
 
 from roughmdr.aggregate.block import (
-    DEPTH,
+    DEPTH_SCALE,
     FORCE,
-    LOAD,
+    FORCE_SCALE,
     PER_DEPTH,
     RADIUS,
-    RIGIDITY,
     STATE,
     STIFFNESS,
+    STIFFNESS_SCALE,
     Block,
     law,
 )
@@ -43,7 +43,7 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
     ``force_error`` [N] is the sum of the errors of their forces, each at its state; ``rounding`` the relative error of
     z - h as a term of the computed indentation.
     """
-    deepest = block.max_scales[DEPTH] if law.adhesive else 0.0
+    deepest = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
     farthest = max(abs(block.z[0]), abs(block.z[count - 1])) + abs(h) + deepest
     return float(stiffness * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * rounding) * farthest + force_error)
 
@@ -63,7 +63,7 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
     """
     params, first, state = block.params, law.params_of(block.params, 0), block.contacts[STATE]
     scratch, in_contact = block.scratch, block.in_contact
-    lift = block.max_scales[DEPTH] if law.adhesive else 0.0
+    lift = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
     high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
     if law.adhesive:
@@ -80,8 +80,8 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
             own = law.params_of(params, i)
             stiffness = max(stiffness, abs(law.stiffness(max(state[i], low), own)))
             error = max(error, abs(law.force(state[i], own)) * law.relative_errors(own)[0])
-    stiffness, error = count * stiffness * block.max_scales[RIGIDITY], count * error * block.max_scales[LOAD]
-    return law.total_error(count, block, h, stiffness, error, 0.0)
+    stiffness *= count * block.max_scales[STIFFNESS_SCALE]
+    return law.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
 
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
@@ -102,6 +102,6 @@ def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
             if law.terms_cancel:
                 g, load = law.term_sizes(contacts[STATE, i], own)
                 each += of_force * load + _NEXT_TO_A_FOLD * of_indentation * k * g
-            stiffness, error = stiffness + scales[RIGIDITY, i] * k, error + scales[LOAD, i] * each
+            stiffness, error = stiffness + scales[STIFFNESS_SCALE, i] * k, error + scales[FORCE_SCALE, i] * each
             rounding = max(rounding, of_indentation)
     return law.total_error(count, block, h, stiffness, error, rounding)

@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from roughmdr.aggregate.block import CONTACT_ROWS, DEPTH, SCALES, SIZE, Block, SumKernels, Totals, law
+from roughmdr.aggregate.block import CONTACT_ROWS, DEPTH_SCALE, RADIUS_SCALE, SCALES, Block, SumKernels, Totals, law
 from roughmdr.aggregate.contacts import (
     evaluate,
     force_of_state,
@@ -103,7 +103,7 @@ def _loop(
         for step in range(separation.size):
             h = separation[step]
             begin, end = memory.first[step], memory.first[step + 1]
-            count = count_above(z, law.lowest_in_contact(h, begin, end, memory, max_scales[DEPTH]))
+            count = count_above(z, law.lowest_in_contact(h, begin, end, memory, max_scales[DEPTH_SCALE]))
             if count > 0:
                 visits += count
                 law.solve_contacts(count, block, h, adhesion_range, memory, begin, end)
@@ -120,7 +120,7 @@ def _loop(
             if step == turn:
                 for i in range(count):
                     if not law.adhesive or in_contact[i] > 0.0:
-                        totals.max_radius[start + i] = scales[SIZE, i] * law.radius_at(contacts, params, i)
+                        totals.max_radius[start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
             if count > 0:
                 law.add_totals(count, block, step, totals)
     for row in range(ROWS):
@@ -156,7 +156,7 @@ def _compiled(kernels: Kernels) -> SumKernels:
     return whole
 
 
-def add_asperities(
+def sum_over_asperities(
     kernels: Kernels,
     height: Floats,
     columns: Columns,

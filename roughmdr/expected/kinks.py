@@ -17,9 +17,7 @@ from roughmdr.expected.node import Problem, contacts_of, dissipated_of, set_up, 
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 32  # more of them take longer than they are worth
-_MAX_SPREAD = (
-    100.0  # largest parameter over the median at which 1e-17 of all may be left out: forces grow as its square
-)
+_MAX_SPREAD = 100.0  # largest parameter over the median: 1e-17 of all are left out, and forces grow as its square
 _SCAN_ORDER = 40
 _ORDERS = (40, 56)  # on each side of a cut; the second is used, and its difference to the first is its error
 
