@@ -82,7 +82,7 @@ def by_the_sum(
     memory = staircase(path) if adhesion.work else no_memory(path)
 
     def action() -> int:
-        _, _, visits = loop.add_asperities(
+        _, _, visits = loop.sum_over_asperities(
             kernels, ensemble.height, columns, MODULUS, adhesion, path, memory, set(rows)
         )
         return visits

@@ -10,7 +10,7 @@ from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats
 
 # Rows of the natural scales of a block.
-DEPTH, PER_DEPTH, SIZE, LOAD, RIGIDITY, WORTH = range(6)
+DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE = range(6)
 SCALES = 6
 # Rows of its contacts; the last three are filled where the kernels find them together with the state.
 STATE, RADIUS, FORCE, STIFFNESS = range(4)

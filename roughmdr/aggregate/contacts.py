@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import DEPTH, FORCE, PER_DEPTH, RADIUS, STATE, STIFFNESS, Block, law
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE, PER_DEPTH, RADIUS, STATE, STIFFNESS, Block, law
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 
 
 def update_contact(count: int, block: Block, memory: Staircase, begin: int, end: int) -> None:
-    """Set which of the first ``count`` asperities are in contact, by steps begin to end of the staircase."""
-    z, depth, in_contact, bottom, top = block.z, block.scales[DEPTH], block.in_contact, memory.bottom, memory.top
+    """Set which of the first ``count`` asperities are in contact, by the pairs begin to end of the staircase."""
+    z, depth, in_contact, bottom, top = block.z, block.scales[DEPTH_SCALE], block.in_contact, memory.bottom, memory.top
     low, high = bottom[begin], top[begin]
     for i in range(count):
         in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
@@ -39,7 +39,7 @@ def solve_closed(
     Without adhesion all of them are. Those out of contact have the state of first touch.
     """
     z, params, in_contact, state = block.z, block.params, block.in_contact, block.contacts[STATE]
-    depth, per_depth = block.scales[DEPTH], block.scales[PER_DEPTH]
+    depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]
     if law.adhesive:
         law.update_contact(count, block, memory, begin, end)
         for i in range(count):
@@ -56,10 +56,10 @@ def solve_iterative(
 ) -> None:
     """Do as ``solve_closed`` by Newton's method: one step for all contacts at a time, so that none waits for another.
 
-    Where a contact can be on one of several branches ``block.in_contact``, from the step before, is its number.
+    With several branches, ``block.in_contact`` holds the number of the branch at the step before, and then the new one.
     """
     z, params, in_contact, last_step = block.z, block.params, block.in_contact, block.scratch
-    depth, per_depth, state = block.scales[DEPTH], block.scales[PER_DEPTH], block.contacts[STATE]
+    depth, per_depth, state = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH], block.contacts[STATE]
     x = block.contacts[RADIUS]  # until a is found
     lift = 1.0 if law.adhesive else 0.0
     for i in range(count):

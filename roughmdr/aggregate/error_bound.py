@@ -1,32 +1,32 @@
 """How far the sum of the forces of a block can be off.
 
-A kernel finds the state t of a contact where the indentation D, as it computes it, is z - h. With all digits D(t)
-is off by some eta, and the right state is the t* with D(t*) = z - h. So the force is off by what P(t) is computed
-wrongly by, and by |P(t) - P(t*)|. That is at most m |k(t)| eta, whichever way k goes along the branch:
+A kernel finds the state t of a contact where the indentation D, as it computes it, is z - h. The exact D(t) differs
+from that by some eta, and the right state is the t* with D(t*) = z - h. So the error of the force is the error of P at
+t, and |P(t) - P(t*)|. The latter is at most m |k(t)| eta, whether k grows or falls along the branch:
 
-- Far from a fold k is all but the same from t to t*, and m is 1.
-- Next to a smooth fold P goes with y = t - t_c, and D - D_c with y^2, where two folds are about to meet with y^3, or
-  with something between. Upwards dy/dD falls, and m is 1. Downwards t* is no further off than the fold itself, and
-  from there on y/(D - D_c) is 2 or 3 times dy/dD at t. So m is 2 or 3, however close the fold is.
-- Where t is so close to a fold that no digit of the slope of D is left, what is computed for |k| is some a/u, and |k|
-  eta, with eta >= u dl, no less than the force itself.
+- Far from a fold k is nearly equal at t and t*, and m is 1.
+- Next to a smooth fold P - P_c is proportional to y = t - t_c, and D - D_c to y^2, or to y^3 where two folds are about
+  to meet, or to a power between. If t* lies above t, dy/dD is less there, and m is 1. If t* lies below t, it is at
+  least the fold itself, and y/(D - D_c) is 2 or 3 times dy/dD at t. So m is 2 or 3, however close the fold is.
+- So close to a fold that no digit of the slope of D is left, the computed |k| is of the order a/u (u is the unit
+  roundoff), and eta is at least u dl (dl is the part of adhesion in D), so that |k| eta is at least the force itself.
 
-eta is made of the roundings of z - h and of the depth, which times m are at most 4 u (|z| + |h| + depth); those of
-x are as small as D - D_c is there. Where D is computed as g - dl, the errors of both come to it, some u (g + dl),
-and g is z - h + dl. Where the state comes from the distance to the fold itself, it has none of these.
+eta consists of the roundings of z - h and of the depth, which times m are at most 4 u (|z| + |h| + depth). The
+roundings of x are relative to D - D_c and negligible. Where D is computed as g - dl, the errors of g and dl, some
+u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the distance to the fold they are not.
 """
 
 import math
 
 from roughmdr.aggregate.block import (
-    DEPTH,
+    DEPTH_SCALE,
     FORCE,
-    LOAD,
+    FORCE_SCALE,
     PER_DEPTH,
     RADIUS,
-    RIGIDITY,
     STATE,
     STIFFNESS,
+    STIFFNESS_SCALE,
     Block,
     law,
 )
@@ -43,7 +43,7 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
     ``force_error`` [N] is the sum of the errors of their forces, each at its state; ``rounding`` the relative error of
     z - h as a term of the computed indentation.
     """
-    deepest = block.max_scales[DEPTH] if law.adhesive else 0.0
+    deepest = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
     farthest = max(abs(block.z[0]), abs(block.z[count - 1])) + abs(h) + deepest
     return float(stiffness * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * rounding) * farthest + force_error)
 
@@ -63,7 +63,7 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
     """
     params, first, state = block.params, law.params_of(block.params, 0), block.contacts[STATE]
     scratch, in_contact = block.scratch, block.in_contact
-    lift = block.max_scales[DEPTH] if law.adhesive else 0.0
+    lift = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
     high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
     if law.adhesive:
@@ -80,8 +80,8 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
             own = law.params_of(params, i)
             stiffness = max(stiffness, abs(law.stiffness(max(state[i], low), own)))
             error = max(error, abs(law.force(state[i], own)) * law.relative_errors(own)[0])
-    stiffness, error = count * stiffness * block.max_scales[RIGIDITY], count * error * block.max_scales[LOAD]
-    return law.total_error(count, block, h, stiffness, error, 0.0)
+    stiffness *= count * block.max_scales[STIFFNESS_SCALE]
+    return law.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
 
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
@@ -102,6 +102,6 @@ def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
             if law.terms_cancel:
                 g, load = law.term_sizes(contacts[STATE, i], own)
                 each += of_force * load + _NEXT_TO_A_FOLD * of_indentation * k * g
-            stiffness, error = stiffness + scales[RIGIDITY, i] * k, error + scales[LOAD, i] * each
+            stiffness, error = stiffness + scales[STIFFNESS_SCALE, i] * k, error + scales[FORCE_SCALE, i] * each
             rounding = max(rounding, of_indentation)
     return law.total_error(count, block, h, stiffness, error, rounding)

@@ -91,7 +91,7 @@ def compute(
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
-    total, max_radius, visits = loop.add_asperities(
+    total, max_radius, visits = loop.sum_over_asperities(
         law,
         ensemble.height,
         columns,
@@ -115,7 +115,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
     for model in adhesion.candidates:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
-        loop.add_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 

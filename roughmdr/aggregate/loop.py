@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from roughmdr.aggregate.block import CONTACT_ROWS, DEPTH, SCALES, SIZE, Block, SumKernels, Totals, law
+from roughmdr.aggregate.block import CONTACT_ROWS, DEPTH_SCALE, RADIUS_SCALE, SCALES, Block, SumKernels, Totals, law
 from roughmdr.aggregate.contacts import (
     evaluate,
     force_of_state,
@@ -57,7 +57,7 @@ def count_above(height: Floats, lowest: float) -> int:
 
 
 def lowest_in_contact(h: float, begin: int, end: int, memory: Staircase, deepest: float) -> float:
-    """Return the height above which an asperity can be in contact: within its fold of a step of the staircase."""
+    """Return the lowest height that can be in contact: the least max(bottom, top - deepest) of the staircase."""
     if not law.adhesive:
         return float(np.nextafter(h, math.inf))  # at z = h there is no contact
     lowest = math.inf
@@ -77,8 +77,9 @@ def _loop(
 ) -> int:
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
-    That is _NOT_REPRESENTABLE where a scale of an asperity in contact is so. ``memory.bottom`` is lower by the adhesion
-    range than the flat was: from so far away the surfaces attract each other.
+    Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. The caller has lowered
+    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``_compiled`` says which
+    functions the names of ``law`` stand for.
     """
     visits = 0
     turn = np.argmin(separation)
@@ -102,7 +103,7 @@ def _loop(
         for step in range(separation.size):
             h = separation[step]
             begin, end = memory.first[step], memory.first[step + 1]
-            count = count_above(z, law.lowest_in_contact(h, begin, end, memory, max_scales[DEPTH]))
+            count = count_above(z, law.lowest_in_contact(h, begin, end, memory, max_scales[DEPTH_SCALE]))
             if count > 0:
                 visits += count
                 law.solve_contacts(count, block, h, adhesion_range, memory, begin, end)
@@ -119,7 +120,7 @@ def _loop(
             if step == turn:
                 for i in range(count):
                     if not law.adhesive or in_contact[i] > 0.0:
-                        totals.max_radius[start + i] = scales[SIZE, i] * law.radius_at(contacts, params, i)
+                        totals.max_radius[start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
             if count > 0:
                 law.add_totals(count, block, step, totals)
     for row in range(ROWS):
@@ -155,7 +156,7 @@ def _compiled(kernels: Kernels) -> SumKernels:
     return whole
 
 
-def add_asperities(
+def sum_over_asperities(
     kernels: Kernels,
     height: Floats,
     columns: Columns,

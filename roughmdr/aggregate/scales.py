@@ -2,7 +2,17 @@
 
 import numpy as np
 
-from roughmdr.aggregate.block import DEPTH, LOAD, PER_DEPTH, RIGIDITY, SCALES, SIZE, WORTH, Block, law
+from roughmdr.aggregate.block import (
+    DEPTH_SCALE,
+    ENERGY_SCALE,
+    FORCE_SCALE,
+    PER_DEPTH,
+    RADIUS_SCALE,
+    SCALES,
+    STIFFNESS_SCALE,
+    Block,
+    law,
+)
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.numerics.summation import block_minimum
 
@@ -20,13 +30,13 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
         (depth, _), size, load, rigidity = law.scales(
             modulus, work, width[start + i], rise[start + i], law.params_of(params, i)
         )
-        scales[DEPTH, i] = depth
+        scales[DEPTH_SCALE, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
-        scales[SIZE, i] = size
-        scales[LOAD, i] = load
-        scales[RIGIDITY, i] = rigidity
+        scales[RADIUS_SCALE, i] = size
+        scales[FORCE_SCALE, i] = load
+        scales[STIFFNESS_SCALE, i] = rigidity
     for i in range(count):
-        scales[WORTH, i] = scales[LOAD, i] * scales[DEPTH, i] if energetic else 1.0
+        scales[ENERGY_SCALE, i] = scales[FORCE_SCALE, i] * scales[DEPTH_SCALE, i] if energetic else 1.0
     unrepresentable = 0
     for row in range(SCALES):
         for i in range(count):

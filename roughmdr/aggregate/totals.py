@@ -2,7 +2,7 @@
 
 import math
 
-from roughmdr.aggregate.block import LOAD, RIGIDITY, SIZE, STATE, WORTH, Block, Totals, law
+from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, STATE, STIFFNESS_SCALE, Block, Totals, law
 from roughmdr.numerics.summation import accumulate, block_sum
 
 # Rows of the totals.
@@ -27,7 +27,8 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
 
     Each total selects its terms as it makes them: another pass over the block for that would cost a tenth of all.
     """
-    size, load, rigidity, worth = block.scales[SIZE], block.scales[LOAD], block.scales[RIGIDITY], block.scales[WORTH]
+    size, load = block.scales[RADIUS_SCALE], block.scales[FORCE_SCALE]
+    rigidity, worth = block.scales[STIFFNESS_SCALE], block.scales[ENERGY_SCALE]
     wanted, total, compensation = totals.wanted, totals.total, totals.compensation
     terms, in_contact, contacts, params = block.scratch, block.in_contact, block.contacts, block.params
     if wanted[FORCE]:
@@ -68,7 +69,7 @@ def jumps(count: int, block: Block) -> float:
     touch, where it goes from no energy to U < 0, or off at its fold, from U > 0 to none.
     """
     now, before, terms, worth, params = (
-        block.in_contact, block.in_contact_before, block.scratch, block.scales[WORTH], block.params
+        block.in_contact, block.in_contact_before, block.scratch, block.scales[ENERGY_SCALE], block.params
     )  # fmt: skip
     for i in range(count):
         made, lost = now[i] > before[i], now[i] < before[i]
@@ -85,7 +86,7 @@ def jumps(count: int, block: Block) -> float:
 def jumps_between_branches(count: int, block: Block) -> float:
     """Return as ``jumps`` the energy where a contact also jumps from one branch to another."""
     now, before, terms, worth, params = (
-        block.in_contact, block.in_contact_before, block.scratch, block.scales[WORTH], block.params
+        block.in_contact, block.in_contact_before, block.scratch, block.scales[ENERGY_SCALE], block.params
     )  # fmt: skip
     for i in range(count):
         changed = now[i] != before[i]

@@ -1,6 +1,6 @@
 """The expected load-separation law: contacts integrated over the heights and over the shape parameters.
 
-Over the heights tables are multiplied that know where contact begins and ends; over the parameters Gauss's rule is used
+Over the heights two tables are multiplied, of one contact and of the density; over the parameters Gauss's rule is used
 in their normal scores, of increasing order until the result no longer changes.
 """
 
@@ -23,7 +23,7 @@ from roughmdr.numerics.arguments import Floats
 
 _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
-_HEAVY_TAIL = 0.05  # index: in a lighter tail the lowest heights bear everything
+_HEAVY_TAIL = 0.05  # tail index below which the heights left out bear a negligible force
 
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused at the end
@@ -83,7 +83,7 @@ def prepare(
 
 
 def _rows(variables: Iterable[str]) -> tuple[int, ...]:
-    """Return the totals that are integrated over the heights: the force and all others but the losses, which jump."""
+    """Return the totals that are integrated over the heights: the force and all others but the energy lost in jumps."""
     return tuple(dict.fromkeys([FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]))
 
 
@@ -128,9 +128,10 @@ def _largest_radii(nodes: list[QuadratureNode], closest: float, count: float) ->
 
 
 def _tail_force(nodes: list[QuadratureNode], closest: float) -> float:
-    """Return the force [N] of an asperity on the heights left out above, with the flat at ``closest`` [m].
+    """Return the mean force [N] per asperity of the heights above the last edge, which are left out, at ``closest``
+    [m].
 
-    inf where their mean force has no bound.
+    inf where that mean has no bound.
     """
     left_out = 0.0
     for fraction, contact, heights in ((node.fraction, node.contact, node.heights) for node in nodes):

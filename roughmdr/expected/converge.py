@@ -1,4 +1,4 @@
-"""The choice of a rule over the shape parameters that more nodes do not change, and the error bound of that rule.
+"""The choice of a rule over the shape parameters, so fine that more nodes change nothing, and its error bound.
 
 It is Gauss's rule for smooth functions, of increasing order; where that does not converge over a single parameter,
 panels.
@@ -27,8 +27,8 @@ _ORDERS = (12, 18, 27, 40, 60, 90, 135)
 _MAX_NODES = 6_000
 _RTOL_ORDER = 1e-11  # of the largest force: orders whose forces differ by less are both right
 _MAX_ERROR = 1e-6  # of the largest: one parameter with a larger error is integrated over panels
-_RTOL_KINKED = 1e-7  # of the largest values: agreement of panels where kinks make more too expensive
-_KINK_FACTOR = 10.0  # times the change by halving panels, where no node may see the kinks between nodes
+_RTOL_KINKED = 1e-7  # of the largest values: tolerance of panels with kinks, where a smaller one costs too much
+_KINK_FACTOR = 10.0  # safety factor on the change by halving panels, since nodes may miss kinks between them
 _SLOW = 0.3  # a higher order that leaves more of the difference does not help
 _SLOWEST = 0.9  # a difference is taken to be at most so much of the one before
 _EXPONENTS = (0.5, 1.0)  # forces are about proportional to such powers of a parameter
@@ -78,7 +78,7 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
         (WARNED_ERROR, _RTOL_KINKED, _KINK_FACTOR) if problem.hysteretic else (_MAX_ERROR, RTOL_PANEL, 1.0)
     )
     smooth: Converged | None = None
-    with suppress(RoughmdrError):  # of parameters that almost no asperity has
+    with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
         smooth = _converge_order(problem, curves)
     if smooth is not None and max(smooth.error, smooth.error_of_others, mean_error(smooth.rule)) <= limit:
         return smooth
@@ -118,7 +118,7 @@ def _converge_order(problem: Problem, curves: Curves) -> Converged:
 
 
 def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
-    """Return the relative error of a rule in the means of powers of a parameter that forces are proportional to.
+    """Return the relative error of a rule in the means of p^0.5 and p, p a parameter: forces vary about like these.
 
     Where a parameter has a pole, rules may agree with each other and all be wrong.
     """
@@ -135,7 +135,9 @@ def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
 def _changes_to_come(change: float, before: float, hysteretic: bool) -> float:
     """Return the sum of all later changes, which decrease as the last two did or more slowly."""
     ratio = min(change / before, _SLOWEST) if before > 0.0 else _SLOWEST
-    if change <= _RTOL_ORDER or before == math.inf:  # either of the two may be nearer, and the coarser one is taken
+    if (
+        change <= _RTOL_ORDER or before == math.inf
+    ):  # the coarser of two rules that agree is used; one change alone shows no rate
         return 2.0 * change
     if hysteretic or change > _SLOW * before:  # between kinks two orders may agree by chance
         change = max(change, before)

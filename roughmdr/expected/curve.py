@@ -24,10 +24,10 @@ from roughmdr.numerics.arguments import Floats
 _RTOL, _RTOL_STIFFNESS = 2e-12, 1e-10
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
 _ROUNDING = 2.0**-44
-# Of the width of the heights: where smaller indentations add nothing, and where without adhesion the first piece ends.
-_NEGLIGIBLE_INDENTATION, _FIRST_EDGE = 1e-7, 1e-2
+_NEGLIGIBLE_INDENTATION = 1e-7  # of the width of the heights
+_FIRST_EDGE = 1e-2  # likewise: the indentation at which the first piece ends without adhesion
 _LOG_COMMON_RANGE = math.log(1e6)  # heights over depths that differ by less share a table
-_GROWTH, _MAX_EDGES = 4.0, 100  # of the width of a piece over that of the one before, before any is halved
+_GROWTH, _MAX_EDGES = 4.0, 100  # ratio of the ends of neighbouring initial pieces, and their number
 
 
 class Curve(NamedTuple):
@@ -36,7 +36,7 @@ class Curve(NamedTuple):
     first: NDArray[np.int64]
     """The first piece of each branch, and the number of all pieces: [branch + 1]."""
     offset: Floats
-    """s^2 less the indentation over the depth: [branch]."""
+    """s^2 - indentation/depth: [branch]."""
     table: AdaptiveTable
 
 

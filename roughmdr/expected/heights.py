@@ -38,8 +38,8 @@ class HeightTable(NamedTuple):
     coefficients: Floats
     """Of the density [1/m]: [piece, 1, order]."""
     doubt: Floats
-    """Error bound of the density [1/m]; fraction of all heights that may stand anywhere on the piece; fraction that
-    may stand on it or not: [piece, 3]."""
+    """Error bound of the density [1/m]; fraction of all heights that lie on the piece, nobody knows where; fraction of
+    which it is not known whether they lie on it: [piece, 3]."""
     below: Floats
     """Fraction of all heights below each edge: [piece + 1]; the last is 1 but for errors."""
     origin: float
@@ -67,7 +67,7 @@ class HeightTable(NamedTuple):
         if heights.fractions is not None:
             counted = _counted(*heights.fractions(np.append(table.low, table.high[-1])))
             deviation = np.abs(counted - fraction)
-            vague = ~(error * width <= _TOLERANCE) | (deviation > _SMOOTH)  # no node may stand where all heights do
+            vague = ~(error * width <= _TOLERANCE) | (deviation > _SMOOTH)  # nodes may miss the heights
             scaled = vague & (error * width < _SMOOTH * fraction) & (deviation < _SMOOTH * fraction)
             even = vague & ~scaled
             coefficients[scaled] *= (counted[scaled] / fraction[scaled])[:, None, None]
@@ -107,9 +107,9 @@ class HeightTable(NamedTuple):
 
 
 def _counted(below: Floats, above: Floats) -> Floats:
-    """Return the fraction of all heights on each piece, from those below and above its edges, by the nearer tail.
+    """Return the fraction of all heights on each piece, from the fractions below its edges or above, the smaller ones.
 
-    Heights below all pieces count as on the first. Where no fraction is known, the piece has all that is missing.
+    Heights below all pieces count as on the first. A piece of unknown fraction gets all that the others leave.
     """
     below[0], above[0] = 0.0, 1.0
     if not (math.isfinite(below[-1]) and math.isfinite(above[-1])):  # as of kappa4 at its ends

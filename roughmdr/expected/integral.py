@@ -48,8 +48,8 @@ def _place_nodes(begin: float, end: float, h: float, offset: float, depth: float
 def _error(force: Floats, density: Floats, weight: Floats, force_error: float, doubt: Floats, cut: bool) -> float:
     """Return how far the integral of the force over a density may be off.
 
-    The error is that of the rule, those of both tables, and that of heights of which only the piece is known, or not
-    even that; ``doubt`` is that of a ``HeightTable``. On a piece that is ``cut`` they may be in contact or not.
+    The error is that of the rule, those of both tables, and that of heights that are known only to be on the piece, or
+    perhaps not on it; ``doubt`` is that of a ``HeightTable``. On a piece that is ``cut`` they may be in contact or not.
     """
     last, last_but_one, largest, mass, force_integral, force_max = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for m in range(force.size):

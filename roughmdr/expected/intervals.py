@@ -45,7 +45,7 @@ def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, I
 
 
 def _without_branches(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
-    """Return one interval a step: all summits above the lowest height that a step of the staircase holds."""
+    """Return one interval a step: all summits above the lowest height that a pair of the staircase holds."""
     depth = contact.depth[0] if contact.law.adhesive else 0.0
     memory = path.memory
     lowest = np.minimum.reduceat(np.maximum(memory.bottom, memory.top - depth), memory.first[:-1])

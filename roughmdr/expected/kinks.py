@@ -1,4 +1,4 @@
-"""Steps of unloading at which some asperities have detached from their lowest summits and others have not.
+"""Steps of unloading at which, for some shape parameters but not for others, the lowest summits have detached.
 
 The summits in contact are those above max(bottom, top - depth). Over the shape parameters that has a kink where
 depth = top - bottom, and where top - depth is an end of all heights: Gauss's rule must be split there.
@@ -17,9 +17,9 @@ from roughmdr.expected.node import Problem, contacts_of, dissipated_of, set_up, 
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 32  # more of them take longer than they are worth
-_MAX_SPREAD = 100.0  # over the median: beyond the last score are 1e-17 of all, and nothing grows faster than its square
+_MAX_SPREAD = 100.0  # largest parameter over the median: 1e-17 of all are left out, and forces grow as its square
 _SCAN_ORDER = 40
-_ORDERS = (40, 56)  # on each side of a cut; the second tells how right the first is
+_ORDERS = (40, 56)  # on each side of a cut; the second is used, and its difference to the first is its error
 
 
 class KinkSplit(NamedTuple):
@@ -31,7 +31,7 @@ class KinkSplit(NamedTuple):
 
     @classmethod
     def of(cls, problem: Problem) -> "KinkSplit | None":
-        """Return None where there are no kinks, where not exactly one parameter is drawn, or for too many steps.
+        """Return None without hysteresis, where not exactly one parameter is drawn, or if too many steps have kinks.
 
         Nor is the rule split where it would leave out parameters that matter, or that no contact can have.
         """

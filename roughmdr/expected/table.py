@@ -12,7 +12,10 @@ ORDER = 16
 """Coefficients of each series."""
 _MAX_HALVINGS = 400  # as many as the heaviest tail needs
 _MAX_PIECES_AT_ONCE = 2**12  # a function that no polynomial fits would make more and more of them
-_NOISE, _BETTER = 1e-8, 0.25  # last coefficients so small that halving does not lessen are the function's own roundings
+_NOISE, _BETTER = (
+    1e-8,
+    0.25,
+)  # below _NOISE, last coefficients that halving leaves above _BETTER of the former are roundings
 _NEGLIGIBLE = 1e-16  # of the largest value: such coefficients are roundings, and cost time
 _LAST = 2  # of the coefficients, which tell how far the series is off
 

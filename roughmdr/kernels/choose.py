@@ -67,8 +67,8 @@ def _dugdale(shape: type[Shape]) -> Kernels:
 def choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:
     """Return the kernels for asperities of one shape, whose ``params`` are as from ``Shape.nondimensionalise``.
 
-    OutOfRange where adhesion and exponent do not go together: below 1/2 only a metastable branch exists, at 1/2 the
-    springs' detachment runs parallel to the profile.
+    OutOfRange where adhesion and exponent do not go together: for n < 1/2 the only branch is
+    metastable, at n = 1/2 dl(a) and g(a) are proportional.
     """
     kind = SHAPES[shape]
     if adhesion.work > 0.0:

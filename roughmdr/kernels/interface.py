@@ -1,8 +1,9 @@
 """The kernels of one contact, by the names that loops and contacts call them: floats in, floats out.
 
-All is reduced by the natural scales of the contact. ``x`` is the distance to the onset of contact over the natural
-depth: delta/depth without adhesion, 1 - delta/delta_c with it, delta_c where a slow retraction ends. ``params`` are
-those of one contact: a number, or a row of numbers. The state of a contact is one number that grows with its radius.
+All is reduced by the natural scales of the contact. ``x`` is the distance to detachment, without adhesion to first
+touch, over the natural depth: delta/depth without adhesion, 1 - delta/delta_c with it, delta_c where a slow retraction
+ends. ``params`` are those of one contact: a number, or a row of numbers. The state of a contact is one number that
+grows with its radius.
 """
 
 from collections.abc import Callable
@@ -68,11 +69,11 @@ class Kernels(ModuleType):
     state: Kernel
     """(x, params) -> the state on the branch that a retraction follows."""
     state_of_force: Kernel
-    """(distance to the onset under dead load, params under dead load) -> the state."""
+    """(distance to detachment under dead load, params under dead load) -> the state."""
     state_of_radius: Kernel
     """(a, natural radius, params) -> the state; NaN where the radius does not determine it."""
     radius_of_force: Kernel | None = None
-    """(distance to the onset under dead load, params under dead load) -> a over the radius of ``force_scales``, where
+    """(distance to detachment under dead load, params under dead load) -> a over the radius of ``force_scales``, where
     that has more digits than the radius of the state."""
     reduced_control: Kernel
     """(state, params) -> x."""
@@ -89,11 +90,11 @@ class Kernels(ModuleType):
     cohesive_radius: Kernel
     """(state, params) -> c over natural radius, where ``cohesive``."""
     relative_errors: Callable[..., tuple[float, float]]
-    """params -> the errors that ``aggregate.error_bound`` allows for: of the force over its terms, which are P and
-    twice the second of ``adhesion_terms``; of the indentation over g + dl, 0 where the state comes from x itself."""
+    """params -> two relative errors for ``aggregate.error_bound``: of the force, relative to |P| plus twice the second
+    of ``adhesion_terms``; of the indentation, relative to g + dl, 0 where the state comes from x itself."""
     adhesion_terms: Callable[..., tuple[float, float]]
-    """(a, params) -> upper bounds of what adhesion takes from the indentation, over natural force/stiffness, and from
-    the force, over natural force; where ``found_together``."""
+    """(a, params) -> upper bounds of the parts of adhesion: in the indentation (dl in JKR), over natural
+    force/stiffness, and in the force (2 E* a dl), over natural force; where ``found_together``."""
     terms_cancel = False
     """Whether g or a g - G is a sum of terms that cancel."""
     term_sizes: Callable[..., tuple[float, float]]

@@ -35,7 +35,7 @@ class LoadingPath(NamedTuple):
     def at_detachment(self) -> NDArray[np.bool_]:
         """Return for each step whether contacts may be exactly at their detachment.
 
-        They may where the flat, after it was lower, is as high as it has been since.
+        That is so where the flat has been lower and stands now at its highest since.
         """
         last = self.memory.first[1:] - 1
         return np.asarray((self.memory.top[last] == self.separation) & (self.memory.bottom[last] < self.separation))

@@ -30,7 +30,8 @@ def staircase(separation: Floats) -> Staircase:
     pairs: list[tuple[float, float]] = []
     first, bottom, top = [0], [], []
     for h in separation.tolist():
-        # Later pairs have higher bottoms and lower tops: a low flat removes them, a high one makes their tops equal.
+        # Later pairs have higher bottoms and lower tops. A flat at h removes pairs with bottom >= h and lifts lower
+        # tops to h; of pairs with equal tops the first remains.
         while pairs and pairs[-1][0] >= h:
             pairs.pop()
         lifted = [(low, max(high, h)) for low, high in pairs]

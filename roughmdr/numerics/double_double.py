@@ -90,7 +90,7 @@ def log(x: Pair) -> Pair:
 
 @njit
 def exp(x: Pair) -> Pair:
-    """Return e^x, for x[0] within the range of ``math.exp``; the relative error is that of x, and x[1]^2/2."""
+    """Return e^x, for x[0] within the range of ``math.exp``; the relative error is the error of x, plus x[1]^2/2."""
     y = math.exp(x[0])
     error = add(x, multiply((-1.0, 0.0), log((y, 0.0))))
     return two_sum(y, y * (error[0] + error[1]))

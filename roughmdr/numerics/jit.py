@@ -1,4 +1,5 @@
-"""The numba policy, in one place: no fastmath, no GIL, and a disk cache that a changed source file leaves behind.
+"""The numba policy, in one place: no fastmath, no GIL, and a disk cache named after the sources, so that a
+change begins a new one.
 
 Kernels are compiled with ``njit`` from here. A loop that is to be handed its kernels is compiled with ``specialise``.
 """
@@ -61,8 +62,8 @@ def _remove_unused(base: Path) -> None:
 def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _Function:
     """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, nothing reordered), no GIL, cached on disk.
 
-    ``inline`` puts its text into every caller, for parts of a loop that are called too often for a call; ``small`` its
-    machine code, for what vector code is made of.
+    ``inline`` puts its source into every caller: for parts of a loop that are called too often. ``small`` puts its
+    machine code there: for parts of loops that become vector code.
     """
     folder = _cache_folder()
     before = _config.CACHE_DIR

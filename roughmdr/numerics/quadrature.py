@@ -11,12 +11,12 @@ from roughmdr.numerics.gauss import gauss, unit_gauss
 Rows = NDArray[np.intp]
 
 _ORDER = 16
-# A panel is done where its halves change it by less than this part of the whole integral. The halves are far better
-# than their change tells. The halvings suffice for powers x^p at an end down to p = -0.6.
+# A panel is done where its halves change it by less than _RTOL of the whole integral; the error of the halves is far
+# less than that change. The halvings suffice for powers x^p at an end down to p = -0.6.
 _RTOL = 2e-14
 _MAX_HALVINGS = 120
-# A jump that no node sees lies between an end and the node next to it: it is looked for this near to the ends, and
-# followed down to this part of the whole.
+# A jump that no node sees lies between an end and the node next to it: it is looked for at the relative distance
+# _NEXT_TO_END from the ends, and followed down to _RTOL_JUMP of the whole.
 _NEXT_TO_END = 1e-9
 _RTOL_JUMP = 1e-11
 # More panels than these at work on an integral mean that its integrand is noisy: the limit rises to the noise.

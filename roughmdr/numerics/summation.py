@@ -1,7 +1,7 @@
 """Sums in an order that depends on the terms alone: within a block by halves, over the blocks with compensated
 rounding errors (A. Neumaier, Z. angew. Math. Mech. 54 (1974) 39).
 
-By halves, since a running sum must not be reordered and so never becomes vector code.
+By halves, because the compiler may not reorder a running sum and so cannot make vector code of it.
 """
 
 import math

@@ -1,7 +1,7 @@
 """Elementary functions without branches or calls, so that a loop over asperities becomes vector code.
 
-Plain Python on floats, to be compiled, and within three roundings of the function; ``ProfileShape.precisely`` takes
-those of mpmath with their names in their place. Differences that cancel are series where they would lose digits.
+Plain Python on floats, to be compiled, and within three roundings of the function; ``ProfileShape.precisely``
+replaces them by functions of mpmath of the same names. Differences that cancel are series where they would lose digits.
 """
 
 import math

@@ -81,7 +81,7 @@ def test_blocks_are_added_without_loss() -> None:
     z = np.sort(rng.uniform(0.0, 1e-6, count))[::-1].copy()
     columns = Columns(*(np.full(count, value) for value in (5e-5, 2.5e-5, 2.0)))
     h = np.array([0.0])
-    total, _, _ = loop.add_asperities(
+    total, _, _ = loop.sum_over_asperities(
         choose("paraboloid", Adhesion(), columns[2]), z, columns, E, Adhesion(), h, no_memory(h), {totals.FORCE}
     )
     terms = 4.0 / 3.0 * E * math.sqrt(5e-5) * z**1.5
@@ -189,7 +189,7 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
             continue
         columns = Columns(*(np.array([number]) for number in (1e-6, 1e-8, exponent)))
         h = np.array([-indentation]) if indentation > 0.0 else np.array([0.0, -indentation])
-        total, _, _ = loop.add_asperities(
+        total, _, _ = loop.sum_over_asperities(
             choose("power_law", Adhesion(1e-3), columns[2]), np.zeros(1), columns, 1e9, Adhesion(1e-3), h,
             staircase(h), {totals.FORCE, totals.ERROR},
         )  # fmt: skip

@@ -168,7 +168,9 @@ def test_only_the_asked_totals_are_computed() -> None:
     route = LoadingPath.along(np.array([0.0]), unload=False, adhesive=True)
     columns = asperities.nondimensional()
     law = choose("paraboloid", Adhesion(W), columns[2])
-    total, _, _ = loop.add_asperities(law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS})
+    total, _, _ = loop.sum_over_asperities(
+        law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS}
+    )
     assert total[totals.RADIUS, 0] > 0.0
     others = [row for row in range(totals.ROWS) if row != totals.RADIUS]
     assert not total[others].any()

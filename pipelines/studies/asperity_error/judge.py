@@ -95,7 +95,7 @@ class _Subject:
     def force_error(self, height: float, path: list[float]) -> ForceError | None:
         """Compare the sum over the asperity with the exact force; None where it detaches, or is too near to that."""
         h, asked = np.array(path), {totals.FORCE, totals.ERROR}
-        total, _, _ = loop.add_asperities(
+        total, _, _ = loop.sum_over_asperities(
             self.law, np.array([height]), self.columns, self.effective_modulus, self.adhesion, h, staircase(h), asked
         )
         offset = self.depth if self.branches else 0.0

@@ -41,8 +41,8 @@ def scales_power(
 ) -> tuple[Pair, float, float, float]:
     """The natural scales with any kappa(n).
 
-    Where f = c r^n is so steep that t^n of a common radius is no normal float, they are those of a width midway (in
-    logarithm) between the one given and that where the profile rises by as much as it is wide.
+    Where f = c r^n is so steep that t^n of a common radius is no normal float, the width is replaced by about the
+    geometric mean of itself and of the radius at which f(r) = r.
     """
     k = 0.0
     if n > _STEEP:

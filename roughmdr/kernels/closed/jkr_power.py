@@ -101,7 +101,7 @@ def stable_log_tau(x: float, e: float) -> float:
 
     The start has the right limits, l ~ sqrt(2 x/(1 + e)) and l ~ ln(x)/(1 + e); Halley's method, on X near the fold and
     on ln X away from it, is at rounding error after three steps for e from 2e-4 to 400 and x up to 1e300. After the
-    first ln(X/x) = 2 (X - x)/(X + x) is as near.
+    first step 2 (X - x)/(X + x) replaces ln(X/x).
     """
     p = 1.0 + e
     z = max(0.5 * p * math.sqrt(2.0 * x / p), _TINY)

@@ -1,4 +1,4 @@
-"""Parameters of contacts in closed form: one number each, or none, which the kernels take as it is."""
+"""Parameters of contacts in closed form: one number per asperity, passed to the kernels unchanged."""
 
 import numpy as np
 

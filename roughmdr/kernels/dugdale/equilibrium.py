@@ -9,11 +9,11 @@ beta = 2 sigma0/E*, any profile has (from delta = g(a) - beta m and f(c) = 2/pi 
     d(delta) = (g' + beta a/m) da B/D,   c dc = theta (g' + beta a/m) da c^2/D,
     B = K - beta (c - a),   D = B + beta theta c^2/m,
 
-so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta theta^2 c^2/B. Where the body ends the
-zone does too, as on a flat punch: c stays, the gap there is at most w/sigma0, and B is without bound.
+so that a state is stable under fixed grips where B > 0, and k/(2 E*) = a - beta theta^2 c^2/B. Where the zone reaches
+the end of the profile, as on a flat punch, c stays there; then the gap is at most w/sigma0, and B is infinite.
 
-The state s goes along all equilibria: from 0 to 1 there is no contact yet, a = 0 and c grows with s, and from 1 on a
-grows with s. Notation of ``layout``.
+The state s goes along all equilibria. For s <= 1 there is no contact yet, a = 0 and c grows with s; for s > 1 the
+contact radius a grows with s, on a flat tip as a = s - 1 up to s = 2. Notation of ``layout``.
 """
 
 import math
@@ -28,7 +28,7 @@ _ZONE_ROUNDINGS = 32.0  # of the part of the indentation that the zone takes
 
 
 def state_along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
-    """a over width, delta over rise and its slope over s, P over 2 E* width rise and its slope over s."""
+    """a/width, delta/rise and its derivative by s, P/(2 E* width rise) and its derivative by s."""
     beta = params[STRENGTH]
     if s <= 1.0:
         size = params[JUNCTION]
@@ -47,13 +47,13 @@ def state_along(s: float, params: Floats) -> tuple[float, float, float, float, f
 
 
 def indentation_at(s: float, params: Floats) -> tuple[float, float]:
-    """The indentation at s, and its slope over s."""
+    """The indentation at s, and its derivative by s."""
     _, delta, rise, _, _ = law.state_along(s, params)
     return delta, rise
 
 
 def control_at(s: float, params: Floats) -> tuple[float, float]:
-    """The controlled quantity, indentation or force, and its slope over s."""
+    """The controlled quantity, indentation or force, and its derivative by s."""
     _, delta, rise, push, growth = law.state_along(s, params)
     return (delta, rise) if params[CONTROL] == 0.0 else (push, growth)
 
@@ -111,7 +111,8 @@ def relative_errors(params: Floats) -> tuple[float, float]:
 def energy(s: float, params: Floats) -> float:
     """U, elastic and of both surfaces, over 2 E* width rise^2 DEPTH; 0 where the surfaces do not attract each other.
 
-    E* ∫ u1^2 dx - pi w c^2 + sigma0 ∫ gap dA, whose last integral is 4 ∫_a^c (g - delta + u1) sqrt(c^2 - x^2) dx.
+    E* ∫ u1^2 dx - pi w c^2 + sigma0 ∫ gap dA, where u1(x) is the displacement of the spring at x (up to c), and the
+    last integral is 4 ∫_a^c (g - delta + u1) sqrt(c^2 - x^2) dx.
     """
     beta, t, a, m, theta, g = params[STRENGTH], 0.0, 0.0, s * params[JUNCTION], 0.5 * math.pi, 0.0
     if s == 0.0:

@@ -2,7 +2,7 @@
 
 Between delta = 0 and -beta b the contact shrinks from a = b to 0, a^2 = b^2 - (delta/beta)^2; below, all of the punch
 is pulled with the strength. It detaches where the gap at its edge is w/sigma0. The state is delta/b.
-Notation of ``params``.
+Rows as in ``profile.layout``, except for FOLD.
 """
 
 import math
@@ -63,6 +63,7 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
         params[ONSET] = 1.0 - gap_limit / depth
         angle_term = angle + math.sin(angle) * math.cos(angle)
         params[DEPTH] = depth if control == 0.0 else 0.5 * beta * angle_term
+        # pi/2 - (angle + sin cos) at detachment
         params[FOLD] = 0.5 * math.pi - angle_term if angle < 0.5 * math.pi else 0.0
     return rows
 

@@ -1,8 +1,9 @@
 """One paraboloid under adhesion with a range, whose equilibria have a closed form. Notation of ``equilibrium``.
 
-With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m, s = 1 + sigma and e = 1 + sigma^2 = c^2/m^2, the gap is
+With f = r^2 and g = 2 x^2 (width R, rise R/2), sigma = a/m = s - 1 and e = 1 + sigma^2 = c^2/m^2, the gap is
 
-    2/pi [S c^2 + beta B c],   S = (sigma + theta (1 - sigma^2))/e,   B = (theta - 1/(sqrt e + sigma))/sqrt e,
+    2/pi [spread c^2 + pull c],   spread = (sigma + theta (1 - sigma^2))/e,
+    pull = beta (theta - 1/(sqrt e + sigma))/sqrt e,
 
 so that c follows from a quadratic equation (D. Maugis, J. Colloid Interface Sci. 150 (1992) 243).
 """

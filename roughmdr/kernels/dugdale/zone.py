@@ -5,8 +5,8 @@ Its integrals, in units of the shape's width and rise:
     J = ∫ (g(x) - g(a))/sqrt(c^2 - x^2) dx,   K = ∫ x g'(x)/sqrt(c^2 - x^2) dx,
     L = ∫ (g(x) - g(a)) sqrt(c^2 - x^2) dx.
 
-At the end of the profile, where it is upright and c comes no further, K is without bound.
-From each edge y of the profile on g is smooth in q = sqrt(x^2 - y^2) = sqrt(c^2 - y^2) cos(psi), and
+Where c is at the end of the profile, which is upright there, K is infinite.
+Beyond each breakpoint y of the profile, g is smooth in q = sqrt(x^2 - y^2) = sqrt(c^2 - y^2) cos(psi), and
 dx/sqrt(c^2 - x^2) is q/x dpsi. Where the zone is thin g(x) - g(a) has few digits; by parts, with A = acos(x/c),
 
     J = ∫ g'(x) A dx,   L = ∫ g'(x) [c^2 A - x sqrt(c^2 - x^2)]/2 dx.
@@ -23,7 +23,7 @@ _Z, _WEIGHT = unit_gauss(40)
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
 _PANEL_RATIO = 8.0  # of the ends of a panel, at most
 _THIN = 0.01  # m/a: in a thinner zone g(x) - g(a) has too few digits
-_STEEP = 6.0  # over sqrt(n): the psi within which x^n falls below rounding
+_STEEP = 6.0  # _STEEP/sqrt(n) is the psi at which (x/c)^n is below rounding
 _NEAREST = 1e-8  # distance to the end of the profile, over it; its square is below rounding
 _BEFORE = 1.0 - 2.0**-53  # of the end of the profile: up to there g is finite
 _UNBOUNDED = 1e100  # stands for infinity
@@ -85,7 +85,7 @@ def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -
         begin, after = law.breakpoint(i, params) if i < count else (math.inf, 0.0)
         if begin > low:
             high = min(begin, c)
-            while base > 0.0 and _PANEL_RATIO * low < high:  # at q << x as smooth as at q = x
+            while base > 0.0 and _PANEL_RATIO * low < high:  # so that g is as smooth on each panel
                 parts = law.zone_panel(low, _PANEL_RATIO * low, base, g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _PANEL_RATIO * low

@@ -41,7 +41,7 @@ def find_junction(params: Floats) -> bool:
 
 
 def gap_at(a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
-    """pi/2 times the gap at c, and its slope over m^2/2."""
+    """pi/2 times the gap at c, and its derivative by m^2/2."""
     c, theta = math.sqrt(a * a + m * m), _atan(m / a)
     j, k, _ = law.zone_integrals(a, g, m, theta, params)
     short = m * m / (c + a)
@@ -79,7 +79,7 @@ def zone_width(a: float, g: float, slope: float, params: Floats) -> float:
 
 
 def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
-    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, and da/ds and dg/ds. On a flat s - 1 is a, and t is 0."""
+    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds. On a flat tip, s < 2, t is 0."""
     if law.flat and s < 2.0:
         a = s - 1.0
         m = law.zone_width(a, 0.0, 0.0, params)

@@ -40,7 +40,8 @@ def state(x: float, params: Floats) -> float:
 def branch(x: float, before: float, touched: bool, params: Floats) -> float:
     """The branch, 1, 2, ... or 0 for none, after a path in one direction to x from a state on branch ``before``.
 
-    A contact begins on the first branch where it is ``touched``, and jumps to the next where its branch ends.
+    Out of contact, a path that is ``touched``, at ONSET or beyond, enters branch 1. Where a branch ends the contact
+    jumps to the next.
     """
     j = int(before)
     if j == 0 and touched:
@@ -58,7 +59,7 @@ def jump_energy(before: float, after: float, params: Floats) -> float:
     if j == 0 and last > 0:
         first = law.branch(params[ONSET], 0.0, True, params)
         lost -= law.energy(law.state_on_branch(params[ONSET], first, params), params) if first > 0.0 else 0.0
-        j = max(int(first), 1)  # attraction can also begin without a jump
+        j = max(int(first), 1)  # where ``branch`` is 0 attraction begins without a jump, on branch 1
     while j < last:
         x, u = params[TOP_X + j - 1], law.energy(params[TOP + j - 1], params)
         j += 1

@@ -74,7 +74,7 @@ def scales(
 def force_scales(
     effective_modulus: float, work: float, width: float, rise: float, params: Floats
 ) -> tuple[Pair, float]:
-    """Return the depth of a row under dead load [N], and the width [m]."""
+    """Return the pull-off force [N], DEPTH of a row under dead load in SI, and the width [m]."""
     return ((2.0 * effective_modulus * width * rise * params[DEPTH] if params[COUNT] > 0.0 else 0.0), 0.0), width
 
 
@@ -155,7 +155,7 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         kernels = inlined if part in small else whole
         inline = name in ("params_of", "shared_params")
         vars(whole)[name] = specialise(part, kernels, inline=inline, small=part in small)
-    whole.state_of_force = whole.state
+    whole.state_of_force = whole.state  # of a row under dead load
     if shared:
         whole.prepare, whole.params_of = whole.prepare_shared, whole.shared_params
     vars(inlined).update({**vars(whole), **vector})

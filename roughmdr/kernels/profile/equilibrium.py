@@ -15,14 +15,14 @@ _NODES, _WEIGHTS = unit_gauss(20)
 
 
 def indentation_at(t: float, params: Floats) -> tuple[float, float]:
-    """The indentation at t > 0, and its slope over t."""
+    """The indentation at t > 0, and its derivative by t."""
     a, da, g, dg = law.mdr_profile(t, params)
     root, tension = math.sqrt(a), params[TENSION]
     return g - tension * root, dg - 0.5 * tension * da / root
 
 
 def control_at(t: float, params: Floats) -> tuple[float, float]:
-    """The controlled quantity, indentation or force, and its slope over t."""
+    """The controlled quantity, indentation or force, and its derivative by t."""
     tension = params[TENSION]
     if params[CONTROL] == 0.0 and tension > 0.0:
         return law.indentation_at(t, params)

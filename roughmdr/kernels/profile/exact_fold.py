@@ -1,6 +1,6 @@
-"""The depth of a fold, where an asperity detaches, beyond the digits of a float.
+"""The pull-off of one asperity, at the fold where it detaches, beyond the digits of a float.
 
-Where X is the distance to the fold, an error of the fold is magnified by 1/sqrt(X) in what is found there.
+At the distance X to the fold, an error of the fold is magnified by 1/sqrt(X) in radius, force and stiffness.
 """
 
 from roughmdr.kernels.profile.layout import CONTROL, FOLD
@@ -10,7 +10,9 @@ from roughmdr.shapes import ProfileShape
 
 
 def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, params: Floats) -> Pair:
-    """-delta [m] or -P [N] at the lowest foot of a row (H 40-41, 44), as two floats.
+    """Minus the indentation [m] (fixed grips) or minus the force [N] (dead load) at detachment, as two floats.
+
+    These are dl(a) - g(a) and 2 E* [a dl(a) - (a g - G)] at the lowest foot of the row (H 40-41, 44).
 
     The quantity is stationary there, so that the rounding of t does not matter.
     """

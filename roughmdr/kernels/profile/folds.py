@@ -1,4 +1,5 @@
-"""The stable branches of one asperity: where each begins, at a fold or a corner, and where it ends.
+"""The stable branches of one asperity: where each begins (its foot, a fold or a corner, where the contact detaches),
+and where it ends.
 
 A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g'(a) > tension under fixed grips, and
 > 3 tension under dead load (H 32, 40). Notation of ``layout``.
@@ -27,8 +28,9 @@ from roughmdr.numerics.arguments import Floats
 
 _LARGEST = 1e140  # its square is a float
 _RTOL = 1e-15
-# Within _NEAR of a foot, relative to it, a difference has lost too many digits for its square root; in proportion
-# more where its terms are above _SWING times the depth. Up to _FARTHEST an integral is exact to rounding.
+# Nearer than _NEAR to a foot, relative to t, the controlled quantity above the foot is the integral of its slope, since
+# the difference has lost too many digits. Where its terms are above _SWING times the depth that distance is larger in
+# proportion, but at most _FARTHEST: up to there Gauss's rule is exact to rounding.
 _NEAR, _SWING, _FARTHEST = 4e-3, 8.0, 0.1
 _NEXT = 2.0**-52
 

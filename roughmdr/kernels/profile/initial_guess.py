@@ -1,5 +1,5 @@
-"""The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts of them; power laws
-outside.
+"""The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts of them, and
+power laws beyond.
 
 y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
 ``layout``.
@@ -31,13 +31,11 @@ def y_of_x(x: float, params: Floats) -> float:
 
 
 def initial_guess(x: float, params: Floats) -> float:
-    """t within the octaves; outside any number."""
+    """t within the octaves; meaningless outside."""
     node, u = _octave(law.y_of_x(x, params), law.split)
     node = min(max(node, 0), (OCTAVES << law.split) - 1)
-    at, parts = (
-        law.first_node + 2 * node,
-        (1 << law.split) + (node & ((1 << law.split) - 1)),
-    )  # parts in the y of the node
+    at = law.first_node + 2 * node
+    parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
     t, rise = params[at], params[at + 2] - params[at]
     first, last = params[at + 1] / float(parts), params[at + 3] / float(parts + 1)
     return float(t + u * (first + u * ((3.0 * rise - 2.0 * first - last) + u * (first + last - 2.0 * rise))))
@@ -61,7 +59,7 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 
 def extrapolate_node(node: int, interval: float, params: Floats) -> float:
-    """t at a node, estimated from the one before, ln y less by ``interval``: t beyond the foot is a power of y."""
+    """t at a node, from the node before, whose ln y is less by ``interval``: t - foot is about a power of y."""
     foot, at = params[LAST], law.first_node + 2 * node
     way, step = params[at - 2] - foot, params[at - 1] * interval
     power = step / way if way > 0.0 else 0.0

@@ -35,9 +35,9 @@ class ProfileKernels(Kernels):
     t_of_q: Kernel
 
     indentation_at: Callable[..., tuple[float, float]]
-    """(t, params) -> the indentation and its slope over t."""
+    """(t, params) -> the indentation and its derivative by t."""
     control_at: Callable[..., tuple[float, float]]
-    """(t, params) -> the controlled quantity, indentation or force, and its slope over t."""
+    """(t, params) -> the controlled quantity, indentation or force, and its derivative by t."""
     steepness: Kernel
     log_excess: Kernel
     steepness_crossing: Kernel

@@ -2,6 +2,7 @@
 
 In units of the shape's width and rise the contact is indentation = g(a) - tension sqrt(a) and, over 2 E* width rise,
 force = ∫ x g' dx - tension a^(3/2), with tension = dl(width)/rise. A branch is stable from its foot to its top.
+Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of t in FOLD, LAST, FOOT and TOP.
 """
 
 MAX_BRANCHES = 8
@@ -14,10 +15,12 @@ DEPTH = -3  # distance of the lowest foot below first touch, in the controlled q
 FOLD = -4  # t of the lowest foot
 COUNT = -5  # number of stable branches; 0 where they are too many, or not representable
 LAST, LAST_X = -6, -7  # the foot of the last branch: its t and its x, the distance to the lowest foot over DEPTH
-ONSET = -8  # the x at which contact, or attraction, begins
+ONSET = -8  # the x at which contact, or attraction, begins when the surfaces approach
 STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range
-JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and the unit of t - 1
-NEAR = -13  # over t: nearer to a foot the integral of the slope is more precise than the difference of values
+JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and t over s - 1 (s - 2 on a flat)
+NEAR = (
+    -13
+)  # relative to t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
 FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
 FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first
 

@@ -64,8 +64,8 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
     """One step of Newton's method on the last branch under fixed grips, not below its foot: the new t, the distance
     that the old one had to the state, and dt/dx.
 
-    The distance is the step, or the relative change of the value times the distance to the foot if that is larger: the
-    value of a steep power changes more than t.
+    That is the larger of the step and of the relative error of the value times the distance to the foot: on a steep
+    power law the value changes much more than t.
     """
     value, slope = law.indentation_at(t, params)
     lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0
