@@ -80,7 +80,7 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
             own = law.params_of(params, i)
             stiffness = max(stiffness, abs(law.stiffness(max(state[i], low), own)))
             error = max(error, abs(law.force(state[i], own)) * law.relative_errors(own)[0])
-    stiffness *= count * block.max_scales[STIFFNESS_SCALE]
+    stiffness = count * stiffness * block.max_scales[STIFFNESS_SCALE]
     return law.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
 
 
