@@ -30,12 +30,9 @@ _NORMAL = Distribution("norm", (), 0.0, 1.0)
 class Summits(NamedTuple):
     """Summits that were drawn."""
 
-    height: Floats
-    """Above the mean plane of the surface [m]."""
-    mean_curvature: Floats
-    """(k1 + k2)/2 [1/m]."""
-    radius: Floats
-    """1/sqrt(k1 k2) [m] (J. A. Greenwood, Wear 261 (2006) 191)."""
+    height: Floats  # above the mean plane of the surface [m]
+    mean_curvature: Floats  # (k1 + k2)/2 [1/m]
+    radius: Floats  # 1/sqrt(k1 k2) [m] (J. A. Greenwood, Wear 261 (2006) 191)
 
 
 class SummitDistribution(NamedTuple):
@@ -116,6 +113,19 @@ class SummitDistribution(NamedTuple):
         return np.asarray(scale * np.where(y > 0.0, near, far) / erfcx(math.sqrt(1.5) * root))
 
 
+def product_density(v: ArrayLike) -> Floats:
+    """Return the density [1] of v over all summits, v exp(v) erfc(sqrt(3 v/2)), at v of at least 0."""
+    from scipy.special import erfcx
+
+    v = np.asarray(v, dtype=np.float64)
+    return np.asarray(v * np.exp(-0.5 * v) * erfcx(np.sqrt(1.5 * v)))
+
+
+def _root_density(y: Floats) -> Floats:
+    """Return the density of sqrt(v)."""
+    return 2.0 * y * product_density(y * y)
+
+
 def product_of_score(scores: Floats) -> Floats:
     """Return v [1] at the quantiles, among all summits, of normal scores from -9 to 9.
 
@@ -137,16 +147,3 @@ def product_of_score(scores: Floats) -> Floats:
         slope = _root_density(y) * np.sqrt(2.0 * np.pi) * np.exp(0.5 * at_y**2)
         y = np.clip(y - (at_y - scores) / slope, 0.5 * y, 2.0 * y)
     return np.asarray(y * y)
-
-
-def _root_density(y: Floats) -> Floats:
-    """Return the density of sqrt(v)."""
-    return 2.0 * y * product_density(y * y)
-
-
-def product_density(v: ArrayLike) -> Floats:
-    """Return the density [1] of v over all summits, v exp(v) erfc(sqrt(3 v/2)), at v of at least 0."""
-    from scipy.special import erfcx
-
-    v = np.asarray(v, dtype=np.float64)
-    return np.asarray(v * np.exp(-0.5 * v) * erfcx(np.sqrt(1.5 * v)))

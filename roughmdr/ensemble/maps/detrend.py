@@ -5,8 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.raw_map import blocks
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 
@@ -37,9 +36,8 @@ def remove_trend(height: Floats, trend: Trend) -> None:
     moments = along_x.T @ moments
     normal = np.array([[products[i, k, j, m] for k, m in powers] for i, j in powers])
     coefficients = np.zeros((degree + 1, degree + 1))
-    coefficients[tuple(zip(*powers, strict=True))] = np.linalg.lstsq(
-        normal, np.array([moments[power] for power in powers]), rcond=None
-    )[0]
+    right = np.array([moments[power] for power in powers])
+    coefficients[tuple(zip(*powers, strict=True))] = np.linalg.lstsq(normal, right, rcond=None)[0]
     for rows in blocks(*height.shape):
         height[rows] -= along_x[rows] @ coefficients @ along_y.T
 
