@@ -6,7 +6,7 @@ from typing import ClassVar
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.base import ProfileShape
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, kink_at_one, one, q_of_radius
+from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radius
 
 
 def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
@@ -95,7 +95,6 @@ class CappedParaboloid(ProfileShape):
         mdr_integral=_mdr_integral,
         corner=True,
         breakpoint_count=one,
-        breakpoint=breakpoint_at_one,
         t_of_q=_t_of_q,
     )
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, atan_minus_cubic, q_minus_atan, sqrt
 from roughmdr.shapes.base import ProfileShape, check_radii
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, kink_at_one, one, q_of_radius, t_is_q
+from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radius, t_is_q
 
 _CONE_SOFTENING_END = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
@@ -55,7 +55,6 @@ class RoundedCone(ProfileShape):
         softening_interval=_cone_softening_interval,
         kink=kink_at_one,
         breakpoint_count=one,
-        breakpoint=breakpoint_at_one,
     )
 
     @classmethod
@@ -106,7 +105,6 @@ class RoundedPunch(ProfileShape):
         mdr_integral=_punch_mdr_integral,
         flat=True,
         breakpoint_count=one,
-        breakpoint=breakpoint_at_one,
         t_of_q=t_is_q,
         roundings=_punch_roundings,
     )

@@ -9,21 +9,14 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, q_minus_atan, sqrt
 from roughmdr.shapes.base import ProfileShape
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, one, q_of_radius, t_is_q
+from roughmdr.shapes.profile import Params, Profile, one, q_of_radius, t_is_q
 
 # Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
 _CONE_SOFTENING_END = 1.0424561234141570
 _PARABOLOID_SOFTENING_END = 0.61575390344349083
 
 _TruncatedProfile = partial(
-    Profile,
-    t_of_radius=q_of_radius,
-    softening_count=one,
-    corner=True,
-    flat=True,
-    breakpoint_count=one,
-    breakpoint=breakpoint_at_one,
-    t_of_q=t_is_q,
+    Profile, t_of_radius=q_of_radius, t_of_q=t_is_q, softening_count=one, corner=True, flat=True, breakpoint_count=one
 )
 
 

@@ -17,10 +17,7 @@ _CUTOFF_RTOL = 1e-9  # a wave as long as the cut-off is kept
 
 
 def remove_trend(height: Floats, trend: Trend) -> None:
-    """Subtract a polynomial in x and y from a map, in place: the least-squares fit to the points that are not NaN.
-
-    It is of degree 0 for "mean", 1 for "plane" and 2 for "quadratic".
-    """
+    """Subtract a polynomial in x and y from a map, in place: the least-squares fit to the points that are not NaN."""
     if trend == "none":
         return
     degree = _DEGREE[trend]
@@ -94,13 +91,10 @@ def _cut_spectrum(height: Floats, along_x: float, along_y: float) -> None:
 
 
 def _smooth(field: Floats, along_x: float, along_y: float) -> None:
-    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside.
-
-    The Gaussian is a product of one along x and one along y. An axis with one point, along which the field is constant,
-    is skipped.
-    """
+    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside."""
     from scipy import fft
 
+    # The Gaussian is a product of one along x and one along y. Along an axis with one point the field is constant.
     for rows_along, spacings in ((field.T, along_x), (field, along_y)):
         n = rows_along.shape[1]
         if n == 1:

@@ -38,19 +38,13 @@ class HeightMap(NamedTuple):
 
 
 def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
-    """Yield slices over the rows of a map, which bound the memory that work on it takes.
-
-    ``chunk`` rows that belong together are never split.
-    """
+    """Yield slices over the rows of a map, which bound the memory of work on it; they split no chunk of rows."""
     size = chunk * -(-BLOCK_SIZE // (columns * chunk))
     return (slice(first, min(first + size, rows)) for first in range(0, rows, size))
 
 
 def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
-    """Return r.m.s. height [m] and slope [1], the undefined fraction [1], and whether the map is periodic (1) or not.
-
-    The slope is that of both directions, sqrt(<h_x^2> + <h_y^2>), from neighbouring points.
-    """
+    """Return r.m.s. height [m], r.m.s. slope sqrt(<h_x^2> + <h_y^2>), the undefined fraction, and 1 if periodic."""
     height, dx, dy, periodic, _ = surface
     nx, ny = height.shape
     scale = surface.highest or 1.0  # so that no square leaves the range of a float

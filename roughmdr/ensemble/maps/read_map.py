@@ -1,6 +1,7 @@
 """Read a height map from a file: netCDF, plain numbers as text or of NumPy, or the format of an instrument.
 
 Plain numbers are rows along x, columns along y; netCDF has heights over evenly spaced coordinates, both with units.
+Each reader raises RoughmdrError where the file does not hold such a map.
 """
 
 import warnings
@@ -138,51 +139,32 @@ def _spacings(raw: RawMap, size: Size | None) -> tuple[float, float]:
     return along_x / nx, along_y / ny
 
 
-def _read_npy(path: Path, channel: str | None) -> RawMap:
-    """Read the array of a .npy file; RoughmdrError where it is none, or would run code to be read."""
-    _refuse_channel(channel)
-    return RawMap(_array(_load(path)))
-
-
-def _read_npz(path: Path, channel: str | None) -> RawMap:
-    """Read the array ``channel`` of a .npz file, or height, or the only one; RoughmdrError where there is none."""
-    arrays = _load(path)
-    if not isinstance(arrays, np.lib.npyio.NpzFile):
-        raise RoughmdrError("not an .npz file; it may be an .npy file under another name")
-    with arrays:
-        names = list(arrays.files)
+def _read_numpy(path: Path, channel: str | None) -> RawMap:
+    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run."""
+    try:
+        loaded = np.load(path, allow_pickle=False)
+    except Exception as error:
+        raise RoughmdrError(f"cannot be read by NumPy: {str(error).partition('. ')[0]}") from error
+    is_npz = path.suffix.lower() == ".npz"
+    if isinstance(loaded, np.ndarray) == is_npz:
+        own, other = (".npz", ".npy") if is_npz else (".npy", ".npz")
+        raise RoughmdrError(f"not an {own} file; it may be an {other} file under another name")
+    if not is_npz:
+        _refuse_channel(channel)
+        return RawMap(loaded)
+    with loaded:
+        names = list(loaded.files)
         name = channel or ("height" if "height" in names or len(names) != 1 else names[0])
         if name not in names:
             raise RoughmdrError(f"has no array {name!r}, but {names}; name one as channel")
         try:
-            return RawMap(_array(arrays[name]))
+            return RawMap(np.asarray(loaded[name]))
         except Exception as error:
             raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
 
 
-def _load(path: Path) -> Any:
-    try:
-        return np.load(path, allow_pickle=False)
-    except Exception as error:
-        raise RoughmdrError(f"cannot be read by NumPy: {str(error).partition('. ')[0]}") from error
-
-
-def _array(value: Any) -> NDArray[Any]:
-    if not isinstance(value, np.ndarray):
-        raise RoughmdrError("not an .npy file; it may be an .npz file under another name")
-    return value
-
-
-def _refuse_channel(channel: str | None) -> None:
-    if channel is not None:
-        raise RoughmdrError(f"holds one map only; leave out channel = {channel!r}")
-
-
 def _read_text(path: Path, channel: str | None) -> RawMap:
-    """Read rows of numbers separated by blanks, tabs, commas or semicolons; # begins a comment, "nan" is undefined.
-
-    RoughmdrError where the file is not such a text.
-    """
+    """Read rows of numbers separated by blanks, tabs, commas or semicolons; # begins a comment, "nan" is undefined."""
     _refuse_channel(channel)
     try:
         with path.open(encoding="utf-8-sig") as file:
@@ -198,8 +180,13 @@ def _read_text(path: Path, channel: str | None) -> RawMap:
     return RawMap(table)
 
 
+def _refuse_channel(channel: str | None) -> None:
+    if channel is not None:
+        raise RoughmdrError(f"holds one map only; leave out channel = {channel!r}")
+
+
 def _read_netcdf(path: Path, channel: str | None) -> RawMap:
-    """Read the variable ``channel``, or height; fill values become NaN. RoughmdrError where there is none."""
+    """Read the variable ``channel``, or height; fill values become NaN."""
     name = channel or "height"
     with open_dataset(path) as dataset:
         if name not in dataset.data_vars or dataset[name].ndim != 2:
@@ -243,10 +230,7 @@ def _spacing(dataset: "xr.Dataset", dim: str) -> float:
 
 
 def _read_instrument(path: Path, channel: str | None) -> RawMap:
-    """Read the first channel of that name, or the file's default one, by SurfaceTopography; NaN is undefined.
-
-    RoughmdrError where the file cannot be read or is not a map of heights.
-    """
+    """Read the first channel of that name, or the file's default one, by SurfaceTopography; NaN is undefined."""
     with warnings.catch_warnings(action="ignore"):  # of other contents of the file, or packages that are not installed
         try:
             from SurfaceTopography.IO import open_topography
@@ -292,7 +276,6 @@ def _read_channel(reader: Any, name: str | None) -> RawMap:
 _READER_OF_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), _read_netcdf),
     **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), _read_text),
-    ".npy": _read_npy,
-    ".npz": _read_npz,
+    **dict.fromkeys((".npy", ".npz"), _read_numpy),
 }
-_READER_OF_MAGIC = {b"CDF": _read_netcdf, b"\x89HDF": _read_netcdf, b"\x93NUMPY": _read_npy}
+_READER_OF_MAGIC = {b"CDF": _read_netcdf, b"\x89HDF": _read_netcdf, b"\x93NUMPY": _read_numpy}

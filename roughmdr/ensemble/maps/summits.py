@@ -57,9 +57,8 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
 
 
 def _parts(surface: HeightMap) -> Iterator[tuple[Floats, int, float]]:
-    """Yield blocks of rows of points that have neighbours, with a row and a column of neighbours at each side.
-
-    With each its first row, and the distance of the first inner point of a map from the edge of the patch, in spacings.
+    """Yield blocks of rows, with a row and a column of neighbours at each side, and with each block its first row and
+    the distance of the first inner point of the map from the edge of the patch, in spacings.
     """
     height, periodic = surface.height, surface.periodic
     nx, ny = height.shape

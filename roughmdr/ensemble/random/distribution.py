@@ -80,10 +80,8 @@ class Distribution:
         return self._tails[2]
 
     def _at_fractions(self, below: Floats, above: Floats) -> Floats:
-        """Return the values with the fraction ``below`` below them and ``above`` = 1 - below above them.
-
-        From the smaller one of the untruncated distribution: its inverse near 1 may round to infinity.
-        """
+        """Return the values with the fraction ``below`` below them and ``above`` = 1 - below above them."""
+        # From the smaller one of the untruncated distribution: its inverse near 1 may round to infinity.
         below_min, above_max, between = self._tails
         below, above = below_min + between * below, above_max + between * above
         values = np.empty_like(below)

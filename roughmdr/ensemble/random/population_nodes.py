@@ -54,10 +54,7 @@ def heights_given(distribution: Distribution, score: float, correlation: float) 
 
 
 def _edges(from_scores: Callable[[Floats], Floats], unit: float) -> tuple[tuple[float, ...], float, UpperTail]:
-    """Return edges [m], scale [m] and upper tail of the heights y [m] at normal scores.
-
-    ``unit`` is the scale of their distribution [m].
-    """
+    """Return edges [m], scale [m] and upper tail of heights y [m] at normal scores; ``unit`` is that of y [m]."""
     low_bulk, lower, median, upper, bulk = from_scores(np.array([-_BULK, -_QUARTILE, 0.0, _QUARTILE, _BULK])).tolist()
     narrowest = _RESOLUTION * max(unit, abs(median))  # heights that go with an extreme parameter may all be equal
     # The highest count, where most heights are next to a pole.
