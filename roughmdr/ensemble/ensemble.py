@@ -84,7 +84,7 @@ class Ensemble:
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
-        """Return the ensemble of a dataset in any order; SceneError names what is missing, not finite or not allowed."""
+        """Return the ensemble of a dataset, in any order; SceneError names what is missing or not allowed."""
         shape = dataset.attrs.get("shape")
         if not isinstance(shape, str) or shape not in SHAPES:
             raise SceneError(f"ensemble: attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")

@@ -21,9 +21,8 @@ from roughmdr.shapes.profile import Profile, zero
 class Shape(ABC):
     """An axisymmetric profile with its tip at f(0) = 0, pointing at the flat. Its parameters are floats in SI.
 
-    A parameter may be given as a string with a unit, such as "10 um".
-
-    The kernels see a shape as a dimensionless profile, scaled sideways by a width and upwards by a rise.
+    A parameter may be given as a string with a unit, such as "10 um". The kernels see a shape as a dimensionless
+    profile, scaled sideways by a width and upwards by a rise.
     """
 
     name: ClassVar[str]
