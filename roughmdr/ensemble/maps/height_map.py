@@ -10,12 +10,6 @@ from roughmdr.numerics.arguments import Floats
 
 BLOCK_SIZE = 2**20  # points of a block
 
-# Points per summit below which there is a warning. On maps without noise, the fit finds the mean curvature of the
-# summits 2 % low at 290 points per summit, 9 % at 74, 15 % at 42 and 29 % at 19 where all waves are equally long; 3 %
-# at 260, 14 % at 68 and 23 % at 42 where they are self-affine. White noise alone has 9.5. Weak noise on long waves has
-# many; the misfit of the fit shows it: up to 0.15, the mean curvature is within 15 %, whatever the cause.
-FEW_POINTS = 40.0
-
 
 class HeightMap(NamedTuple):
     """Heights on a regular grid."""
@@ -62,16 +56,6 @@ def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
         "undefined_share": (height.size - surface.defined) / height.size,
         "periodic": int(periodic),
     }
-
-
-def resolution_warnings(points_per_summit: float) -> list[str]:
-    """Return the warning for a map with so many points per summit, if any."""
-    if points_per_summit >= FEW_POINTS:
-        return []
-    return [
-        f"{points_per_summit:.3g} points a summit (warned of below {FEW_POINTS:g}): noise, or the spacing, may set the "
-        "radii of the summits; a finer map or a cutoff shows whether it does"
-    ]
 
 
 def _rms(parts: Iterable[Floats]) -> float:

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, StrictBool, field_validator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.height_map import map_statistics, resolution_warnings
+from roughmdr.ensemble.maps.height_map import map_statistics
 from roughmdr.ensemble.maps.read_map import Size, SizeReader, read_map
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import RoughmdrError, SceneError
@@ -18,6 +18,12 @@ from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
+
+# Points per summit below which there is a warning. On maps without noise, the fit finds the mean curvature of the
+# summits 2 % low at 290 points per summit, 9 % at 74, 15 % at 42 and 29 % at 19 where all waves are equally long; 3 %
+# at 260, 14 % at 68 and 23 % at 42 where they are self-affine. White noise alone has 9.5. Weak noise on long waves has
+# many; the misfit of the fit shows it: up to 0.15, the mean curvature is within 15 %, whatever the cause.
+FEW_POINTS = 40.0
 
 
 class SurfaceAsperities(FromFile):
@@ -67,5 +73,9 @@ class SurfaceAsperities(FromFile):
             raise SceneError(f"{self.file}: {error}") from error
         options = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
         attrs = {**summits.attrs, **map_statistics(surface), **options}
-        texts = resolution_warnings(float(summits.attrs["points_per_summit"]))
-        return replace(summits, attrs=attrs, warnings=tuple(f"{path.name}: {text}" for text in texts))
+        points = float(summits.attrs["points_per_summit"])
+        warning = (
+            f"{path.name}: {points:.3g} points a summit (warned of below {FEW_POINTS:g}): noise, or the spacing, may "
+            "set the radii of the summits; a finer map or a cutoff shows whether it does"
+        )
+        return replace(summits, attrs=attrs, warnings=(warning,) if points < FEW_POINTS else ())

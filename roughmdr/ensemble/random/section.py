@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 import numpy as np
@@ -66,8 +67,11 @@ class RandomAsperities(PatchSource):
         for name in _parameters_of(self.second, self.shape):
             if name not in self.distributions:
                 raise EntryError(f"second.{name}", None, f"is not given for the first population: {names}")
-        for population in self.populations.members:
-            _check_order(self.shape, population)
+        for population, (name, floor, reason) in product(self.populations.members, SHAPES[self.shape].not_below):
+            entry, lower = population.parameters[name], population.parameters[floor]
+            if entry.smallest < lower.largest:
+                message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
+                raise EntryError(name, f"from {entry.smallest:.3g}", message)
         if self.correlation is None:
             return self
         correlated = self.populations.correlated
@@ -89,13 +93,11 @@ class RandomAsperities(PatchSource):
     @cached_property
     def populations(self) -> Populations:
         """The populations that the asperities are drawn from."""
-        first = self.distributions
-        members = [Population(1.0, self.height, first)]
+        first, share = self.distributions, self.second.share if self.second else 0.0
+        members = [Population(1.0 - share, self.height, first)]
         if self.second is not None:
-            fraction = self.second.share
             parameters = {**first, **_parameters_of(self.second, self.shape)}
-            second = Population(fraction, self.second.height or self.height, parameters)
-            members = [Population(1.0 - fraction, self.height, first), second]
+            members.append(Population(share, self.second.height or self.height, parameters))
         order = list(SHAPES[self.shape].units)
         streams = {name: PARAMETER + order.index(name) for name in first}
         correlations = _parameters_of(self.correlation, self.shape)
@@ -197,14 +199,6 @@ def _parameters_of(section: Section | None, shape: str) -> dict[str, Any]:
     """Return the entries of a section for the parameters of a shape, by their names."""
     entries = {name: getattr(section, name, None) for name in SHAPES[shape].units}
     return {name: entry for name, entry in entries.items() if entry is not None}
-
-
-def _check_order(shape: str, population: Population) -> None:
-    for name, floor, reason in SHAPES[shape].not_below:
-        entry, lower = population.parameters[name], population.parameters[floor]
-        if entry.smallest < lower.largest:
-            message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
-            raise EntryError(name, f"from {entry.smallest:.3g}", message)
 
 
 def _read_terms(value: object) -> dict[str, float]:
