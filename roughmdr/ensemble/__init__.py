@@ -14,8 +14,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FileAsperities
 from roughmdr.ensemble.gaussian.section import NayakAsperities
 from roughmdr.ensemble.maps.section import SurfaceAsperities
-from roughmdr.ensemble.random.section import RandomAsperities
-from roughmdr.ensemble.random.sections_by_shape import AnyRandomAsperities
+from roughmdr.ensemble.random.section import AnyRandomAsperities, RandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import SceneError, warn_limits
 from roughmdr.schema.faults import find_faults
@@ -23,20 +22,10 @@ from roughmdr.schema.faults import find_faults
 if TYPE_CHECKING:
     import xarray as xr
 
-Asperities = Annotated[
-    AnyRandomAsperities | NayakAsperities | SurfaceAsperities | FileAsperities, Field(discriminator="source")
-]
+_AnySource = AnyRandomAsperities | NayakAsperities | SurfaceAsperities | FileAsperities
+Asperities = Annotated[_AnySource, Field(discriminator="source")]
 
-__all__ = [
-    "Asperities",
-    "Ensemble",
-    "NayakAsperities",
-    "RandomAsperities",
-    "Source",
-    "SurfaceAsperities",
-    "generate",
-    "make",
-]
+__all__ = ["Asperities", "Ensemble", "NayakAsperities", "RandomAsperities", "Source", "generate", "make"]
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
@@ -120,12 +109,11 @@ def _whole_number(name: str, value: object) -> int:
 
 
 def _validated(table: dict[str, Any]) -> Source:
+    if not isinstance(table, dict):
+        raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene")
     try:
         return TypeAdapter[Source](Asperities).validate_python(table)
     except ValidationError as error:
-        if not isinstance(table, dict):
-            raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene") from None
         faults = find_faults(error, table, Asperities)
-        raise SceneError.of(
-            [fault._replace(key=".".join(filter(None, ("asperities", fault.key)))) for fault in faults]
-        ) from None
+        keyed = [fault._replace(key=f"asperities.{fault.key}".removesuffix(".")) for fault in faults]
+        raise SceneError.of(keyed) from None

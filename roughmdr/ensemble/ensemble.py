@@ -12,7 +12,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import short_repr
-from roughmdr.shapes import SHAPES, Shape, SharedProfile
+from roughmdr.shapes import SHAPES, SharedProfile
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
 
@@ -32,10 +32,8 @@ class Ensemble:
     nominal_area: float | None = None
     positions: dict[str, Floats] = field(default_factory=dict)
     attrs: dict[str, float | int | str] = field(default_factory=dict)
-    shared_profile: SharedProfile | None = None
-    """The profile of all asperities, for a shape whose parameters are not plain numbers."""
-    warnings: tuple[str, ...] = ()
-    """Warnings for the user about the asperities themselves."""
+    shared_profile: SharedProfile | None = None  # of a shape whose parameters are not plain numbers
+    warnings: tuple[str, ...] = ()  # for the user, about the asperities themselves
 
     def sorted(self) -> "Ensemble":
         """Return the asperities from the highest summit to the lowest, equal heights by their parameters."""
@@ -86,37 +84,29 @@ class Ensemble:
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
-        """Return the ensemble of a dataset over ``asperity`` in any order; missing units mean SI.
-
-        SceneError, naming the variable or attribute, where something is missing, not finite or out of range.
-        """
+        """Return the ensemble of a dataset, in any order; SceneError names what is missing or not allowed."""
         shape = dataset.attrs.get("shape")
         if not isinstance(shape, str) or shape not in SHAPES:
             raise SceneError(f"ensemble: attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
         height = _column(dataset, "height", "m")
         positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
+        kind, parameters, shared_profile = SHAPES[shape], dict[str, Floats](), None
         try:
-            parameters, shared_profile = _parameters(dataset, SHAPES[shape])
+            if issubclass(kind, SharedProfile):
+                columns = {name: _column(dataset, name, unit, kind.dimension) for name, unit in kind.units.items()}
+                shared_profile = kind.from_columns(columns)
+            else:
+                names = kind.parameter_set({name for name in kind.units if name in dataset})
+                parameters = {name: _column(dataset, name, kind.units[name]) for name in names}
+                kind.check(parameters)
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
         sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
         warnings = dataset.attrs.get("warnings", "")
         if not isinstance(warnings, str):
             raise SceneError(f"ensemble: attribute warnings is {short_repr(warnings)}; it must be a text")
-        area = _nominal_area(dataset.attrs, sides)
-        texts = tuple(warnings.splitlines())
+        area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
         return cls(shape, height, parameters, area, positions, dict(sides), shared_profile, texts).sorted()
-
-
-def _parameters(dataset: "xr.Dataset", shape: type[Shape]) -> tuple[dict[str, Floats], SharedProfile | None]:
-    """Return the parameters of each asperity, or the profile that all share."""
-    if issubclass(shape, SharedProfile):
-        columns = {name: _column(dataset, name, unit, shape.dimension) for name, unit in shape.units.items()}
-        return {}, shape.from_columns(columns)
-    names = shape.parameter_set({name for name in shape.units if name in dataset})
-    parameters = {name: _column(dataset, name, shape.units[name]) for name in names}
-    shape.check(parameters)
-    return parameters, None
 
 
 def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | None:
@@ -131,7 +121,7 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _size(name: str, value: Any) -> float:
-    """Return a length [m] or an area [m2] of a patch."""
+    """Return a length [m] or an area [m2] of a patch; SceneError unless it is a number above 0."""
     if isinstance(value, str):
         raise SceneError(f"ensemble: attribute {name} is {short_repr(value)}; it must be a finite number above 0 in SI")
     try:

@@ -53,22 +53,22 @@ class FromFile(Source):
 
     @cached_property
     def _hash_and_asperities(self) -> tuple[str, Ensemble]:
-        before = self._hash()
-        asperities = self.read()
-        if self._hash() != before:
+        """The asperities, read once, and a hash of the file as it was then."""
+
+        def current_hash() -> str:
+            try:
+                with open(self.file, "rb") as file:
+                    return hashlib.file_digest(file, "sha256").hexdigest()
+            except OSError as error:
+                raise SceneError(f"{self.file}: cannot be read: {error.strerror}") from None
+
+        before, asperities = current_hash(), self.read()
+        if current_hash() != before:
             raise SceneError(f"{self.file}: changed while it was read")
         return before, asperities
 
-    def _hash(self) -> str:
-        try:
-            with open(self.file, "rb") as file:
-                return hashlib.file_digest(file, "sha256").hexdigest()
-        except OSError as error:
-            raise SceneError(f"{self.file}: cannot be read: {error.strerror}") from None
-
     @property
     def content_hash(self) -> str:
-        """A hash of the file as it was when the asperities were read."""
         return self._hash_and_asperities[0]
 
     @property

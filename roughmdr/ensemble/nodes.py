@@ -10,19 +10,15 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 
-HEIGHT_END = 10.0
-"""Normal score beyond which heights with light tails are left out: a fraction of 1e-23."""
-PARAMETER_END = 8.5
-"""Normal score beyond which a rule with cuts leaves parameters out: a fraction of 1e-17."""
+HEIGHT_END = 10.0  # normal score beyond which heights with light tails are left out: a fraction of 1e-23
+PARAMETER_END = 8.5  # normal score beyond which a rule with cuts leaves parameters out: a fraction of 1e-17
 
 
 class UpperTail(NamedTuple):
     """The heights above the last edge, which are left out."""
 
-    fraction: float
-    """Of all heights."""
-    xi: float
-    """Index of extreme values: heights grow as fraction^-xi."""
+    fraction: float  # of all heights
+    xi: float  # index of extreme values: heights grow as fraction^-xi
 
     def over_edge(self, growth: float) -> float:
         """Return the force of the tail over that of one height at its edge, if a force grows as height^growth."""
@@ -30,19 +26,18 @@ class UpperTail(NamedTuple):
 
 
 class Heights(NamedTuple):
-    """Heights of the summits of one node as differences y = z - origin, which keep their digits near a pole."""
+    """Heights of the summits of one node as differences y = z - origin [m], which keep their digits near a pole."""
 
     density: Callable[[Floats], Floats]
-    """y [m] -> the density [1/m]; inf at a pole."""
+    """y -> the density [1/m]; inf at a pole."""
     fractions: Callable[[Floats], tuple[Floats, Floats]] | None
-    """y [m] -> the fractions of all heights below and above; None where the density is smooth and its integral 1."""
+    """y -> the fractions of all heights below and above; None where the density is smooth and its integral 1."""
     edges: tuple[float, ...]
-    """y [m], ascending; a negligible fraction lies below the first, ``tail`` is above the last."""
+    """y, ascending; a negligible fraction lies below the first, ``tail`` is above the last."""
     scale: float
     """[m]; half of the summits lie within it, or nearly all of the upper half within three times that."""
     tail: UpperTail
-    origin: float
-    """[m]"""
+    origin: float  # [m]
 
     @property
     def low(self) -> float:
@@ -68,11 +63,10 @@ def mean_over_edge(index: Floats) -> Floats:
 
 
 class Rule(NamedTuple):
-    """A quadrature rule over a normal score."""
+    """A quadrature rule over a normal score; its weights add up to 1."""
 
     scores: Floats
     weights: Floats
-    """Their sum is 1."""
 
     @classmethod
     def smooth(cls, order: int) -> "Rule":
@@ -87,30 +81,24 @@ class Rule(NamedTuple):
         """
         ends = np.unique(np.clip([-PARAMETER_END, *cuts, PARAMETER_END], -PARAMETER_END, PARAMETER_END))
         y, weights = unit_gauss(order)
-        all_scores, all_weights = [], []
+        # x(y) from 0 to 1 and its slope, quadratic at each end that is a cut: (is the lower one, is the upper one).
+        substitutions = {
+            (True, True): (y * y * (3.0 - 2.0 * y), 6.0 * y * (1.0 - y)),
+            (True, False): (y * y, 2.0 * y),
+            (False, True): (y * (2.0 - y), 2.0 * (1.0 - y)),
+            (False, False): (y, np.ones_like(y)),
+        }
+        parts = []
         for low, high in pairwise(ends):
-            cut_below, cut_above = low > -PARAMETER_END, high < PARAMETER_END
-            # x(y) from 0 to 1, quadratic at each end that is a cut.
-            if cut_below and cut_above:
-                x, slope = y * y * (3.0 - 2.0 * y), 6.0 * y * (1.0 - y)
-            elif cut_below:
-                x, slope = y * y, 2.0 * y
-            elif cut_above:
-                x, slope = y * (2.0 - y), 2.0 * (1.0 - y)
-            else:
-                x, slope = y, np.ones_like(y)
-            all_scores.append(low + (high - low) * x)
-            all_weights.append((high - low) * slope * weights)
-        scores = np.concatenate(all_scores)
-        return cls(scores, np.concatenate(all_weights) * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi))
+            x, slope = substitutions[bool(low > -PARAMETER_END), bool(high < PARAMETER_END)]
+            parts.append((low + (high - low) * x, (high - low) * slope * weights))
+        scores, lengths = map(np.concatenate, zip(*parts, strict=True))
+        return cls(scores, lengths * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi))
 
 
 class Nodes(NamedTuple):
-    """A few asperities with weights that stand for all."""
+    """A few asperities with weights, fractions that add up to 1, which stand for all."""
 
-    weights: Floats
-    """Fractions of all asperities: [node]; their sum is 1."""
-    parameters: dict[str, Floats]
-    """[node]"""
-    heights: tuple[Heights, ...]
-    """[node]"""
+    weights: Floats  # [node]
+    parameters: dict[str, Floats]  # [node]
+    heights: tuple[Heights, ...]  # [node]

@@ -10,8 +10,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
-_JAMMING_COVERAGE = 0.547
-"""Fraction of the plane that random discs cover when no more fit (J. Feder, J. Theor. Biol. 87 (1980) 237)."""
+_JAMMING_COVERAGE = 0.547  # of the plane by random discs when no more fit (J. Feder, J. Theor. Biol. 87 (1980) 237)
 _MAX_TRIES = 2**10  # candidates for one point, on average, before the patch counts as full
 
 
@@ -48,10 +47,8 @@ def hard_core_positions(streams: Streams, count: int, patch: float, min_distance
             x, y = candidates[chosen].T * patch
             return x, y
         tries *= 4
-    raise OutOfRange(
-        f"min_distance is {min_distance:g} m: {count} asperities do not fit so far apart on a patch of {patch:g} m; at "
-        f"random about {int(0.95 * max_count)} do"
-    )
+    message = f"{count} asperities do not fit so far apart on a patch of {patch:g} m; at random about"
+    raise OutOfRange(f"min_distance is {min_distance:g} m: {message} {int(0.95 * max_count)} do")
 
 
 @njit

@@ -5,22 +5,25 @@ never renumbered: the numbers below decide the results of every seed.
 """
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
-HEIGHT, POSITION, PARAMETER = 0, 1, 2
-"""Streams of the heights, the positions, and the first shape parameter; those of further parameters follow."""
-COUNT, POPULATION = 100, 101
-"""Streams of the number of asperities, and of the population that each belongs to."""
-_SCRAMBLE = 1000  # stream of the scrambling of stratified numbers
+HEIGHT, POSITION, PARAMETER = 0, 1, 2  # PARAMETER is the first shape parameter; those of further parameters follow
+COUNT, POPULATION = 100, 101  # the number of asperities, and the population that each belongs to
+_SCRAMBLE = 1000  # scrambling of stratified numbers
 
 _BITS = 52
 SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
 
 Streams = Callable[[int, int], Floats]
 """(stream, count) -> the first ``count`` numbers of the stream, in (0, 1), never 0 or 1."""
+
+
+def _philox(seed: int, realization: int, stream: int) -> np.random.Philox:
+    return np.random.Philox(np.random.SeedSequence(seed, spawn_key=(realization, stream)))
 
 
 def uniforms(seed: int, realization: int, stream: int, count: int) -> Floats:
@@ -38,19 +41,20 @@ def make_streams(seed: int, realization: int, stratified: tuple[int, ...] = ()) 
     These are the coordinates of a Sobol sequence, scrambled anew in each realisation (A. B. Owen, J. Complexity 14
     (1998) 466).
     """
-    points: dict[int, Floats] = {}
+
+    @cache
+    def points(count: int) -> Floats:
+        from scipy.stats.qmc import Sobol
+
+        scramble = np.random.Generator(_philox(seed, realization, _SCRAMBLE))
+        sequence = Sobol(len(stratified), bits=_BITS, rng=scramble)
+        sobol = sequence.random_base2((count - 1).bit_length())[:count]  # scipy warns of any count but powers of 2
+        return np.ascontiguousarray(sobol.T) + SMALLEST_UNIFORM
 
     def draw(stream: int, count: int) -> Floats:
         if stream not in stratified:
             return uniforms(seed, realization, stream, count)
-        if count not in points:
-            from scipy.stats.qmc import Sobol
-
-            scramble = np.random.Generator(_philox(seed, realization, _SCRAMBLE))
-            sequence = Sobol(len(stratified), bits=_BITS, rng=scramble)
-            sobol = sequence.random_base2((count - 1).bit_length())[:count]  # scipy warns of any count but powers of 2
-            points[count] = np.ascontiguousarray(sobol.T) + SMALLEST_UNIFORM
-        coordinate: Floats = points[count][stratified.index(stream)]
+        coordinate: Floats = points(count)[stratified.index(stream)]
         return coordinate
 
     return draw
@@ -63,7 +67,3 @@ def poisson(streams: Streams, mean: float) -> int:
     uniform = float(streams(COUNT, 1)[0])
     count = max(int(np.ceil(pdtrik(uniform, mean))), 0)
     return count - 1 if count > 0 and pdtr(count - 1, mean) >= uniform else count
-
-
-def _philox(seed: int, realization: int, stream: int) -> np.random.Philox:
-    return np.random.Philox(np.random.SeedSequence(seed, spawn_key=(realization, stream)))

@@ -1,14 +1,12 @@
 """The profiles of single asperities. CONTRIBUTING.md says how to add one: a file here and a line in ``SHAPES``."""
 
 from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile
-from roughmdr.shapes.capped import CappedParaboloid
-from roughmdr.shapes.flat_punch import FlatPunch
+from roughmdr.shapes.blunt_tips import CappedParaboloid, RoundedCone
+from roughmdr.shapes.flat_tips import FlatPunch, RoundedPunch, TruncatedCone, TruncatedParaboloid
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
-from roughmdr.shapes.rounded import RoundedCone, RoundedPunch
 from roughmdr.shapes.series import PowerSeries
 from roughmdr.shapes.sphere import Sphere
 from roughmdr.shapes.tabulated.shape import Tabulated
-from roughmdr.shapes.truncated import TruncatedCone, TruncatedParaboloid
 
 SHAPES: dict[str, type[Shape]] = {
     shape.name: shape

@@ -21,28 +21,22 @@ from roughmdr.shapes.profile import Profile, zero
 class Shape(ABC):
     """An axisymmetric profile with its tip at f(0) = 0, pointing at the flat. Its parameters are floats in SI.
 
-    A parameter may be given as a string with a unit, such as "10 um".
-
-    The kernels see a shape as a dimensionless profile, scaled sideways by a width and upwards by a rise.
+    A parameter may be given as a string with a unit, such as "10 um". The kernels see a shape as a dimensionless
+    profile, scaled sideways by a width and upwards by a rise.
     """
 
     name: ClassVar[str]
-    units: ClassVar[dict[str, str]]
-    """Unit of each parameter, in the order of the arguments."""
+    units: ClassVar[dict[str, str]]  # the unit of each parameter, in the order of the arguments
     parameter_sets: ClassVar[tuple[tuple[str, ...], ...]]
     """The sets of parameters that each describe the shape; by default all parameters together."""
     not_below: ClassVar[tuple[tuple[str, str, str], ...]] = ()
     """(parameter, lower bound, reason) for each parameter that must not be below another one."""
-    pinned: ClassVar[bool] = False
-    """Whether the contact radius is the shape's own under every load, as that of a flat punch is."""
+    pinned: ClassVar[bool] = False  # the contact radius is the shape's own under every load, as that of a flat punch
     uses_profile: ClassVar[bool] = False
     """Whether its kernels are made from its ``Profile`` and describe a contact by the parameter t of that."""
-    shared: ClassVar[bool] = False
-    """Whether all asperities of an ensemble have one profile."""
-    flat: ClassVar[bool] = False
-    """Whether the tip is flat to one width."""
-    corner: ClassVar[bool] = False
-    """Whether g' is infinite at the edge of such a flat, or where a blunter tip ends."""
+    shared: ClassVar[bool] = False  # all asperities of an ensemble have one profile
+    flat: ClassVar[bool] = False  # the tip is flat to one width
+    corner: ClassVar[bool] = False  # g' is infinite at the edge of such a flat, or where a blunter tip ends
     body_radius: ClassVar[tuple[str, ...]] = ()
     """The parameters whose sum is the radius where the body that the profile stands for ends."""
 
@@ -138,7 +132,10 @@ class Shape(ABC):
         self.parameter_set(set(parameters))
         for name, value in parameters.items():
             if isinstance(value, str):
-                parameters[name] = _in_si(self.name, name, value, self.units[name])
+                try:
+                    parameters[name] = quantity(value, self.units[name])
+                except RoughmdrError as error:
+                    raise ShapeError(f"{self.name}: {name} is {short_repr(value)}: {error}") from None
             check_one(self.name, name, parameters[name])
         self.check(parameters)
         for name, value in parameters.items():
@@ -154,10 +151,8 @@ class Shape(ABC):
             below = values < lowest
             if below.any():
                 where = "" if below.size == 1 else f" at asperity {int(np.argmax(below))}"
-                raise ShapeError(
-                    f"{cls.name}: {name} is {values[below][0]:g}{where}; it must be at least {bound}, "
-                    f"{lowest[below][0]:g}: {reason}"
-                )
+                limit = f"it must be at least {bound}, {lowest[below][0]:g}: {reason}"
+                raise ShapeError(f"{cls.name}: {name} is {values[below][0]:g}{where}; {limit}")
 
 
 class ProfileShape(Shape):
@@ -221,8 +216,7 @@ class SharedProfile(ProfileShape):
     """A shape whose parameters are arrays, so that all asperities of an ensemble share one profile."""
 
     shared = True
-    dimension: ClassVar[str]
-    """The dimension of these arrays in the Dataset of an ensemble."""
+    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble
 
     @property
     def columns(self) -> dict[str, Floats]:
@@ -254,13 +248,6 @@ def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats
         above = "" if math.isinf(limit) else f" and at most {limit:g} m"
         raise OutOfRange(f"{name} is {numbers[wrong].flat[0]:g} m; it must be finite and at least 0{above}")
     return numbers
-
-
-def _in_si(owner: str, name: str, text: str, dimension: str) -> float:
-    try:
-        return quantity(text, dimension)
-    except RoughmdrError as error:
-        raise ShapeError(f"{owner}: {name} is {short_repr(text)}: {error}") from None
 
 
 def check_one(owner: str, name: str, value: object) -> None:

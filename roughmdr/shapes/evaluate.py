@@ -15,13 +15,11 @@ from roughmdr.shapes.profile import Params, Profile
 
 
 class _Kernel(ModuleType):
-    """The one kernel of the loop."""
-
     f_and_slope: Callable[..., tuple[float, float]]
 
 
 law = _Kernel("law")
-"""Stands for it in the loop, until ``specialise`` puts a profile's in its place."""
+"""Stands for the kernel of the loop, until ``specialise`` puts a profile's in its place."""
 
 
 def _loop(r: Floats, width: Floats, rise: Floats, params: Floats, f: Floats, slope: Floats) -> None:

@@ -24,11 +24,11 @@ def one(params: Params) -> int:
 
 
 def _no_interval(index: int, params: Params) -> tuple[float, float]:
-    """Stand for the items of a count that is 0; never called."""
+    """Stand for the softening intervals where there are none; never called."""
     return 0.0, 0.0
 
 
-def breakpoint_at_one(index: int, params: Params) -> tuple[float, float]:
+def _breakpoint_at_one(index: int, params: Params) -> tuple[float, float]:
     """Return a breakpoint at one width, from which on g is smooth in sqrt(x^2 - 1)."""
     return 1.0, 1.0
 
@@ -43,7 +43,7 @@ def kink_at_one(low: float, high: float, params: Params) -> bool:
     return low < 1.0 < high
 
 
-def radius_over_width(radius: float, width: float, params: Params) -> float:
+def _radius_over_width(radius: float, width: float, params: Params) -> float:
     """Return t where it is the contact radius itself."""
     return radius / width
 
@@ -70,14 +70,10 @@ def _nothing_to_precompute(params: Any) -> None:
 class Profile(NamedTuple):
     """The functions of a profile; g and G as in H 17."""
 
-    mdr_profile: Callable[..., tuple[Any, Any, Any, Any]]
-    """(t, params) -> a, da/dt, g, dg/dt."""
-    reduced_load: Callable[..., Any]
-    """(t, params) -> ∫_0^a x g'(x) dx = a g - G, without that difference."""
-    f_and_slope: Callable[..., tuple[Any, Any]]
-    """(r, params) -> f, df/dr."""
-    t_of_radius: Callable[[float, float, Params], float] = radius_over_width
-    """(contact radius, width, params) -> t."""
+    mdr_profile: Callable[..., tuple[Any, Any, Any, Any]]  # (t, params) -> a, da/dt, g, dg/dt
+    reduced_load: Callable[..., Any]  # (t, params) -> ∫_0^a x g'(x) dx = a g - G, without that difference
+    f_and_slope: Callable[..., tuple[Any, Any]]  # (r, params) -> f, df/dr
+    t_of_radius: Callable[[float, float, Params], float] = _radius_over_width  # (contact radius, width, params) -> t
     softening_count: Callable[[Params], int] = zero
     """params -> number of intervals in which sqrt(a) g'(a) falls: each can part two stable branches."""
     softening_interval: Callable[[int, Params], tuple[float, float]] = _no_interval
@@ -89,15 +85,11 @@ class Profile(NamedTuple):
     flat, or next to one."""
     elastic_integral: Callable[..., Any] | None = None
     """(t, params) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
-    corner: bool = False
-    """Whether g' jumps up to infinity where sqrt(a) g' begins to fall."""
-    flat: bool = False
-    """Whether the profile is flat to one width, where g and t begin."""
-    end: float = math.inf
-    """The radius where the profile ends."""
-    breakpoint_count: Callable[[Params], int] = zero
-    """params -> number of radii at which g is not smooth."""
-    breakpoint: Callable[[int, Params], tuple[float, float]] = _no_interval
+    corner: bool = False  # whether g' jumps up to infinity where sqrt(a) g' begins to fall
+    flat: bool = False  # whether the profile is flat to one width, where g and t begin
+    end: float = math.inf  # the radius where the profile ends
+    breakpoint_count: Callable[[Params], int] = zero  # params -> number of radii at which g is not smooth
+    breakpoint: Callable[[int, Params], tuple[float, float]] = _breakpoint_at_one
     """(index, params) -> such a radius, and the y for which g is smooth in sqrt(x^2 - y^2) from there on."""
     t_of_q: Callable[[float, Params], float] | None = None
     """(q, params) -> t at q = sqrt(x^2 - y^2) beyond the breakpoint y, where q has more digits than x."""

@@ -65,6 +65,12 @@ def _kink(low: float, high: float, params: Params) -> bool:
     return params[3 * int(params[0]) - 2] * (high - low) > 0.5 * low
 
 
+def _check_distinct(exponents: list[float]) -> None:
+    for exponent in exponents:
+        if exponents.count(exponent) > 1:
+            raise ShapeError(f"power_series: terms holds the exponent {exponent:g} twice; add them up")
+
+
 @dataclass(frozen=True, eq=False)
 class PowerSeries(SharedProfile):
     """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c the number that it is in metres, [m^(1-n)].
@@ -79,33 +85,23 @@ class PowerSeries(SharedProfile):
     parameter_sets = (("terms",),)
     dimension = "term"
     profile = Profile(
-        _mdr_profile,
-        _reduced_load,
-        _f_and_slope,
-        kink=_kink,
-        elastic_integral=_elastic_integral,
-        roundings=_roundings,
+        _mdr_profile, _reduced_load, _f_and_slope, kink=_kink, elastic_integral=_elastic_integral, roundings=_roundings
     )
 
     def __post_init__(self) -> None:
         if not isinstance(self.terms, Mapping) or not self.terms:
-            raise ShapeError(
-                f"power_series: terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}"
-            )
-        seen = set()
+            message = f"terms is {self.terms!r}; it must hold exponents and coefficients, {{n: c}}"
+            raise ShapeError(f"power_series: {message}")
         for exponent, coefficient in self.terms.items():
             if not isinstance(exponent, str):  # keys of a scene are texts
                 check_one("power_series", "an exponent of terms", exponent)
             check_one("power_series", f"the coefficient of r^{exponent}", coefficient)
             check_positive("power_series", "an exponent of terms", exponent)
             if float(exponent) > _MAX_EXPONENT:
-                raise ShapeError(
-                    f"power_series: an exponent of terms is {exponent}; it must be at most {_MAX_EXPONENT:g}"
-                )
+                message = f"an exponent of terms is {exponent}; it must be at most {_MAX_EXPONENT:g}"
+                raise ShapeError(f"power_series: {message}")
             check_positive("power_series", f"the coefficient of r^{exponent}", coefficient)
-            if float(exponent) in seen:
-                raise ShapeError(f"power_series: terms holds the exponent {float(exponent):g} twice; add them up")
-            seen.add(float(exponent))
+        _check_distinct([float(exponent) for exponent in self.terms])
         terms = {float(n): float(c) for n, c in sorted(self.terms.items(), key=lambda term: float(term[0]))}
         object.__setattr__(self, "terms", terms)
 
@@ -120,9 +116,7 @@ class PowerSeries(SharedProfile):
     @classmethod
     def from_columns(cls, columns: dict[str, Floats]) -> Self:
         exponents = columns["exponent"].tolist()
-        for exponent in exponents:
-            if exponents.count(exponent) > 1:
-                raise ShapeError(f"power_series: terms holds the exponent {exponent:g} twice; add them up")
+        _check_distinct(exponents)
         return cls(dict(zip(exponents, columns["terms"].tolist(), strict=True)))
 
     # In the power of a steep term r/width has too few digits for f'.

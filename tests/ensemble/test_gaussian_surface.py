@@ -13,8 +13,12 @@ from scipy.integrate import quad
 
 import roughmdr as rm
 from roughmdr.ensemble import NayakAsperities
-from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
-from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_density
+from roughmdr.ensemble.gaussian.summit_distribution import (
+    SummitDistribution,
+    mean_curvature,
+    product_density,
+    product_of_curvatures,
+)
 from roughmdr.spectrum import Moments, SelfAffine
 
 WAVES: dict[str, Any] = {

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 import roughmdr as rm
 from roughmdr.ensemble.maps.detrend import remove_trend
-from roughmdr.ensemble.maps.height_map import HeightMap, read_map
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.summits import find_summits
 
 OPTICAL = Path(__file__).parents[3] / "shared" / "surfaces" / "optical.nc"

@@ -14,8 +14,8 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.map_statistics import FEW_POINTS, map_statistics
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
+from roughmdr.ensemble.maps.section import FEW_POINTS
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import LimitWarning
 

@@ -10,10 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roughmdr as rm
-from roughmdr.ensemble.maps import raw_map
+from roughmdr.ensemble.maps import height_map
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.map_statistics import map_statistics
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
 from roughmdr.ensemble.maps.summits import find_summits
 
 POINTS = 1024
@@ -58,7 +57,7 @@ def test_a_map_takes_little_extra_memory(
 ) -> None:
     section = {"source": "surface", "file": str(maps / name), **({} if ".nc" in name else {"size": "10.24 um"}), **keys}
     first = rm.generate(section, seed=0)  # and all that is imported for it
-    monkeypatch.setattr(raw_map, "BLOCK_SIZE", 2**14)
+    monkeypatch.setattr(height_map, "BLOCK_SIZE", 2**14)
     tracemalloc.start()
     try:
         again = rm.generate(section, seed=0)
@@ -72,12 +71,12 @@ def test_a_map_takes_little_extra_memory(
 
 @given(rows=st.integers(1, 10**5), columns=st.integers(1, 10**8), together=st.integers(1, 10**4))
 def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> None:
-    parts = list(raw_map.blocks(rows, columns, together))
+    parts = list(height_map.blocks(rows, columns, together))
     assert [row for part in parts for row in (part.start, part.stop)][1:-1:2] == [part.start for part in parts[1:]]
     assert (parts[0].start, parts[-1].stop) == (0, rows)
     for part in parts:
         assert part.start % together == 0
-        assert (part.stop - part.start - together) * columns < raw_map.BLOCK_SIZE
+        assert (part.stop - part.start - together) * columns < height_map.BLOCK_SIZE
 
 
 @settings(deadline=None, max_examples=60)
@@ -99,7 +98,7 @@ def test_the_block_size_makes_no_difference(
     found = []
     for size in (2**20, together):
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(raw_map, "BLOCK_SIZE", size)
+            patched.setattr(height_map, "BLOCK_SIZE", size)
             surface = HeightMap(rough.copy(), 0.5, 0.7, periodic)
             try:
                 summits = find_summits(surface)

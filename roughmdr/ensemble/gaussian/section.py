@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, ValidationInfo, field_validator, model_val
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_of_score
 from roughmdr.ensemble.nodes import HEIGHT_END, Heights, Nodes, Rule, UpperTail
-from roughmdr.ensemble.patch import MAX_COUNT, PatchSource
+from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Length, Quantity
@@ -19,8 +19,7 @@ _MOMENTS = ("m0", "m2", "m4")
 _WAVES = ("hurst", "long_wave", "short_wave")
 _AMPLITUDES = ("rms_height", "rms_slope")
 _EITHER = "takes m0, m2 and m4, or hurst, long_wave, short_wave and one of rms_height and rms_slope"
-_STREAMS = (HEIGHT, PARAMETER, PARAMETER + 1)
-"""Of the heights, the mean curvatures and the products of the curvatures."""
+_STREAMS = (HEIGHT, PARAMETER, PARAMETER + 1)  # of the heights, the mean curvatures and the products of the curvatures
 
 
 class NayakAsperities(PatchSource):
@@ -66,14 +65,9 @@ class NayakAsperities(PatchSource):
         if missing:
             raise RoughmdrError(f"needs {' and '.join(missing)}; source 'nayak' {_EITHER}")
         try:
-            _ = self.summits
+            expected = self._mean_count
         except ArithmeticError:
             raise RoughmdrError("no float can hold the moments of this spectrum") from None
-        return self
-
-    @model_validator(mode="after")
-    def _check_count(self) -> "NayakAsperities":
-        expected = self._mean_count
         if not expected > 0.5:
             side = 1.0 / math.sqrt(self.summits.density)
             message = f"holds {expected:.3g} summits; at least one is needed: on average on a side of {side:.3g} m"
@@ -141,14 +135,9 @@ class NayakAsperities(PatchSource):
     ) -> Ensemble:
         streams = make_streams(seed, realization, _STREAMS if stratified else ())
         summits = self.summits.draw(*(streams(stream, self.count) for stream in _STREAMS))
-        attrs: dict[str, float | int | str] = {
-            "patch": self.patch,
-            "seed": seed,
-            "realization": realization,
-            "density": self.summits.density,
-            "alpha": self.summits.moments.alpha,
-            **self.summits.moments._asdict(),
-        }
-        radii = {"radius": summits.radius}
         positions = self.positions(streams, self.count) if with_positions else {}
+        attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
+        attrs |= {"density": self.summits.density, "alpha": self.summits.moments.alpha}
+        attrs |= self.summits.moments._asdict()
+        radii = {"radius": summits.radius}
         return Ensemble(self.shape, summits.height, radii, self.nominal_area, positions, attrs).sorted()

@@ -3,7 +3,7 @@
 Height and second derivatives of such a surface are Gaussian (M. S. Longuet-Higgins, Phil. Trans. R. Soc. A 249 (1957)
 321; P. R. Nayak, J. Lubr. Technol. 93 (1971) 398). At a summit both principal curvatures k1, k2 are above 0, and the
 density of summits is proportional to k1 k2. With S and v, the mean curvature and the product of the curvatures without
-units (``quantiles``), their joint density over 0 < v < S^2 is
+units, (k1 + k2)/2 = sqrt(2 m4/3) S and k1 k2 = (2 m4/3) v, their joint density over 0 < v < S^2 is
 
     sqrt(6/pi) v exp(v - 3 S^2/2),
 
@@ -12,12 +12,13 @@ follows from that by integration.
 """
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
-from roughmdr.ensemble.gaussian.quantiles import mean_curvature, product_of_curvatures
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
@@ -25,17 +26,21 @@ from roughmdr.spectrum import MIN_ALPHA, Moments
 
 _TAIL_WIDTH = 12.0  # in sqrt(v): a negligible fraction lies farther above
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
+_NORM = math.sqrt(6.0 / math.pi)  # of the density of S
+_SMALL_V = 0.5  # v up to which v - 1 + exp(-v) is summed as a series, since the difference cancels
+_SMALL_S = 1.0  # likewise for the fraction below S
+_EXCESS = [(-1.0) ** k / math.factorial(k) for k in range(2, 17)]
+_BELOW = [(-0.5) ** k * (3**k - 1 - 2 * k) / (math.factorial(k) * (2 * k + 1)) for k in range(2, 23)]
+_MAX_S = 10.0  # no uniform number leads beyond
+_TABLE_SIZE = 2049
 
 
 class Summits(NamedTuple):
     """Summits that were drawn."""
 
-    height: Floats
-    """Above the mean plane of the surface [m]."""
-    mean_curvature: Floats
-    """(k1 + k2)/2 [1/m]."""
-    radius: Floats
-    """1/sqrt(k1 k2) [m] (J. A. Greenwood, Wear 261 (2006) 191)."""
+    height: Floats  # above the mean plane of the surface [m]
+    mean_curvature: Floats  # (k1 + k2)/2 [1/m]
+    radius: Floats  # 1/sqrt(k1 k2) [m] (J. A. Greenwood, Wear 261 (2006) 191)
 
 
 class SummitDistribution(NamedTuple):
@@ -55,40 +60,32 @@ class SummitDistribution(NamedTuple):
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the heights, sqrt(m0 (1 - (1 + 16/pi - 3 sqrt(3))/alpha)) [m].
-
-        S has the mean (4/3) sqrt(6/pi) and the mean square 2 sqrt(3) + 1/3.
-        """
+        """Standard deviation of the heights, sqrt(m0 (1 - (1 + 16/pi - 3 sqrt(3))/alpha)) [m]."""
+        # S has the mean (4/3) sqrt(6/pi) and the mean square 2 sqrt(3) + 1/3.
         numerator = 1.0 + 16.0 / math.pi - 3.0 * math.sqrt(3.0)
         return math.sqrt(self.moments.m0 * (1.0 - numerator / self.moments.alpha))
 
     @property
-    def _c2(self) -> float:
-        """c^2 = 3/(2 alpha), the part of the surface's variance that goes with the mean curvature."""
-        return MIN_ALPHA / self.moments.alpha
-
-    @property
-    def _residual(self) -> float:
-        """1 - c^2, without cancellation."""
-        return (self.moments.alpha - MIN_ALPHA) / self.moments.alpha
+    def _parts(self) -> tuple[float, float]:
+        """c^2 = 3/(2 alpha), the part of the surface's variance that goes with the mean curvature, and 1 - c^2."""
+        alpha = self.moments.alpha
+        return MIN_ALPHA / alpha, (alpha - MIN_ALPHA) / alpha
 
     @property
     def height_spread(self) -> float:
         """Standard deviation of the heights of summits with the same second derivatives [m]."""
-        return math.sqrt(self.moments.m0 * self._residual)
+        return math.sqrt(self.moments.m0 * self._parts[1])
 
     def height_range(self, v: float, deviations: float) -> tuple[float, float]:
         """Return bounds [m] on the heights of summits with v: S is at least sqrt(v), and seldom much more."""
-        per_S, spread = math.sqrt(self._c2 * self.moments.m0), deviations * self.height_spread
+        per_S, spread = math.sqrt(self._parts[0] * self.moments.m0), deviations * self.height_spread
         return per_S * math.sqrt(v) - spread, per_S * (math.sqrt(v) + deviations) + spread
 
     def draw(self, height: Floats, mean: Floats, product: Floats) -> Summits:
-        """Return summits at independent uniform numbers for height, mean curvature and product of curvatures.
-
-        The numbers are from 2^-53 to 1 - 2^-53.
-        """
+        """Return summits at uniform numbers from 2^-53 to 1 - 2^-53 for height and the curvatures' mean and product."""
         S = mean_curvature(mean)
-        z = math.sqrt(self._c2) * S + math.sqrt(self._residual) * _NORMAL.quantile(height)
+        c, t = map(math.sqrt, self._parts)
+        z = c * S + t * _NORMAL.quantile(height)
         curvature = math.sqrt(2.0 * self.moments.m4 / 3.0) * S
         return Summits(math.sqrt(self.moments.m0) * z, curvature, self.radius(product_of_curvatures(product, S)))
 
@@ -105,8 +102,8 @@ class SummitDistribution(NamedTuple):
         """
         from scipy.special import erfc, erfcx
 
-        c, t, b = math.sqrt(self._c2), math.sqrt(self._residual), 3.0 - 2.0 * self._c2
-        unit = math.sqrt(self.moments.m0)
+        c, t = map(math.sqrt, self._parts)
+        b, unit = 3.0 - 2.0 * self._parts[0], math.sqrt(self.moments.m0)
         zeta, root = np.asarray(z, dtype=np.float64) / unit, np.sqrt(np.asarray(v, dtype=np.float64))
         y = math.sqrt(0.5 * b) / t * (root - c * zeta / b)
         # Each of the two forms of erfc is used where its exponential is below 1.
@@ -114,6 +111,88 @@ class SummitDistribution(NamedTuple):
         far = erfc(np.minimum(y, 0.0)) * np.exp(np.minimum(1.5 * (root * root - zeta * zeta / b), 0.0))
         scale = math.sqrt(1.5 / (math.pi * b)) / unit
         return np.asarray(scale * np.where(y > 0.0, near, far) / erfcx(math.sqrt(1.5) * root))
+
+
+def mean_curvature(uniform: Floats) -> Floats:
+    """Return S [1] below which these fractions of the summits lie; the fractions from 2^-53 to 1 - 2^-53.
+
+    The density of S is sqrt(6/pi) (S^2 - 1 + exp(-S^2)) exp(-S^2/2), which M. S. Longuet-Higgins, Phil. Trans. R. Soc.
+    A 249 (1957) 321, gives for all extrema, restricted to those where both curvatures are above 0.
+    """
+    S = np.interp(_abscissa(uniform, 1.0 - uniform), *_table())
+    t = S * S
+    excess = _excess(t)
+    # From the smaller of the fractions below and above: 1 - u is exact, and the other one is too coarse.
+    off, upper = np.empty_like(S), uniform > 0.5
+    off[upper] = (1.0 - uniform[upper]) - _above(S[upper])
+    off[~upper] = _below(S[~upper]) - uniform[~upper]
+    newton = off / (_NORM * excess * np.exp(-0.5 * t))
+    return np.asarray(S - newton / (1.0 - 0.5 * newton * S * (2.0 * t / excess - 3.0)))
+
+
+def product_of_curvatures(uniform: Floats, S: Floats) -> Floats:
+    """Return v [1] below which these fractions of the summits with the mean curvature S lie.
+
+    Their density of v is v exp(v) over 0 < v < S^2. With the fraction N(v)/N(S^2), N = (v - 1) exp(v) + 1, this solves
+    log N(v) = log u + log N(S^2), which neither cancels nor overflows, by Halley's method.
+    """
+    v_max = S * S
+    log_N = np.log(uniform) + v_max + np.log(_excess(v_max))
+    v = 2.0 * np.logaddexp(0.0, 0.5 * (log_N - math.log(2.0)))  # right for small v, and to a logarithm for large ones
+    for _ in range(3):
+        excess = _excess(v)
+        rate = v / excess
+        newton = (v + np.log(excess) - log_N) / rate
+        v = v - newton / (1.0 - 0.5 * newton * (1.0 + 1.0 / v - rate))
+    return np.asarray(v)
+
+
+def _excess(v: Floats) -> Floats:
+    """Return v - 1 + exp(-v)."""
+    excess, small = v - 1.0 + np.exp(-v), v < _SMALL_V
+    excess[small] = v[small] ** 2 * polyval(v[small], _EXCESS)
+    return excess
+
+
+def _below(S: Floats) -> Floats:
+    """Return the fraction of the summits whose mean curvature is below S."""
+    from scipy.special import erf
+
+    below, small = np.asarray(erf(math.sqrt(1.5) * S) - _NORM * S * np.exp(-0.5 * S * S)), S < _SMALL_S
+    below[small] = _NORM * S[small] ** 5 * polyval(S[small] ** 2, _BELOW)
+    return below
+
+
+def _above(S: Floats) -> Floats:
+    """Return the fraction of the summits whose mean curvature is above S."""
+    from scipy.special import erfc
+
+    return np.asarray(erfc(math.sqrt(1.5) * S) + _NORM * S * np.exp(-0.5 * S * S))
+
+
+def _abscissa(below: Floats, above: Floats) -> Floats:
+    """Return the abscissa of the table, nearly proportional to S where the fraction below is small."""
+    return np.asarray(np.where(below > 0.5, -np.log(above), -np.log1p(-np.minimum(below, 0.5))) ** 0.2)
+
+
+@cache
+def _table() -> tuple[Floats, Floats]:
+    """Return a table of S, linear interpolation in which is a sufficient initial guess for one Halley step."""
+    S = np.linspace(0.0, _MAX_S, _TABLE_SIZE)
+    return _abscissa(_below(S), _above(S)), S
+
+
+def product_density(v: ArrayLike) -> Floats:
+    """Return the density [1] of v over all summits, v exp(v) erfc(sqrt(3 v/2)), at v of at least 0."""
+    from scipy.special import erfcx
+
+    v = np.asarray(v, dtype=np.float64)
+    return np.asarray(v * np.exp(-0.5 * v) * erfcx(np.sqrt(1.5 * v)))
+
+
+def _root_density(y: Floats) -> Floats:
+    """Return the density of sqrt(v)."""
+    return 2.0 * y * product_density(y * y)
 
 
 def product_of_score(scores: Floats) -> Floats:
@@ -137,16 +216,3 @@ def product_of_score(scores: Floats) -> Floats:
         slope = _root_density(y) * np.sqrt(2.0 * np.pi) * np.exp(0.5 * at_y**2)
         y = np.clip(y - (at_y - scores) / slope, 0.5 * y, 2.0 * y)
     return np.asarray(y * y)
-
-
-def _root_density(y: Floats) -> Floats:
-    """Return the density of sqrt(v)."""
-    return 2.0 * y * product_density(y * y)
-
-
-def product_density(v: ArrayLike) -> Floats:
-    """Return the density [1] of v over all summits, v exp(v) erfc(sqrt(3 v/2)), at v of at least 0."""
-    from scipy.special import erfcx
-
-    v = np.asarray(v, dtype=np.float64)
-    return np.asarray(v * np.exp(-0.5 * v) * erfcx(np.sqrt(1.5 * v)))

@@ -5,8 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.raw_map import blocks
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 
@@ -18,10 +17,7 @@ _CUTOFF_RTOL = 1e-9  # a wave as long as the cut-off is kept
 
 
 def remove_trend(height: Floats, trend: Trend) -> None:
-    """Subtract a polynomial in x and y from a map, in place: the least-squares fit to the points that are not NaN.
-
-    It is of degree 0 for "mean", 1 for "plane" and 2 for "quadratic".
-    """
+    """Subtract a polynomial in x and y from a map, in place: the least-squares fit to the points that are not NaN."""
     if trend == "none":
         return
     degree = _DEGREE[trend]
@@ -37,9 +33,8 @@ def remove_trend(height: Floats, trend: Trend) -> None:
     moments = along_x.T @ moments
     normal = np.array([[products[i, k, j, m] for k, m in powers] for i, j in powers])
     coefficients = np.zeros((degree + 1, degree + 1))
-    coefficients[tuple(zip(*powers, strict=True))] = np.linalg.lstsq(
-        normal, np.array([moments[power] for power in powers]), rcond=None
-    )[0]
+    right = np.array([moments[power] for power in powers])
+    coefficients[tuple(zip(*powers, strict=True))] = np.linalg.lstsq(normal, right, rcond=None)[0]
     for rows in blocks(*height.shape):
         height[rows] -= along_x[rows] @ coefficients @ along_y.T
 
@@ -96,13 +91,10 @@ def _cut_spectrum(height: Floats, along_x: float, along_y: float) -> None:
 
 
 def _smooth(field: Floats, along_x: float, along_y: float) -> None:
-    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside.
-
-    The Gaussian is a product of one along x and one along y. An axis with one point, along which the field is constant,
-    is skipped.
-    """
+    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside."""
     from scipy import fft
 
+    # The Gaussian is a product of one along x and one along y. Along an axis with one point the field is constant.
     for rows_along, spacings in ((field.T, along_x), (field, along_y)):
         n = rows_along.shape[1]
         if n == 1:

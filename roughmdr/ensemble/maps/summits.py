@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.raw_map import blocks
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 
@@ -20,14 +19,10 @@ class _Fits(NamedTuple):
     height: Floats
     x: Floats
     y: Floats
-    determinant: Floats
-    """k1 k2, of the second derivatives."""
-    second: Floats
-    """h_xx + h_yy."""
-    fourth: Floats
-    """h_xxyy."""
-    candidates: int
-    """The number of points above their neighbours, saddles included."""
+    determinant: Floats  # k1 k2, of the second derivatives
+    second: Floats  # h_xx + h_yy
+    fourth: Floats  # h_xxyy
+    candidates: int  # the number of points above their neighbours, saddles included
 
 
 def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
@@ -49,26 +44,21 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     if not height.size:
         raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")
     defined = surface.defined
-    return Ensemble(
-        "paraboloid",
-        height,
-        {"radius": dx * dy / np.sqrt(determinant)},
-        defined * dx * dy,
-        {"x": x % nx * dx, "y": y % ny * dy},  # a top may lie across the edge of a periodic map
-        {
-            "patch_x": nx * dx,
-            "patch_y": ny * dy,
-            "points_per_summit": defined / height.size,
-            "saddles": sum(candidates) - height.size,
-            "misfit": float(np.linalg.norm(fourth) / np.linalg.norm(second)),
-        },
-    ).sorted()
+    positions = {"x": x % nx * dx, "y": y % ny * dy}  # a top may lie across the edge of a periodic map
+    attrs: dict[str, float | int | str] = {
+        "patch_x": nx * dx,
+        "patch_y": ny * dy,
+        "points_per_summit": defined / height.size,
+        "saddles": sum(candidates) - height.size,
+        "misfit": float(np.linalg.norm(fourth) / np.linalg.norm(second)),
+    }
+    radii = {"radius": dx * dy / np.sqrt(determinant)}
+    return Ensemble("paraboloid", height, radii, defined * dx * dy, positions, attrs).sorted()
 
 
 def _parts(surface: HeightMap) -> Iterator[tuple[Floats, int, float]]:
-    """Yield blocks of rows of points that have neighbours, with a row and a column of neighbours at each side.
-
-    With each its first row, and the distance of the first inner point of a map from the edge of the patch, in spacings.
+    """Yield blocks of rows, with a row and a column of neighbours at each side, and with each block its first row and
+    the distance of the first inner point of the map from the edge of the patch, in spacings.
     """
     height, periodic = surface.height, surface.periodic
     nx, ny = height.shape
@@ -95,10 +85,7 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
     drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in _NEIGHBOURS}
 
     def moment(m: int, n: int) -> Floats:
-        total = np.zeros(rows.size)
-        for i, j in _NEIGHBOURS:
-            total += i**m * j**n * drop[i, j]
-        return total
+        return np.asarray(sum((i**m * j**n * drop[i, j] for i, j in _NEIGHBOURS), np.zeros(rows.size)))
 
     # The normal equations of drop = p i + q j + (A i^2 + 2 B i j + C j^2)/2 over the eight neighbours (i, j).
     p, q = moment(1, 0) / 6.0, moment(0, 1) / 6.0
@@ -108,7 +95,6 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
 
     second = moment(2, 0) + moment(0, 2) - 2.0 * moment(2, 2)
     fourth = moment(2, 2) - 2.0 * second
-
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # a curvature out of range is not a dome
         determinant = A * C - B * B
     domed = (determinant > 0.0) & (A < 0.0)
@@ -117,13 +103,7 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
     # A top beyond the neighbours is an extrapolation: the point itself is the better summit.
     near = np.maximum(np.abs(i_top), np.abs(j_top)) <= 1.0
     i_top, j_top = np.where(near, i_top, 0.0), np.where(near, j_top, 0.0)
-    at = rows[domed], columns[domed]
-    return _Fits(
-        inner[at] + 0.5 * (p * i_top + q * j_top),
-        at[0] + first + edge + i_top,
-        at[1] + edge + j_top,
-        determinant,
-        second[domed],
-        fourth[domed],
-        rows.size,
-    )
+    row, column = rows[domed], columns[domed]
+    height = inner[row, column] + 0.5 * (p * i_top + q * j_top)
+    x, y = row + first + edge + i_top, column + edge + j_top
+    return _Fits(height, x, y, determinant, second[domed], fourth[domed], rows.size)

@@ -2,5 +2,5 @@
 
 ``distribution_families`` declares the distributions, ``distribution`` draws from one, ``distribution_reader`` reads one
 from a scene; ``population`` joins those of the height and the shape parameters, ``population_nodes`` integrates over
-them; ``section`` and ``sections_by_shape`` declare the keys of a scene.
+them; ``section`` declares the keys of a scene.
 """

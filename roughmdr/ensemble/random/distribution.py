@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from roughmdr.ensemble.random.distribution_families import Family, find_family
+from roughmdr.ensemble.random.distribution_families import Family, find_family, ndtr, ndtri
 from roughmdr.ensemble.streams import SMALLEST_UNIFORM
 from roughmdr.numerics.arguments import Floats
 
@@ -24,17 +24,14 @@ _FAR_FRACTION = 1e-15  # beyond it some inverses of scipy are wrong by orders of
 class Distribution:
     """A distribution of a quantity in SI, or a constant: ``loc``, with ``scale`` 0 and no family."""
 
-    family: str
-    """Name in ``distribution_families``; empty for a constant."""
+    family: str  # name in ``distribution_families``; empty for a constant
     family_parameters: tuple[float, ...]
     loc: float
     scale: float
-    min: float = -math.inf
-    """Where it is truncated below."""
-    max: float = math.inf
-    """Where it is truncated above."""
-    location_given: bool = field(default=True, repr=False, compare=False)  # it changes no number
-    """Whether the user gave its location; else ``loc`` is 0, as in scipy.stats."""
+    min: float = -math.inf  # where it is truncated below
+    max: float = math.inf  # where it is truncated above
+    location_given: bool = field(default=True, repr=False, compare=False)
+    """Whether the user gave its location, which changes no number; else ``loc`` is 0, as in scipy.stats."""
 
     @property
     def constant(self) -> float | None:
@@ -83,10 +80,8 @@ class Distribution:
         return self._tails[2]
 
     def _at_fractions(self, below: Floats, above: Floats) -> Floats:
-        """Return the values with the fraction ``below`` below them and ``above`` = 1 - below above them.
-
-        From the smaller one of the untruncated distribution: its inverse near 1 may round to infinity.
-        """
+        """Return the values with the fraction ``below`` below them and ``above`` = 1 - below above them."""
+        # From the smaller one of the untruncated distribution: its inverse near 1 may round to infinity.
         below_min, above_max, between = self._tails
         below, above = below_min + between * below, above_max + between * above
         values = np.empty_like(below)
@@ -103,8 +98,6 @@ class Distribution:
 
     def from_scores(self, scores: Floats) -> Floats:
         """Return the values at the quantiles of normal scores; NaN so far out that the family's inverse is wrong."""
-        from scipy.special import ndtr
-
         if not self.family:
             return np.full_like(scores, self.loc)
         values = self._at_fractions(ndtr(scores), ndtr(-scores))
@@ -115,8 +108,6 @@ class Distribution:
 
     def _checked_values(self, scores: Floats, values: Floats) -> Floats:
         """Return values far out, NaN where too few lie beyond them unless they are negligible in a mean."""
-        from scipy.special import ndtr
-
         below, above = self.fractions(values)
         expected, beyond = ndtr(-np.abs(scores)), np.where(scores > 0.0, above, below)
         near = np.abs(self.from_scores(np.array([-_FAR_SCORE, _FAR_SCORE])) - self.loc).max()
@@ -137,8 +128,6 @@ class Distribution:
 
     def scores(self, values: Floats) -> Floats:
         """Return the normal scores of values, the inverse of ``from_scores``."""
-        from scipy.special import ndtri
-
         below, above = self.fractions(values)
         return np.asarray(np.where(below < above, ndtri(below), -ndtri(above)))
 
@@ -154,11 +143,23 @@ class Distribution:
             density = self._family.pdf((values - self.loc) / self.scale, *self.family_parameters) / scale
         return np.where((values >= self.min) & (values <= self.max), density, 0.0)
 
-    @cached_property
-    def _truncated_moments(self) -> tuple[float, float]:
-        """Mean and standard deviation where it is truncated."""
-        from scipy.special import ndtr
+    @property
+    def mean(self) -> float:
+        """Mean; inf or NaN where the distribution has none."""
+        return self._moments[0]
 
+    @property
+    def std(self) -> float:
+        """Standard deviation; inf or NaN where the distribution has none."""
+        return self._moments[1]
+
+    @cached_property
+    def _moments(self) -> tuple[float, float]:
+        if not self.family:
+            return self.loc, 0.0
+        if not self.truncated:
+            mean, variance = self._family.moments(*self.family_parameters)
+            return self.loc + self.scale * mean, self.scale * math.sqrt(variance)
         below, above = ndtr(_SCORES), ndtr(-_SCORES)
         values = self._at_fractions(below, above)
         weights = np.exp(-0.5 * _SCORES**2) * (_SCORE_STEP / math.sqrt(2.0 * math.pi))
@@ -167,49 +168,29 @@ class Distribution:
         smaller, actual = np.where(above < below, (above, above_values), (below, below_values))
         with np.errstate(all="ignore"):
             wrong = (smaller < _FAR_FRACTION) & ~(np.abs(actual / smaller - 1.0) < 0.5)
-        # So far out that no float holds the untruncated fraction, or that the family's inverse is wrong.
-        values = np.where(np.isfinite(values) & ~wrong, values, median)
-        with np.errstate(all="ignore"):  # truncated at one end, it may have no moments
+            # So far out that no float holds the untruncated fraction, or that the family's inverse is wrong.
+            values = np.where(np.isfinite(values) & ~wrong, values, median)
+            # Truncated at one end, it may have no moments.
             mean = median + float(weights @ (values - median))
             return mean, math.sqrt(float(weights @ (values - mean) ** 2))
-
-    @property
-    def mean(self) -> float:
-        """Mean; inf or NaN where the distribution has none."""
-        if not self.family:
-            return self.loc
-        if self.truncated:
-            return self._truncated_moments[0]
-        return self.loc + self.scale * self._family.moments(*self.family_parameters)[0]
-
-    @property
-    def std(self) -> float:
-        """Standard deviation; inf or NaN where the distribution has none."""
-        if not self.family:
-            return 0.0
-        if self.truncated:
-            return self._truncated_moments[1]
-        return self.scale * math.sqrt(self._family.moments(*self.family_parameters)[1])
 
     @cached_property
     def broad(self) -> bool:
         """Whether its values, all above 0, differ by large factors: anywhere more so than in a narrow lognormal one."""
-        return bool(self.family) and float(np.max(np.diff(np.log(self.from_scores(_DRAW_SCORES))))) > _BROAD
+        return float(np.max(np.diff(np.log(self.from_scores(_DRAW_SCORES))))) > _BROAD
 
     @cached_property
     def long_tailed(self) -> bool:
         """Whether its upper tail is longer, relative to its bulk, than an exponential one."""
-        if not self.family:
-            return False
         median, upper, far = self.from_scores(np.array([0.0, 2.0, _DRAW_SCORES[-1]]))
         return bool(far - median > _LONG_TAIL * (upper - median))
 
-    @property
+    @cached_property
     def smallest(self) -> float:
         """The smallest value that can be drawn."""
         return float(self.quantile(np.array([SMALLEST_UNIFORM]))[0])
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """The largest value that can be drawn."""
         return float(self.quantile(np.array([1.0 - SMALLEST_UNIFORM]))[0])

@@ -29,36 +29,30 @@ ALIASES = {"normal": "norm", "lognormal": "lognorm", "exponential": "expon", "we
 
 
 class Family(NamedTuple):
-    """A family with location 0 and scale 1; ``args`` are its own parameters (scipy: shape parameters)."""
+    """A family with location 0 and scale 1, as functions of its own parameters, ``args`` (scipy: shape parameters)."""
 
-    parameters: tuple[str, ...]
-    """The names of its own parameters."""
-    is_defined: Callable[..., bool]
-    """(*args) -> whether there is such a distribution."""
-    moments: Callable[..., tuple[float, float]]
-    """(*args) -> mean and variance, inf or NaN where there is none."""
-    ppf: Callable[..., Floats]
-    """(u, *args) -> the values below which the fractions u lie."""
-    isf: Callable[..., Floats]
-    """(u, *args) -> the values above which the fractions u lie."""
-    cdf: Callable[..., Floats]
-    """(x, *args) -> the fractions below the values x."""
-    sf: Callable[..., Floats]
-    """(x, *args) -> the fractions above the values x."""
-    pdf: Callable[..., Floats]
-    """(x, *args) -> the density at x."""
+    parameters: tuple[str, ...]  # the names of its own parameters
+    is_defined: Callable[..., bool]  # (*args) -> whether there is such a distribution
+    moments: Callable[..., tuple[float, float]]  # (*args) -> mean and variance, inf or NaN where there is none
+    ppf: Callable[..., Floats]  # (u, *args) -> the values below which the fractions u lie
+    isf: Callable[..., Floats]  # (u, *args) -> the values above which the fractions u lie
+    cdf: Callable[..., Floats]  # (x, *args) -> the fractions below the values x
+    sf: Callable[..., Floats]  # (x, *args) -> the fractions above the values x
+    pdf: Callable[..., Floats]  # (x, *args) -> the density at x
 
 
-def _ndtri(fraction: Floats) -> Floats:
-    from scipy.special import ndtri
+def ndtri(fraction: Floats) -> Floats:
+    """Return the normal scores below which the fractions lie."""
+    from scipy import special
 
-    return np.asarray(ndtri(fraction))
+    return np.asarray(special.ndtri(fraction))
 
 
-def _ndtr(x: Floats) -> Floats:
-    from scipy.special import ndtr
+def ndtr(score: Floats) -> Floats:
+    """Return the fractions below normal scores."""
+    from scipy import special
 
-    return np.asarray(ndtr(x))
+    return np.asarray(special.ndtr(score))
 
 
 def _normal_pdf(x: Floats) -> Floats:
@@ -86,20 +80,20 @@ FAST_FAMILIES = {
         parameters=(),
         is_defined=lambda: True,
         moments=lambda: (0.0, 1.0),
-        ppf=_ndtri,
-        isf=lambda u: -_ndtri(u),
-        cdf=_ndtr,
-        sf=lambda x: _ndtr(-x),
+        ppf=ndtri,
+        isf=lambda u: -ndtri(u),
+        cdf=ndtr,
+        sf=lambda x: ndtr(-x),
         pdf=_normal_pdf,
     ),
     "lognorm": Family(
         parameters=("s",),
         is_defined=lambda s: s > 0.0,
         moments=_lognormal_moments,
-        ppf=lambda u, s: np.exp(s * _ndtri(u)),
-        isf=lambda u, s: np.exp(s * -_ndtri(u)),
-        cdf=lambda x, s: _ndtr(_log(x) / s),
-        sf=lambda x, s: _ndtr(-_log(x) / s),
+        ppf=lambda u, s: np.exp(s * ndtri(u)),
+        isf=lambda u, s: np.exp(s * -ndtri(u)),
+        cdf=lambda x, s: ndtr(_log(x) / s),
+        sf=lambda x, s: ndtr(-_log(x) / s),
         pdf=_lognormal_pdf,
     ),
     "uniform": Family(
@@ -135,14 +129,12 @@ def known_families() -> list[str]:
 
 
 def _from_scipy(family: Any) -> Family:
+    functions = (family.ppf, family.isf, family.cdf, family.sf, family.pdf)
     return Family(
         () if family.shapes is None else tuple(family.shapes.split(", ")),
         _quiet(lambda *args: bool(family._argcheck(*args))),
         lru_cache(maxsize=256)(_quiet(partial(_checked_moments, family))),
-        *(
-            _quiet(_nan_for_errors(function))
-            for function in (family.ppf, family.isf, family.cdf, family.sf, family.pdf)
-        ),
+        *(_quiet(_nan_for_errors(function)) for function in functions),
     )
 
 
@@ -185,8 +177,7 @@ def _quiet(function: Callable[_P, _T]) -> Callable[_P, _T]:
 
     @wraps(function)
     def call(*args: _P.args, **kwargs: _P.kwargs) -> _T:
-        with _WARNING_FILTERS, warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
+        with _WARNING_FILTERS, warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
             return function(*args, **kwargs)
 
     return call

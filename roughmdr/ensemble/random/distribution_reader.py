@@ -11,8 +11,7 @@ from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.schema.wording import close_matches
 
-_COMMON = ("loc", "scale", "mean", "std", "min", "max")
-"""Parameters of every family, in the unit of the quantity."""
+_COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
 _LOCATION = ("loc", "mean", "std")  # std with the default mean
 _MIN_FRACTION = 1e-200  # that a truncated distribution keeps: less has no digits left
 _MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # of a family: far beyond, scipy can crash the whole process
@@ -30,28 +29,26 @@ class DistributionReader:
 
     dimension: str
     mean: float | None = None
-    positive: bool = False
-    """Whether every value that can be drawn must be above 0."""
+    positive: bool = False  # whether every value that can be drawn must be above 0
 
     def __call__(self, value: object) -> Distribution:
         """Return the distribution in SI."""
         if not isinstance(value, dict):
-            return self._check_sign(Distribution("", (), quantity(value, self.dimension), 0.0))
-        try:
-            return self._read_cached(tuple((key, type(entry), entry) for key, entry in value.items()))
-        except TypeError:  # an entry that cannot be hashed
-            return self._check_sign(self._from_table(value))
-
-    @lru_cache(maxsize=256)  # noqa: B019 - the cells of a sweep read the same ones over and over
-    def _read_cached(self, entries: tuple[tuple[str, type, object], ...]) -> Distribution:
-        return self._check_sign(self._from_table({key: entry for key, _, entry in entries}))
-
-    def _check_sign(self, distribution: Distribution) -> Distribution:
+            distribution = Distribution("", (), quantity(value, self.dimension), 0.0)
+        else:
+            try:
+                distribution = self._read_cached(tuple((key, type(entry), entry) for key, entry in value.items()))
+            except TypeError:  # an entry that cannot be hashed
+                distribution = self._from_table(value)
         if self.positive and not distribution.smallest > 0.0:
             raise RoughmdrError(
                 f"can be as low as {distribution.smallest:.3g}; it must be above 0 (lognormal, for one, always is)"
             )
         return distribution
+
+    @lru_cache(maxsize=256)  # noqa: B019 - the cells of a sweep read the same ones over and over
+    def _read_cached(self, entries: tuple[tuple[str, type, object], ...]) -> Distribution:
+        return self._from_table({key: entry for key, _, entry in entries})
 
     def parameters(self, value: object) -> list[str]:
         """Return the names of the parameters that an entry can have."""
@@ -82,8 +79,9 @@ class DistributionReader:
         name = ALIASES.get(given, given)
         family = find_family(name)
         if family is None:
-            message = f"not known{_suggestion(given)}; any continuous one of scipy.stats will do"
-            raise EntryError("distribution", given, message)
+            meanings = close_matches(given, [*ALIASES, *known_families()], count=3)
+            hint = f"; did you mean {' or '.join(map(repr, meanings))}?" if meanings else ""
+            raise EntryError("distribution", given, f"not known{hint}; any continuous one of scipy.stats will do")
         allowed = self.parameters(value)
         for key, entry in table.items():
             if key not in allowed:
@@ -93,25 +91,18 @@ class DistributionReader:
         try:
             location_given = not numbers.keys().isdisjoint(_LOCATION)
             distribution = Distribution(name, *_located(family, given, numbers, self.mean), low, high, location_given)
-            _check_truncation(distribution, given)
+            if not low < high:
+                raise EntryError("max", high, f"must be above min, {low:g}")
+            if not distribution.kept_fraction >= _MIN_FRACTION:
+                raise RoughmdrError(f"{given} has next to nothing between min, {low:g}, and max, {high:g}")
             ends = distribution.smallest, distribution.largest
         except RoughmdrError:
             raise
         except (ArithmeticError, RuntimeError, ValueError) as error:  # of scipy, where its inverse does not converge
             raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: {error}") from None
-        if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
+        if not all(map(math.isfinite, ends)):
             raise RoughmdrError(f"{given} cannot be drawn from with {_listed(numbers)}: its quantiles reach {ends}")
         return distribution
-
-
-def _check_truncation(distribution: Distribution, given: str) -> None:
-    low, high = distribution.min, distribution.max
-    if not distribution.truncated:
-        return
-    if not low < high:
-        raise EntryError("max", high, f"must be above min, {low:g}")
-    if not distribution.kept_fraction >= _MIN_FRACTION:
-        raise RoughmdrError(f"{given} has next to nothing between min, {low:g}, and max, {high:g}")
 
 
 def _located(
@@ -124,7 +115,13 @@ def _located(
     if mean is not None and "loc" in numbers:
         raise RoughmdrError(f"{given} takes mean or loc, not both")
     if given == "lognormal" and "s" not in numbers:
-        parameters, loc, scale = _lognormal(mean, std)
+        if mean is None or std is None:
+            raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
+        if not mean > 0.0:
+            raise EntryError("mean", mean, "must be above 0 in a lognormal distribution")
+        variance = math.log1p((std / mean) ** 2)
+        parameters: tuple[float, ...] = (math.sqrt(variance),)
+        loc, scale = 0.0, mean * math.exp(-0.5 * variance)
     else:
         parameters = _own_parameters(family, given, numbers)
         unit_mean, unit_variance = family.moments(*parameters)
@@ -135,16 +132,6 @@ def _located(
     if not (math.isfinite(scale) and scale > 0.0 and math.isfinite(loc)):
         raise RoughmdrError(f"{given} has no finite mean and standard deviation with {_listed(numbers)}")
     return parameters, loc, scale
-
-
-def _lognormal(mean: float | None, std: float | None) -> tuple[tuple[float, ...], float, float]:
-    """Return s, loc and scale from mean and std."""
-    if mean is None or std is None:
-        raise RoughmdrError("lognormal takes a mean above 0 and a std (or scipy's s, loc and scale)")
-    if not mean > 0.0:
-        raise EntryError("mean", mean, "must be above 0 in a lognormal distribution")
-    variance = math.log1p((std / mean) ** 2)
-    return (math.sqrt(variance),), 0.0, mean * math.exp(-0.5 * variance)
 
 
 def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tuple[float, ...]:
@@ -165,8 +152,3 @@ def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tu
 
 def _listed(numbers: dict[str, float]) -> str:
     return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
-
-
-def _suggestion(name: str) -> str:
-    meant = close_matches(name, [*ALIASES, *known_families()], count=3)
-    return f"; did you mean {' or '.join(map(repr, meant))}?" if meant else ""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_families import ndtr, ndtri
 from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Streams
 from roughmdr.numerics.arguments import Floats
 
@@ -14,8 +15,7 @@ from roughmdr.numerics.arguments import Floats
 class Population:
     """Asperities whose heights have one distribution, and each shape parameter another."""
 
-    fraction: float
-    """Of all asperities."""
+    fraction: float  # of all asperities
     height: Distribution
     parameters: dict[str, Distribution]
 
@@ -30,12 +30,9 @@ class Populations:
     """One or two populations, in each of which one parameter may be correlated with the height."""
 
     members: tuple[Population, ...]
-    parameter_streams: dict[str, int]
-    """The stream of random numbers of each parameter."""
-    correlated: str = ""
-    """The parameter that is correlated with the height; empty for none."""
-    rank_correlation: float = 0.0
-    """Spearman's coefficient of the two, in each population."""
+    parameter_streams: dict[str, int]  # the stream of random numbers of each parameter
+    correlated: str = ""  # the parameter that is correlated with the height; empty for none
+    rank_correlation: float = 0.0  # Spearman's coefficient of the two, in each population
 
     @property
     def score_correlation(self) -> float:
@@ -59,11 +56,8 @@ class Populations:
     @property
     def random_streams(self) -> tuple[int, ...]:
         """The streams that draws depend on: without those of quantities that are constant."""
-        streams = [
-            stream
-            for name, stream in self.parameter_streams.items()
-            if any(each.parameters[name].constant is None for each in self.members)
-        ]
+        random = {name for each in self.members for name in each.random_parameters}
+        streams = (stream for name, stream in self.parameter_streams.items() if name in random)
         return (HEIGHT, *((POPULATION,) if len(self.members) > 1 else ()), *streams)
 
     def draw(self, streams: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
@@ -84,8 +78,6 @@ class Populations:
 
     def _correlated_levels(self, height_level: Floats, independent: Floats) -> Floats:
         """Return levels of the parameter that are correlated with those of the heights by the copula."""
-        from scipy.special import ndtr, ndtri
-
         r = self.score_correlation
         levels = ndtr(r * ndtri(height_level) + math.sqrt((1.0 - r) * (1.0 + r)) * ndtri(independent))
         return np.clip(levels, SMALLEST_UNIFORM, 1.0 - SMALLEST_UNIFORM)

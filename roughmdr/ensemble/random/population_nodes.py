@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.ensemble.nodes import HEIGHT_END, Heights, Nodes, Rule, UpperTail, fraction_above
 from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_families import ndtr
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.numerics.arguments import Floats
 
@@ -19,9 +20,7 @@ _QUARTILE = 0.6745  # normal score of the upper quartile
 _MAX_FORCE_EXPONENT = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
 _NEGLIGIBLE_FORCE = 1e-16  # of the force that the bulk bears
 _NEXT_TO_LOC = 1e-14  # of the scale
-_RESOLUTION = (
-    2.0**-48
-)  # of a height, or of the scale of the distribution: the smallest width of a distribution of heights
+_RESOLUTION = 2.0**-48  # of a height, or of the scale: the smallest width of a distribution of heights
 _MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
 
 
@@ -41,10 +40,8 @@ def heights_given(distribution: Distribution, score: float, correlation: float) 
         return relative.from_scores(mean + spread * scores)
 
     def fractions(y: Floats) -> tuple[Floats, Floats]:
-        from scipy.special import ndtr
-
         scores = (relative.scores(y) - mean) / spread
-        return np.asarray(ndtr(scores)), np.asarray(ndtr(-scores))
+        return ndtr(scores), ndtr(-scores)
 
     def density(y: Floats) -> Floats:
         scores = relative.scores(y)
@@ -57,10 +54,7 @@ def heights_given(distribution: Distribution, score: float, correlation: float) 
 
 
 def _edges(from_scores: Callable[[Floats], Floats], unit: float) -> tuple[tuple[float, ...], float, UpperTail]:
-    """Return edges [m], scale [m] and upper tail of the heights y [m] at normal scores.
-
-    ``unit`` is the scale of their distribution [m].
-    """
+    """Return edges [m], scale [m] and upper tail of heights y [m] at normal scores; ``unit`` is that of y [m]."""
     low_bulk, lower, median, upper, bulk = from_scores(np.array([-_BULK, -_QUARTILE, 0.0, _QUARTILE, _BULK])).tolist()
     narrowest = _RESOLUTION * max(unit, abs(median))  # heights that go with an extreme parameter may all be equal
     # The highest count, where most heights are next to a pole.

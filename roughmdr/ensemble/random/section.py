@@ -1,27 +1,30 @@
-"""source = "random": the keys of its section that all shapes share, and what a run asks of it."""
+"""source = "random": the sections of a scene, one for each shape with its parameters as keys, and what a run asks."""
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Annotated, Any, Literal
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
-from roughmdr.ensemble.patch import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.population_nodes import nodes_of
-from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams, poisson
+from roughmdr.ensemble.source import MAX_COUNT, PatchSource
+from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS
-from roughmdr.shapes import SHAPES
+from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.shapes import SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
+_Section = TypeVar("_Section", bound=Section)
 _Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
+_Rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=-1.0, at_most=1.0))]
 
 
 class Second(Section):
@@ -64,8 +67,11 @@ class RandomAsperities(PatchSource):
         for name in _parameters_of(self.second, self.shape):
             if name not in self.distributions:
                 raise EntryError(f"second.{name}", None, f"is not given for the first population: {names}")
-        for population in self.populations.members:
-            _check_order(self.shape, population)
+        for population, (name, floor, reason) in product(self.populations.members, SHAPES[self.shape].not_below):
+            entry, lower = population.parameters[name], population.parameters[floor]
+            if entry.smallest < lower.largest:
+                message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
+                raise EntryError(name, f"from {entry.smallest:.3g}", message)
         if self.correlation is None:
             return self
         correlated = self.populations.correlated
@@ -87,13 +93,11 @@ class RandomAsperities(PatchSource):
     @cached_property
     def populations(self) -> Populations:
         """The populations that the asperities are drawn from."""
-        first = self.distributions
-        members = [Population(1.0, self.height, first)]
+        first, share = self.distributions, self.second.share if self.second else 0.0
+        members = [Population(1.0 - share, self.height, first)]
         if self.second is not None:
-            fraction = self.second.share
             parameters = {**first, **_parameters_of(self.second, self.shape)}
-            second = Population(fraction, self.second.height or self.height, parameters)
-            members = [Population(1.0 - fraction, self.height, first), second]
+            members.append(Population(share, self.second.height or self.height, parameters))
         order = list(SHAPES[self.shape].units)
         streams = {name: PARAMETER + order.index(name) for name in first}
         correlations = _parameters_of(self.correlation, self.shape)
@@ -119,14 +123,12 @@ class RandomAsperities(PatchSource):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings of heights with scipy's own parameters but no location, and a mean that is not at z = 0."""
-        heights = {"height": self.height}
-        if self.second is not None and self.second.height is not None:
-            heights["second.height"] = self.second.height
+        heights = {"height": self.height, "second.height": self.second.height if self.second else None}
         return tuple(
             f"asperities.{key}: {entry.family} with its own parameters is that of scipy.stats, loc = 0, and its mean "
             "is not at z = 0; say loc = 0 if that is meant, or mean = 0 to move it there"
             for key, entry in heights.items()
-            if entry.mean_off_zero
+            if entry is not None and entry.mean_off_zero
         )
 
     @property
@@ -143,10 +145,7 @@ class RandomAsperities(PatchSource):
             def streams(number: int, size: int, level: float = level) -> Floats:
                 return np.full(size, level) if number == stream else others(number, size)
 
-            height, parameters = self.populations.draw(streams, count)
-            yield Ensemble(
-                self.shape, height, parameters, self.nominal_area, shared_profile=self.shared_profile
-            ).sorted()
+            yield self._drawn(streams, count, {}, {})
 
     @property
     def sigma(self) -> float:
@@ -164,8 +163,7 @@ class RandomAsperities(PatchSource):
 
     @property
     def one_parameter(self) -> bool:
-        first, *others = self.populations.members
-        return len(first.random_parameters) == 1 and not others
+        return len(self.populations.members) == 1 and len(self.drawn_parameters) == 1
 
     @property
     def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
@@ -187,9 +185,11 @@ class RandomAsperities(PatchSource):
             count = round(self.expected_count)
         else:
             count = poisson(streams, self.expected_count)
-        height, parameters = self.populations.draw(streams, count)
         positions = self.positions(streams, count) if with_positions else {}
-        attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
+        return self._drawn(streams, count, positions, {"patch": self.patch, "seed": seed, "realization": realization})
+
+    def _drawn(self, streams: Streams, count: int, positions: dict[str, Floats], attrs: dict[str, Any]) -> Ensemble:
+        height, parameters = self.populations.draw(streams, count)
         return Ensemble(
             self.shape, height, parameters, self.nominal_area, positions, attrs, self.shared_profile
         ).sorted()
@@ -201,9 +201,89 @@ def _parameters_of(section: Section | None, shape: str) -> dict[str, Any]:
     return {name: entry for name, entry in entries.items() if entry is not None}
 
 
-def _check_order(shape: str, population: Population) -> None:
-    for name, floor, reason in SHAPES[shape].not_below:
-        entry, lower = population.parameters[name], population.parameters[floor]
-        if entry.smallest < lower.largest:
-            message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
-            raise EntryError(name, f"from {entry.smallest:.3g}", message)
+def _read_terms(value: object) -> dict[str, float]:
+    """Read the terms of a power series, { "exponent" = coefficient }."""
+    if not isinstance(value, dict) or not value:
+        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
+    terms = {}
+    for exponent, coefficient in value.items():
+        try:
+            float(exponent)
+        except ValueError:
+            raise EntryError(exponent, coefficient, 'the exponent must be a number, as in { "2" = 1e4 }') from None
+        try:
+            terms[exponent] = quantity(coefficient, DIMENSIONLESS)
+        except RoughmdrError as error:
+            hint = '; an exponent with a point needs quotes, as "2.5"' if isinstance(coefficient, dict) else ""
+            raise EntryError(exponent, coefficient, f"{error}{hint}") from None
+    PowerSeries(terms)
+    return terms
+
+
+class RandomPowerSeries(RandomAsperities):
+    """Asperities with one power series as their common profile."""
+
+    shape: Literal["power_series"]
+    terms: Annotated[dict[str, float], BeforeValidator(_read_terms)]
+
+    @cached_property
+    def shared_profile(self) -> SharedProfile:
+        """The series; ShapeError where it is not valid."""
+        return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
+
+
+def _read_lengths(value: object) -> list[float]:
+    """Read a list of lengths."""
+    if not isinstance(value, list):
+        raise RoughmdrError('must be a list of lengths, as [0, "1 um", "2 um"]')
+    return [quantity(entry, "m") for entry in value]
+
+
+class RandomTabulated(RandomAsperities):
+    """Asperities with one measured profile."""
+
+    shape: Literal["tabulated"]
+    r: Annotated[list[float], BeforeValidator(_read_lengths)]
+    f: Annotated[list[float], BeforeValidator(_read_lengths)]
+
+    @field_validator("f")
+    @classmethod
+    def _is_a_profile(cls, value: list[float], info: ValidationInfo) -> list[float]:
+        if "r" in info.data:
+            Tabulated(info.data["r"], value)
+        return value
+
+    @cached_property
+    def shared_profile(self) -> SharedProfile:
+        """The table; ShapeError where it is not valid."""
+        return Tabulated(self.r, self.f)
+
+
+def _published(name: str, base: type[_Section], keys: dict[str, Any]) -> type[_Section]:
+    """Return a section with further keys, put under its name into this module, where another process finds it."""
+    section = create_model(name, __base__=base, __module__=__name__, **keys)
+    globals()[name] = section
+    return section
+
+
+def _section(shape: type[Shape]) -> type[RandomAsperities]:
+    """Return the section of one shape, with a key for each of its parameters."""
+    required = set.intersection(*map(set, shape.parameter_sets))
+    readers = {name: BeforeValidator(DistributionReader(unit, positive=True)) for name, unit in shape.units.items()}
+    optional: dict[str, Any] = {
+        name: (Annotated[Distribution, reader] | None, None) for name, reader in readers.items()
+    }
+    keys = optional | {name: (Annotated[Distribution, readers[name]], ...) for name in required}
+    second = _published(f"Second{shape.__name__}", Second, optional)
+    ranks = dict.fromkeys(shape.units, (_Rank | None, None))
+    correlation = _published(f"Correlation{shape.__name__}", Correlation, ranks)
+    keys |= {"shape": (Literal[shape.name], ...), "second": (second | None, None)}
+    keys |= {"correlation": (correlation | None, None)}
+    return _published(f"Random{shape.__name__}", RandomAsperities, keys)
+
+
+if TYPE_CHECKING:
+    AnyRandomAsperities = RandomAsperities
+else:
+    _sections = [_section(shape) for shape in SHAPES.values() if not shape.shared]
+    AnyRandomAsperities = Annotated[Union[RandomPowerSeries, RandomTabulated, *_sections], Field(discriminator="shape")]

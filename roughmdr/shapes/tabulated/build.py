@@ -1,4 +1,7 @@
-"""The params of a tabulated profile from its spline: the pieces of its MDR profile, as ``lookup`` describes them."""
+"""The params of a tabulated profile from its spline: the pieces of its MDR profile, as ``lookup`` describes them.
+
+It needs the compiler, and so is imported when a table is first made.
+"""
 
 from typing import NamedTuple
 
@@ -6,6 +9,8 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
+from roughmdr.numerics.jit import compiled
+from roughmdr.shapes.tabulated.abel import integrals
 from roughmdr.shapes.tabulated.lookup import DEGREE, HEAD, PIECE, beginnings, elastic_integral_between
 
 _RTOL = 3e-15  # of the largest value on a piece: what the last coefficients may leave
@@ -29,8 +34,7 @@ class _Interval(NamedTuple):
     length: float
     start: float
     stop: float = 1.0
-    error: float = np.inf
-    """The error of the interval that this one is a half of."""
+    error: float = np.inf  # of the interval that this one is a half of
 
 
 def tabulate(knots: Floats, coefficients: Floats) -> Floats:
@@ -54,8 +58,6 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
 
 def _fit(intervals: list[_Interval], knots: Floats, coefficients: Floats) -> list[tuple[float, Floats]]:
     """Return where each piece begins, and its numbers; intervals are halved until polynomials fit."""
-    from roughmdr.shapes.tabulated.abel import integrals  # it alone needs the compiler
-
     pieces: list[tuple[float, Floats]] = []
     while intervals:
         base, length, start, stop, before = np.array(intervals).T
@@ -89,8 +91,6 @@ def _heights(knots: Floats, coefficients: Floats) -> Floats:
 
 def _add_elastic_integrals(params: Floats) -> None:
     """Fill in the elastic integral at the beginning of each piece and of the far field."""
-    from roughmdr.numerics.jit import compiled
-
     integral_between = compiled(elastic_integral_between)
     offset, count = beginnings(params)
     first_piece, total = offset + count + 1, 0.0
@@ -115,8 +115,6 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     """Return the far field: g = a pi S/2 + sum over k of binomial(2k, k) (2a)^(-2k) ∫ (f' - S) r^(2k) dr, slope S."""
     from scipy.special import binom
 
-    from roughmdr.shapes.tabulated.abel import integrals
-
     nodes, weights = unit_gauss(DEGREE + 3)
     h = np.diff(knots)[:, None]
     s = h * nodes
@@ -133,8 +131,6 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
 
 def sample_slope(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
     """Return radii spread over the pieces, and g' there."""
-    from roughmdr.shapes.tabulated.abel import integrals
-
     x = (begins[:-1, None] + np.diff(begins)[:, None] * (np.arange(_SAMPLES) + 0.5) / _SAMPLES).ravel()
     return x, integrals(x, np.zeros_like(x), knots, coefficients)[:, 1]
 
@@ -142,8 +138,6 @@ def sample_slope(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[F
 def _softening_intervals(begins: Floats, knots: Floats, coefficients: Floats) -> list[tuple[float, float]]:
     """Return the intervals in which sqrt(a) g'(a) falls."""
     from scipy.optimize import minimize_scalar
-
-    from roughmdr.shapes.tabulated.abel import integrals
 
     def value(x: float) -> float:
         return float(np.sqrt(x) * integrals(np.array([x]), np.zeros(1), knots, coefficients)[0, 1])
@@ -160,17 +154,16 @@ def _softening_intervals(begins: Floats, knots: Floats, coefficients: Floats) ->
 def _falls(values: Floats) -> list[tuple[int, int]]:
     """Return the indices of each maximum and the minimum after it, where the values fall by more than rounding."""
     falls: list[tuple[int, int]] = []
-    top = 0
-    bottom: int | None = None
+    top = bottom = 0
     for i in range(1, values.size):
-        if bottom is None:
+        if bottom == top:
             if values[i] >= values[top]:
-                top = i
+                top = bottom = i
             elif values[i] < values[top] * (1.0 - _MIN_FALL):
                 bottom = i
         elif values[i] < values[bottom]:
             bottom = i
         elif values[i] > values[bottom] * (1.0 + _MIN_FALL):
             falls.append((top, bottom))
-            top, bottom = i, None
+            top = bottom = i
     return falls

@@ -117,7 +117,7 @@ class Tabulated(SharedProfile):
         if falls.any():
             raise OutOfRange(
                 f"tabulated: the profile is so concave near r = {width * x[falls][0]:.3g} m that the contact would not "
-                f"be a disc there; a table that ends before that can be used"
+                "be a disc there; a table that ends before that can be used"
             )
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
@@ -171,10 +171,12 @@ def _check(r: Floats, f: Floats) -> None:
     """Raise ShapeError where r and f are no profile."""
     if r.size != f.size:
         raise ShapeError(f"tabulated: r holds {r.size} numbers and f {f.size}; they must be equally many")
-    for name, column, falls in (("r", r, np.diff(r) <= 0.0), ("f", f, np.diff(f) < 0.0)):
+    for name, column, falls, must in (
+        ("r", r, np.diff(r) <= 0.0, "rise from point to point"),
+        ("f", f, np.diff(f) < 0.0, "not fall: the tip is the lowest point"),
+    ):
         if falls.any():
             k = int(np.argmax(falls))
-            must = "rise from point to point" if name == "r" else "not fall: the tip is the lowest point"
             step = f"{name}[{k + 1}] is {column[k + 1]:g} m after {column[k]:g} m"
             raise ShapeError(f"tabulated: {step}; {name} must {must}")
     if f[-1] == 0.0:

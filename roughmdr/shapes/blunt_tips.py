@@ -1,15 +1,66 @@
-"""The capped paraboloid: a blunter cap on a paraboloid."""
+"""Profiles with a tip blunter than the flank: the rounded cone and the capped paraboloid."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
+import numpy as np
+
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.vector_math import sqrt
+from roughmdr.numerics.vector_math import atan, sqrt
 from roughmdr.shapes.base import ProfileShape
-from roughmdr.shapes.profile import Params, Profile, breakpoint_at_one, kink_at_one, one, q_of_radius
+from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radius
+
+_CONE_SOFTENING_END = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
+
+_BluntTip = partial(Profile, softening_count=one, kink=kink_at_one, breakpoint_count=one)
 
 
-def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
+def _cone_mdr_profile(a: float, params: Params) -> tuple[float, float, float, float]:
+    """g = a^2; beyond the blend g = a (a - q) + a atan q, q = sqrt(a^2 - 1)."""
+    if a <= 1.0:
+        return a, 1.0, a * a, 2.0 * a
+    q = sqrt((a - 1.0) * (a + 1.0))
+    angle = atan(q)
+    return a, 1.0, a / (a + q) + a * angle, 2.0 / (a + q) + angle
+
+
+def _cone_reduced_load(a: float, params: Params) -> float:
+    if a <= 1.0:
+        return 2.0 * a * a * a / 3.0
+    q = sqrt((a - 1.0) * (a + 1.0))
+    return 0.5 * (a * a * atan(q) + q) + (2.0 * a + q) / (a + q) / (a + q) / 3.0
+
+
+def _cone_f_and_slope(r: float, params: Params) -> tuple[float, float]:
+    return (0.5 * r * r, r) if r < 1.0 else (r - 0.5, 1.0)
+
+
+def _cone_softening_interval(index: int, params: Params) -> tuple[float, float]:
+    return 1.0, _CONE_SOFTENING_END
+
+
+@dataclass(frozen=True)
+class RoundedCone(ProfileShape):
+    """f = S r^2/(2 b) to the blend radius b [m], then a cone of slope S [1]. ShapeError unless both are > 0."""
+
+    slope: float
+    blend_radius: float
+
+    name = "rounded_cone"
+    units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
+    profile = _BluntTip(
+        _cone_mdr_profile, _cone_reduced_load, _cone_f_and_slope, softening_interval=_cone_softening_interval
+    )
+
+    @classmethod
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """Width b and rise S b."""
+        blend = parameters["blend_radius"]
+        return blend, parameters["slope"] * blend, np.zeros_like(blend)
+
+
+def _paraboloid_mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
     """g = c a^2 + (1 - c) a q with the flatness c = R2/R1 of the cap and q = sqrt(a^2 - 1), 0 below the blend.
 
     t is a on the cap and 1 + q/c beyond, so that it resolves the blend where the cap is nearly flat.
@@ -22,7 +73,7 @@ def _mdr_profile(t: float, params: Params) -> tuple[float, float, float, float]:
     return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
 
 
-def _reduced_load(t: float, params: Params) -> float:
+def _paraboloid_reduced_load(t: float, params: Params) -> float:
     c = params[0]
     if t <= 1.0:
         return 2.0 * c * t * t * t / 3.0
@@ -31,7 +82,7 @@ def _reduced_load(t: float, params: Params) -> float:
     return 2.0 * c * square * sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
 
 
-def _mdr_integral(t: float, params: Params) -> float:
+def _paraboloid_mdr_integral(t: float, params: Params) -> float:
     c = params[0]
     if t <= 1.0:
         return c * t * t * t / 3.0
@@ -40,7 +91,7 @@ def _mdr_integral(t: float, params: Params) -> float:
     return (c * square * sqrt(square) + (1.0 - c) * q * q * q) / 3.0
 
 
-def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
+def _paraboloid_f_and_slope(r: float, params: Params) -> tuple[float, float]:
     c = params[0]
     return (0.5 * c * r * r, c * r) if r <= 1.0 else (0.5 * c + 0.5 * (r - 1.0) * (r + 1.0), r)
 
@@ -55,7 +106,7 @@ def _t_of_q(q: float, params: Params) -> float:
     return 1.0 + q / params[0]
 
 
-def _softening_interval(index: int, params: Params) -> tuple[float, float]:
+def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, float]:
     """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
     c = params[0]
     low, high = 0.0, 0.61575390344349083  # q where it ends to fall for c = 0
@@ -84,18 +135,14 @@ class CappedParaboloid(ProfileShape):
     units: ClassVar[dict[str, str]] = {"radius": "m", "cap_radius": "m", "blend_radius": "m"}
     body_radius = ("radius",)
     not_below = (("cap_radius", "radius", "with a cap sharper than the flank the contact would not be a disc"),)
-    profile = Profile(
-        _mdr_profile,
-        _reduced_load,
-        _f_and_slope,
+    profile = _BluntTip(
+        _paraboloid_mdr_profile,
+        _paraboloid_reduced_load,
+        _paraboloid_f_and_slope,
         _t_of_radius,
-        softening_count=one,
-        softening_interval=_softening_interval,
-        kink=kink_at_one,
-        mdr_integral=_mdr_integral,
+        softening_interval=_paraboloid_softening_interval,
+        mdr_integral=_paraboloid_mdr_integral,
         corner=True,
-        breakpoint_count=one,
-        breakpoint=breakpoint_at_one,
         t_of_q=_t_of_q,
     )
 

@@ -1,0 +1,281 @@
+"""Read a height map from a file: netCDF, plain numbers as text or of NumPy, or the format of an instrument.
+
+Plain numbers are rows along x, columns along y; netCDF has heights over evenly spaced coordinates, both with units.
+Each reader raises RoughmdrError where the file does not hold such a map.
+"""
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.ensemble.from_file import open_dataset
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks
+from roughmdr.errors import RoughmdrError
+from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.units import unit_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
+_DELIMITERS = (";", ",", "\t")
+_MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
+
+
+Size = float | tuple[float, float]
+"""The side of a square map, or the lengths along x and y [m]."""
+
+
+class RawMap(NamedTuple):
+    """A map as a file states it; None is what the file does not say."""
+
+    height: NDArray[Any]  # over x and y, not yet checked; it may be overwritten
+    unit: str | None = None  # of the heights
+    spacing: tuple[float, float] | None = None  # along x and y [m]
+    periodic: bool | None = None
+
+
+class SizeReader:
+    """Reads the size of a map."""
+
+    dimension = "m"
+    _side = Quantity("m", above=0.0)
+
+    def __call__(self, value: object) -> Size:
+        """Return one side, or both, in SI."""
+        if not isinstance(value, list | tuple):
+            return self._side(value)
+        if len(value) != 2:
+            raise RoughmdrError('must be one side, as "100 um", or two, along x and y, as ["100 um", "50 um"]')
+        return self._side(value[0]), self._side(value[1])
+
+
+def read_map(
+    path: Path,
+    *,
+    size: Size | None = None,
+    unit: str | None = None,
+    channel: str | None = None,
+    periodic: bool | None = None,
+) -> HeightMap:
+    """Read the map of a file; ``size`` [m] and ``unit`` say what the file does not, ``channel`` which of its maps.
+
+    ``periodic`` overrides the file. RoughmdrError where there is no map, or these do not fit it.
+    """
+    raw = _reader(path)(path, channel)
+    values = raw.height
+    _check_points(values.shape)
+    if values.dtype.kind not in "iuf":
+        raise RoughmdrError(f"heights are of type {values.dtype}; they must be real numbers")
+    (dx, dy), factor = _spacings(raw, size), _factor(raw, unit)
+    eps = float(np.finfo(values.dtype).eps) if values.dtype.kind == "f" else 0.0
+    with np.errstate(over="ignore"):  # a height out of range is undefined
+        height = np.require(values, np.float64, "W")
+        for rows in blocks(*height.shape):
+            height[rows] *= factor
+            height[rows][~np.isfinite(height[rows])] = np.nan
+    surface = HeightMap(height, dx, dy, bool(raw.periodic) if periodic is None else periodic)
+    if not surface.defined:
+        raise RoughmdrError(f"all its {height.size} heights are undefined")
+    return surface._replace(rounding=eps * surface.highest)
+
+
+def _reader(path: Path) -> Callable[[Path, str | None], RawMap]:
+    """Return the reader for a file, by its suffix or else by its first bytes."""
+    try:
+        with path.open("rb") as file:
+            start = file.read(8)
+    except OSError as error:
+        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
+    if not start:
+        raise RoughmdrError("is empty")
+    suffix = path.suffix.lower()
+    if suffix in _READER_OF_SUFFIX:
+        return _READER_OF_SUFFIX[suffix]
+    if suffix not in _INSTRUMENT_SUFFIXES:
+        for magic, reader in _READER_OF_MAGIC.items():
+            if start.startswith(magic):
+                return reader
+    return _read_instrument
+
+
+def _check_points(shape: tuple[int, ...]) -> None:
+    """Raise RoughmdrError where a map of this shape has no inner point."""
+    if len(shape) != 2 or min(shape) < 3:
+        points = " x ".join(map(str, shape)) or "no"
+        raise RoughmdrError(f"the map has {points} points; it needs at least 3 x 3, over two dimensions")
+
+
+def _factor(raw: RawMap, unit: str | None) -> float:
+    """Return one unit of the heights in metres."""
+    if unit is not None and raw.unit is not None:
+        raise RoughmdrError(f"the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}")
+    try:
+        return float(unit_factor((raw.unit if unit is None else unit) or "m", "m"))
+    except RoughmdrError as error:
+        raise RoughmdrError(f"units of the heights: {error}") from None
+
+
+def _spacings(raw: RawMap, size: Size | None) -> tuple[float, float]:
+    """Return the spacings along x and y [m], which the file or the user gives."""
+    nx, ny = raw.height.shape
+    if raw.spacing is not None:
+        if size is not None:
+            sides = f"{raw.spacing[0] * nx:.4g} m x {raw.spacing[1] * ny:.4g} m"
+            raise RoughmdrError(f"the file says itself that the map is {sides}; leave out size")
+        return raw.spacing
+    if size is None:
+        raise RoughmdrError('the file does not say how large the map is; give size, as size = "100 um"')
+    if not isinstance(size, tuple) and nx != ny:
+        raise RoughmdrError(
+            f"the map has {nx} x {ny} points, and one size is that of a square; "
+            'give the sides along x and y, as size = ["100 um", "50 um"]'
+        )
+    along_x, along_y = size if isinstance(size, tuple) else (size, size)
+    return along_x / nx, along_y / ny
+
+
+def _read_numpy(path: Path, channel: str | None) -> RawMap:
+    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run."""
+    try:
+        loaded = np.load(path, allow_pickle=False)
+    except Exception as error:
+        raise RoughmdrError(f"cannot be read by NumPy: {str(error).partition('. ')[0]}") from error
+    is_npz = path.suffix.lower() == ".npz"
+    if isinstance(loaded, np.ndarray) == is_npz:
+        own, other = (".npz", ".npy") if is_npz else (".npy", ".npz")
+        raise RoughmdrError(f"not an {own} file; it may be an {other} file under another name")
+    if not is_npz:
+        _refuse_channel(channel)
+        return RawMap(loaded)
+    with loaded:
+        names = list(loaded.files)
+        name = channel or ("height" if "height" in names or len(names) != 1 else names[0])
+        if name not in names:
+            raise RoughmdrError(f"has no array {name!r}, but {names}; name one as channel")
+        try:
+            return RawMap(np.asarray(loaded[name]))
+        except Exception as error:
+            raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
+
+
+def _read_text(path: Path, channel: str | None) -> RawMap:
+    """Read rows of numbers separated by blanks, tabs, commas or semicolons; # begins a comment, "nan" is undefined."""
+    _refuse_channel(channel)
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            first = next(filter(None, (line.partition("#")[0].strip() for line in file)), "")
+        delimiter = next((mark for mark in _DELIMITERS if mark in first), None)
+        table = np.loadtxt(path, delimiter=delimiter, encoding="utf-8-sig", ndmin=2) if first else None
+    except UnicodeDecodeError:
+        raise RoughmdrError("not a text file in UTF-8") from None
+    except ValueError as error:
+        raise RoughmdrError(f"not a table of numbers: {str(error).partition(';')[0]}") from None
+    if table is None:
+        raise RoughmdrError("holds no numbers")
+    return RawMap(table)
+
+
+def _refuse_channel(channel: str | None) -> None:
+    if channel is not None:
+        raise RoughmdrError(f"holds one map only; leave out channel = {channel!r}")
+
+
+def _read_netcdf(path: Path, channel: str | None) -> RawMap:
+    """Read the variable ``channel``, or height; fill values become NaN."""
+    name = channel or "height"
+    with open_dataset(path) as dataset:
+        if name not in dataset.data_vars or dataset[name].ndim != 2:
+            raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
+        height = dataset[name]
+        _check_points(height.shape)
+        # In blocks, since packed heights take several times the memory while they are unpacked; rows that the file
+        # compresses together are read together, and so only once.
+        values = np.empty(height.shape, height.dtype)
+        for rows in blocks(len(values), values[0].size, (height.encoding.get("chunksizes") or (1,))[0]):
+            values[rows] = height[rows].to_numpy()
+        dims = height.dims
+        if dims == ("y", "x"):
+            values, dims = values.T, dims[::-1]
+        dx, dy = (_spacing(dataset, str(dim)) for dim in dims)
+        unit = str(height.attrs.get("units", "")).strip() or None
+        periodic = dataset.attrs.get("periodic")
+        if periodic is not None and (np.ndim(periodic) != 0 or periodic not in (0, 1)):
+            raise RoughmdrError(f"the attribute periodic is {periodic!r}; it must be 0 or 1")
+        return RawMap(values, unit, (dx, dy), None if periodic is None else bool(periodic))
+
+
+def _spacing(dataset: "xr.Dataset", dim: str) -> float:
+    """Return the spacing [m] of a coordinate; RoughmdrError unless it is even."""
+    if dim not in dataset.coords:
+        raise RoughmdrError(f"the coordinate {dim} is missing; it says where the points lie")
+    coordinate = dataset[dim]
+    if coordinate.dtype.kind not in "iuf":
+        raise RoughmdrError(f"the coordinate {dim} is of type {coordinate.dtype}; it must be numbers")
+    try:
+        factor = float(unit_factor(str(coordinate.attrs.get("units", "")), "m"))
+    except RoughmdrError as error:
+        raise RoughmdrError(f"units of {dim}: {error}") from None
+    with np.errstate(all="ignore"):  # steps that are not finite are not even
+        steps = np.diff(np.asarray(coordinate.to_numpy(), dtype=np.float64) * factor)
+        mean = float(np.mean(steps))
+        uneven = not np.isfinite(mean) or mean == 0.0 or np.ptp(steps) > _MAX_UNEVENNESS * abs(mean)
+    if uneven:
+        raise RoughmdrError(f"the coordinate {dim} is not evenly spaced")
+    return abs(mean)
+
+
+def _read_instrument(path: Path, channel: str | None) -> RawMap:
+    """Read the first channel of that name, or the file's default one, by SurfaceTopography; NaN is undefined."""
+    with warnings.catch_warnings(action="ignore"):  # of other contents of the file, or packages that are not installed
+        try:
+            from SurfaceTopography.IO import open_topography
+        except ImportError:
+            raise RoughmdrError(
+                f"{path.suffix or 'a format without a suffix'} is left to SurfaceTopography, which is not installed: "
+                "pip install 'roughmdr[surface]'; without it there are .nc, .npy, .npz, .txt, .csv, .tsv and .dat"
+            ) from None
+        try:
+            with open_topography(str(path)) as reader:
+                return _read_channel(reader, channel)
+        except RoughmdrError:
+            raise
+        except Exception as error:
+            raise RoughmdrError(
+                f"in no format that SurfaceTopography can read ({type(error).__name__}); text is .txt, .csv, .tsv, .dat"
+            ) from error
+
+
+def _read_channel(reader: Any, name: str | None) -> RawMap:
+    channel = reader.default_channel
+    if name is not None:
+        names = [each.name for each in reader.channels]
+        if name not in names:
+            raise RoughmdrError(f"has no channel {name!r}, but {list(dict.fromkeys(names))}")
+        channel = reader.channels[names.index(name)]
+    if channel.dim != 2 or channel.data_kind.value != "height":
+        kind = "a line" if channel.dim != 2 else channel.data_kind.value
+        raise RoughmdrError(f"channel {channel.name!r} holds {kind}, not a map of heights")
+    sizes = channel.physical_sizes
+    topography = channel.topography(**({} if sizes else {"physical_sizes": (1.0, 1.0)}))
+    height = np.ma.filled(topography.heights(), np.nan)
+    unit = "Å" if topography.unit == "A" else topography.unit
+    if sizes is None:
+        return RawMap(height, unit)
+    if unit is None:
+        raise RoughmdrError("does not say in which unit it is; export it as text, where size and unit can be given")
+    factor = float(unit_factor(unit, "m"))
+    dx, dy = (float(side) * factor / points for side, points in zip(sizes, height.shape, strict=True))
+    return RawMap(height, unit, (dx, dy), topography.is_periodic)
+
+
+_READER_OF_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
+    **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), _read_netcdf),
+    **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), _read_text),
+    **dict.fromkeys((".npy", ".npz"), _read_numpy),
+}
+_READER_OF_MAGIC = {b"CDF": _read_netcdf, b"\x89HDF": _read_netcdf, b"\x93NUMPY": _read_numpy}
