@@ -94,11 +94,7 @@ def maugis(lam: float) -> dict[str, Any]:
         for part in LIFTED:
             state = curve.state(Place(float(mp.nstr(part * curve.touch, 6)), True))
             rows.append(written(state, curve.answers(state), MAUGIS_WRITTEN))
-        return {
-            "lambda": lam,
-            "pull_off": ends(curve, MAUGIS_WRITTEN),
-            "rows": rows,
-        }
+        return {"lambda": lam, "pull_off": ends(curve, MAUGIS_WRITTEN), "rows": rows}
 
 
 def table(case: Case, strength: float) -> dict[str, Any]:

@@ -7,15 +7,7 @@ import xarray as xr
 from studies.study import Draw
 
 import roughmdr as rm
-from figures.drawing import (
-    COMPRESSED,
-    STRETCHED,
-    draw_axes,
-    draw_body,
-    draw_jump,
-    draw_length,
-    draw_springs,
-)
+from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_jump, draw_length, draw_springs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
