@@ -39,13 +39,13 @@ def natural_scales(exact: JkrPowerLaw) -> list[Number]:
         return []
     grips, dead_load = exact.fold("indentation"), exact.fold("force")
     stiffness = 2 * exact.effective_modulus * grips
-    forces = [exact.force(grips), exact.force(dead_load), stiffness * exact.release_stretch(grips)]
+    forces = [exact.force(grips), exact.force(dead_load), stiffness * exact.dl(grips)]
     return [grips, exact.indentation(grips), stiffness, *forces]
 
 
 def numbers_at(exact: JkrPowerLaw, a: Number) -> list[Number]:
     """Return what floats must hold of the contact with radius ``a``."""
-    return [a, a * a, exact.indentation(a), exact.force(a), exact.stiffness(a)]
+    return [a * a, *exact.state(a).values()]
 
 
 def judge(exact: JkrPowerLaw, control: str, got: Results) -> dict[str, Judged]:
@@ -68,7 +68,7 @@ def judge(exact: JkrPowerLaw, control: str, got: Results) -> dict[str, Judged]:
         steepness = max(1, 4 * exact.n * UNIT * compression / scale[name] / mp.mpf("1e-14"))
         found[f"backward {name}"] = abs(exact.under(name, a) - got[name]) / scale[name], bound[name] * steepness
         found[name] = abs(exact.under(name, true) - got[name]) / scale[name], forward
-    k = exact.stiffness(true)
+    k = exact.state(true)["stiffness"]
     k_error = abs(got["stiffness"] - k) / max(abs(k), 2 * exact.effective_modulus * true)
     found["stiffness"] = k_error, mp.mpf("1e-12") + mp.mpf("1e-15") / X
     sizes = {"contact_radius": true, "contact_area": true**2, "stiffness": k, **scale}
