@@ -97,7 +97,7 @@ def ensemble(count: int) -> dict[str, float]:
             "asperity_memory": memory / count}  # fmt: skip
 
 
-def load_separation(section: dict[str, Any], path: list[float], arguments: dict[str, float]) -> tuple[float, int]:
+def load_separation(section: dict[str, Any], path: list[float], arguments: dict[str, Any]) -> tuple[float, int]:
     """Measure the time [s] of rm.load_separation, and its memory [byte] above that of the ensemble."""
     import roughmdr as rm
 

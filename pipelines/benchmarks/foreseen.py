@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from studies.study import named, table
+from studies.study import named
 
 import roughmdr
 from benchmarks.child import run_command
@@ -71,12 +71,3 @@ def draw(result: xr.Dataset) -> "Figure":
     panel.set_xticks(x, result["scene"].to_numpy())
     panel.legend(frameon=False)
     return figure
-
-
-def report(result: xr.Dataset) -> str:
-    """Return a table of time and memory, planned and taken."""
-    rows = []
-    for number, name in enumerate(result.scene.to_numpy()):
-        seconds, memory = (result[key].to_numpy()[number] for key in ("time", "memory"))
-        rows.append([str(name), *(f"{each:.1f} s" for each in seconds), *(f"{each / 1e6:.0f} MB" for each in memory)])
-    return table(["scene", "time planned", "taken", "memory planned", "taken"], rows)

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from oracles.plain_sums import with_brentq, with_numpy
+from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
-from studies.study import named, table
+from studies.study import named
 
 import roughmdr as rm
-from benchmarks.batch import by_cell
+from benchmarks.batch import by_cell, tables
 from benchmarks.child import HEIGHT, load_separation
 from benchmarks.process import in_new_process
 from benchmarks.tasks import by_workers
@@ -147,12 +147,16 @@ def by_brentq(ensemble: Ensemble) -> tuple[float, int]:
 def by_method(count: int, repeats: int) -> xr.Dataset:
     """Measure paraboloids: by the package there and back, by NumPy and a root finder in loading; and a million."""
     large, small = ensemble_of(count), ensemble_of(count // 10)
-    columns, cost = [small.height, small.parameters["radius"]], []
-    few = [column[: _BRENTQ[0]] for column in columns]
+
+    def visits(sums: Callable[..., Sums], asperities: int, work: float) -> int:
+        columns = small.height[:asperities], small.parameters["radius"][:asperities]
+        return sums(*columns, loading(), MODULUS, work).visits
+
+    cost = []
     for work in (0.0, WORK):
-        plain = [partial(with_numpy, *columns), partial(with_brentq, *few)]
-        costs = [cost_of(lambda sums=sums, work=work: sums(loading(), MODULUS, work).visits) for sums in plain]
-        cost.append([each(one) for one in (by_the_sum(large, Adhesion(work), repeats, TOTALS, 200), *costs)])
+        package = by_the_sum(large, Adhesion(work), repeats, TOTALS, 200)
+        plain = [cost_of(partial(visits, *of, work)) for of in ((with_numpy, count), (with_brentq, _BRENTQ[0]))]
+        cost.append([each(one) for one in (package, *plain)])
     arguments = {"effective_modulus": MODULUS, "work": WORK, "unload": True}
     seconds, size = in_new_process(load_separation, section(count), loading().tolist(), arguments)
     variables = {
@@ -231,24 +235,7 @@ def draw(result: xr.Dataset) -> "Figure":
 
 def report(result: xr.Dataset) -> str:
     """Return the figures in tables."""
-
-    def rows(over: str, names: list[str]) -> str:
-        head = [over, *(f"{name} [{result[name].attrs['units']}]" for name in names)]
-        columns = [result[over].to_numpy(), *(result[name].to_numpy() for name in names)]
-        return table(head, [[f"{key}", *(f"{each:.4g}" for each in row)] for key, *row in zip(*columns, strict=True)])
-
-    ups = zip(result.pool.to_numpy(), result.speed_up.median("repeat").to_numpy(), strict=True)
-    names = zip(result.contact.to_numpy(), result.cost.to_numpy(), strict=True)
-    costs = [[str(name), *(f"{each:.3g}" for each in row)] for name, row in names]
-    return "\n\n".join(
-        [
-            table(["cost [ns]", *result.method.to_numpy()], costs),
-            rows("shape", ["state_time", "asperity_time", "path_time", "state_time_brentq", "profile_time"]),
-            rows("tabor", ["dugdale_state_time", "dugdale_time"])
-            + f"\n\nThese are {result.attrs['dugdale_count']} paraboloids, 200 steps each way.",
-            f"Two workers are {', '.join(f'{up:.2f} times as fast on {pool}' for pool, up in ups)}. A sweep of "
-            f"{result.attrs['cells']} small cells takes {1e3 * float(result.cell_overhead.sum()):.2f} ms a cell beside "
-            f"its realisation. {result.attrs['asperities']} asperities take {float(result.large_time):.2f} s and "
-            f"{float(result.large_memory) / 2**20:.0f} MB above them.",
-        ]
+    counts = (
+        "the sum over {asperities} paraboloids, {dugdale_count} of them with Dugdale adhesion; a sweep of {cells} cells"
     )
+    return f"Measured on {counts.format(**result.attrs)}.\n\n{tables(result)}"

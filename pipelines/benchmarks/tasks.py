@@ -70,7 +70,7 @@ def by_workers(count: int, tasks: int, repeats: int) -> xr.Dataset:
 
 def by_scheduler(tasks: int, repeats: int, workers: tuple[int, ...]) -> xr.Dataset:
     """Measure what a task costs that does next to nothing, for numbers of workers; medians."""
-    found = np.moveaxis([_overheads(tasks, count, repeats) for count in workers], -1, 0)
+    found = np.moveaxis(np.array([_overheads(tasks, count, repeats) for count in workers]), -1, 0)
     about = {
         "task_overhead": "overhead of a task",
         "task_caller": "processor time of the caller for a task",

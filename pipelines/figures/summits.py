@@ -7,7 +7,7 @@ more or less fine, fitted to the eight neighbours. Errors are those of the sprea
 import itertools
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -98,11 +98,11 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
         by_fit.append([sums(fitted(series, points * WAVES)) for points in grids])
     exact = np.array([sums(one) for one in found])
     detected, error = jackknife(lambda total: statistics(total, area), exact)
-    pairs = [np.stack([exact, one], axis=1) for one in np.moveaxis(by_fit, 1, 0)]
+    pairs = [np.stack([exact, one], axis=1) for one in np.moveaxis(np.array(by_fit), 1, 0)]
     biases = [jackknife(lambda pair: statistics(pair[1], area) / statistics(pair[0], area) - 1.0, one) for one in pairs]
-    bias, bias_error = np.moveaxis(biases, 1, 0)
+    bias, bias_error = np.moveaxis(np.array(biases), 1, 0)
     over = ("points_per_wave", "statistic")
-    columns = {
+    columns: dict[str, Any] = {
         "sampled": ("statistic", statistics(sums(sample), drawn / distribution.density), named("sampled")),
         "detected": ("statistic", detected, named("on maps")),
         "error": ("statistic", error, named("standard error on maps")),
@@ -120,7 +120,12 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
         "points_per_wave": ("points_per_wave", list(grids), named("points of the grid in a shortest wave")),
     }
     moments = distribution.moments
-    attrs = {"maps": count, "summits": columns["summit_height"][1].size, **moments._asdict(), "alpha": moments.alpha}
+    attrs = {
+        "maps": count,
+        "summits": sum(one.height.size for one in found),
+        **moments._asdict(),
+        "alpha": moments.alpha,
+    }
     return xr.Dataset(columns, coords, attrs)
 
 

@@ -39,12 +39,10 @@ class ExactContact:
 
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
         self.shape, self.radius = shape, radius_of_t(shape)
-        power_law = isinstance(shape, PowerShape)
-        self.asperity = (
-            JkrPowerLaw(shape, effective_modulus, work)
-            if power_law
-            else Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
-        )
+        if isinstance(shape, PowerShape):
+            self.asperity: Asperity = JkrPowerLaw(shape, effective_modulus, work)
+        else:
+            self.asperity = Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
 
     def at(self, t: Number) -> dict[str, Number]:
         """Return the equilibrium at t, with the digits that differences lose next to a corner or an equator."""

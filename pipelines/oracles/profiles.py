@@ -146,54 +146,47 @@ def closed_profile(shape: Shape) -> Profile:
 
 
 def profile_of(shape: str, parameters: Parameters, slopes: list[float] | None = None) -> Profile:
-    """Return the profile of ``shape`` from its parameters (doubles, taken as exact)."""
+    """Return the profile of ``shape`` from its parameters (doubles, taken as exact); of a table with given slopes."""
     p = {name: mp.mpf(value) for name, value in parameters.items() if isinstance(value, float)}
     if shape == "sphere":
         return SphereProfile(p["radius"])
-    corners: list[tuple[Number, Number]] = []
     if shape == "tabulated":
-        pieces = _tabulated_pieces(parameters["r"], parameters["f"], slopes or [])
-    elif (b := p.get("flat_radius", p.get("blend_radius"))) is not None:
-        inner, outer = _terms_about(shape, p, b)
-        pieces = [Piece(mp.mpf(0), b, inner), Piece(b, None, outer)]
-        jump = sum(c * b ** mp.mpf(power) for c, power in outer) - sum(c * b ** mp.mpf(power) for c, power in inner)
-        corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
-    else:
-        pieces = [Piece(mp.mpf(0), None, _whole_terms(shape, parameters, p))]
-    return Profile(pieces, corners)
+        r, f = parameters["r"], parameters["f"]
+        return Profile(_tabulated_pieces(r, f, slopes or knot_slopes(r, f)))
+    inner, *beyond = _slope_terms(shape, parameters, p)
+    if not beyond:
+        return Profile([Piece(mp.mpf(0), None, inner)])
+    b, (outer,) = p.get("flat_radius", p.get("blend_radius")), beyond
+    jump = sum(c * b ** mp.mpf(power) for c, power in outer) - sum(c * b ** mp.mpf(power) for c, power in inner)
+    corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
+    return Profile([Piece(mp.mpf(0), b, inner), Piece(b, None, outer)], corners)
 
 
-def _whole_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> Terms:
-    """Return the terms of f' of a shape with one piece."""
+def _slope_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> list[Terms]:
+    """Return the terms of f' of a shape with one piece, or those of its inner and its outer piece."""
+    nothing = ((mp.mpf(0), 0.0),)
     match shape:
         case "cone":
-            return ((p["slope"], 0.0),)
+            return [((p["slope"], 0.0),)]
         case "paraboloid":
-            return ((1 / p["radius"], 1.0),)
+            return [((1 / p["radius"], 1.0),)]
         case "power_law":
             n = p["exponent"]
             c = p["coefficient"] if "coefficient" in p else p["rise"] * p["width"] ** -n
-            return ((n * c, _one_less(n)),)
+            return [((n * c, _one_less(n)),)]
         case "power_series":
             terms = [(mp.mpf(float(n)), mp.mpf(c)) for n, c in parameters["terms"].items()]
-            return tuple((n * c, _one_less(n)) for n, c in terms)
-    raise ValueError(f"no shape {shape}")
-
-
-def _terms_about(shape: str, p: dict[str, Number], b: Number) -> tuple[Terms, Terms]:
-    """Return the terms of f' within and beyond ``b`` [m]."""
-    nothing = ((mp.mpf(0), 0.0),)
-    match shape:
+            return [tuple((n * c, _one_less(n)) for n, c in terms)]
         case "truncated_cone":
-            return nothing, ((p["slope"], 0.0),)
+            return [nothing, ((p["slope"], 0.0),)]
         case "truncated_paraboloid":
-            return nothing, ((1 / p["radius"], 1.0),)
+            return [nothing, ((1 / p["radius"], 1.0),)]
         case "rounded_cone":
-            return ((p["slope"] / b, 1.0),), ((p["slope"], 0.0),)
+            return [((p["slope"] / p["blend_radius"], 1.0),), ((p["slope"], 0.0),)]
         case "capped_paraboloid":
-            return ((1 / p["cap_radius"], 1.0),), ((1 / p["radius"], 1.0),)
+            return [((1 / p["cap_radius"], 1.0),), ((1 / p["radius"], 1.0),)]
         case "rounded_punch":
-            return nothing, ((-b / p["edge_radius"], 0.0), (1 / p["edge_radius"], 1.0))
+            return [nothing, ((-p["flat_radius"] / p["edge_radius"], 0.0), (1 / p["edge_radius"], 1.0))]
     raise ValueError(f"no shape {shape}")
 
 
