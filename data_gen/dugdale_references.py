@@ -8,9 +8,7 @@ shapes. A row is a state of equilibrium; "answers" names the controls under whic
 with the state's distance to the fold of its branch, over that of the pull-off to 0.
 """
 
-import itertools
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +19,12 @@ from dugdale_cases import CASES, Case, few
 from oracles.dugdale import FIELDS, Cohesion, State
 from oracles.dugdale_curve import CONTROLS, WORKING, Curve, Place
 from oracles.dugdale_punch import Punch
-from oracles.multiprecision import Number, bracket, digits, mp, root, tanh_sinh
+from oracles.multiprecision import Number, bracket, digits, mp, root
 from oracles.profiles import profile_of
 from references import OUTPUT, head, write, written
 
 MAUGIS_WRITTEN = 30
-SPRINGS_DIGITS, SPRINGS_STEPS = 30, 28
+SPRINGS_DIGITS = 30
 WRITTEN = 25
 LAMBDAS = (1e-3, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.93, 0.95, 1.0, 1.2, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1e3)
 RADII = (0.01, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0)
@@ -149,12 +147,12 @@ def spring_sums(cohesion: Cohesion, state: State) -> tuple[Number, Number, Numbe
     """
     a, c, delta, beta = state.a, state.c, state.delta, cohesion.beta
     straight, weighted, squared, pull = mp.mpf(0), mp.mpf(0), mp.mpf(0), mp.mpf(0)
-    for x, dx in _nodes(cohesion, mp.mpf(0), a):
+    for x, dx in cohesion.profile.nodes(mp.mpf(0), a, SPRINGS_DIGITS):
         u = delta - cohesion.profile.mdr(x)[0]
         straight += dx * u
         weighted += dx * u / mp.sqrt((c - x) * (c + x))
         squared += dx * u * u
-    for x, dx in _nodes(cohesion, a, c):
+    for x, dx in cohesion.profile.nodes(a, c, SPRINGS_DIGITS):
         height = mp.sqrt((c - x) * (c + x))
         u = -beta * height
         straight += dx * u
@@ -164,14 +162,6 @@ def spring_sums(cohesion: Cohesion, state: State) -> tuple[Number, Number, Numbe
     energy = cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
     gap = cohesion.height(c) - delta + 2 / mp.pi * weighted
     return 2 * cohesion.effective_modulus * straight, gap, energy
-
-
-def _nodes(cohesion: Cohesion, lo: Number, hi: Number) -> Iterator[tuple[Number, Number]]:
-    """Yield nodes and weights from ``lo`` to ``hi`` [m], dense on both sides of each kink."""
-    edges = [lo, *(b for b in cohesion.profile.kinks if lo < b < hi), hi]
-    for left, right in itertools.pairwise(edges):
-        for x, weight in tanh_sinh(SPRINGS_DIGITS, SPRINGS_STEPS):
-            yield left + (right - left) * x, (right - left) * weight
 
 
 def punch_rows(punch: Punch) -> list[dict[str, Any]]:

@@ -2,18 +2,15 @@
 
 from collections.abc import Callable
 from statistics import median
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from studies.study import named, table
 
 from benchmarks import capacity, child
 from benchmarks.process import in_new_process
 from benchmarks.tasks import by_scheduler, by_workers
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 PARTS = ("reading", "planning", "running")
 CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
@@ -82,10 +79,8 @@ def measure(quick: bool) -> xr.Dataset:
     return result.assign_attrs({capacity.PREFIX + name: number for name, number in large.items()})
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the overheads of a cell and of a task, memory, and the speed-up of two workers."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(13, 3.9), layout="constrained")
     cells, memory, tasks, workers = figure.subplots(1, 4)
     for ax, values, title in (

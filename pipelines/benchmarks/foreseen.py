@@ -6,10 +6,10 @@ Each scene is run in a process of its own. Needs /proc.
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from studies.study import named
 
 import roughmdr
@@ -18,9 +18,6 @@ from benchmarks.process import in_new_process
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SCENES = {
     "16 x 1000": [],
@@ -57,10 +54,8 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the foreseen over the measured, for time and memory; the band is a factor of two."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(7, 3.6), layout="constrained")
     panel = figure.subplots()
     x = np.arange(result.sizes["scene"])

@@ -7,10 +7,11 @@ import math
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
 from studies.study import named
@@ -30,9 +31,6 @@ from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import SHAPES as SHAPE_OF
 from roughmdr.shapes import PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MODULUS, WORK = 4e6, 0.05
 TABOR = (0.1, 1.0, 10.0, 100.0)
@@ -209,10 +207,8 @@ def measure(quick: bool) -> xr.Dataset:
     return xr.merge(parts, combine_attrs="no_conflicts")
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw bars of time per visit, on logarithmic axes."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(13, 4), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.8])
     contacts = {str(name): result.cost.sel(contact=name) for name in result.contact.to_numpy()}

@@ -1,5 +1,6 @@
 """The cost of a task by each scheduler, and the speed-up of two workers."""
 
+import itertools
 import math
 import os
 import tempfile
@@ -49,21 +50,18 @@ def timed_batch(plan: Plan, pool: Pool, scheduler_pid: int | None = None) -> Flo
 def by_workers(count: int, tasks: int, repeats: int) -> xr.Dataset:
     """Measure how many times as fast two workers are as one, each repeat, on tasks of one large realisation.
 
-    Threads count from the start on; processes once all have started, which leaves out the first four tasks a worker.
+    It counts once all workers have started, which leaves out the first four tasks a worker.
     """
     plan = make_plan(small_scene(count=count, steps=200, batch={"realizations": tasks}))
     timed_batch(plan, Threads(2))
-    each, inside = np.empty((2, len(POOLS), 2, repeats))
-    for repeat, (i, pool) in ((repeat, pair) for repeat in range(repeats) for pair in enumerate(POOLS.values())):
-        for workers in (1, 2):
-            arrival, seconds, *_ = timed_batch(plan, pool(workers))
-            threads = pool is Threads
-            each[i, workers - 1, repeat] = arrival[-1] / tasks if threads else _per_task(arrival, 4 * workers)
-            inside[i, workers - 1, repeat] = seconds.mean()
+    each, inside = np.empty((2, len(POOLS), repeats, 2))
+    for repeat, (i, pool), workers in itertools.product(range(repeats), enumerate(POOLS.values()), (1, 2)):
+        arrival, seconds, *_ = timed_batch(plan, pool(workers))
+        each[i, repeat, workers - 1], inside[i, repeat, workers - 1] = _per_task(arrival, 4 * workers), seconds.mean()
     over = ("pool", "repeat")
     variables = {
-        "speed_up": (over, each[:, 0] / each[:, 1], named("time with one worker over time with two")),
-        "task_time": (over, inside[:, 0], named("time in the realisation of a task, one worker", "s")),
+        "speed_up": (over, each[..., 0] / each[..., 1], named("time with one worker over time with two")),
+        "task_time": (over, inside[..., 0], named("time in the realisation of a task, one worker", "s")),
     }
     return xr.Dataset(variables, {"pool": list(POOLS)})
 
@@ -91,9 +89,9 @@ def _overheads(tasks: int, workers: int, repeats: int) -> Floats:
     plan = make_plan(small_scene(batch={"realizations": tasks}))
     found, skipped = np.full((repeats, len(SCHEDULERS), 3), np.nan), tasks // 10
     with _cluster(workers) as (address, scheduler_pid), connected(address, None) as cluster:
-        pools = (Threads(workers), Processes(workers), cluster)
+        pools: tuple[Pool, ...] = (Threads(workers), Processes(workers), cluster)
         timed_batch(plan, cluster)  # the workers load what they need
-        for (repeat, i), pool in ((at, pools[at[1]]) for at in np.ndindex(repeats, len(pools))):
+        for repeat, (i, pool) in itertools.product(range(repeats), enumerate(pools)):
             arrival, inside, *processor = timed_batch(plan, pool, scheduler_pid if pool is cluster else None)
             found[repeat, i, 0] = _per_task(arrival, skipped) - inside[skipped + 1 :].mean() / workers
             found[repeat, i, 1:] = [_per_task(column, skipped) for column in processor]

@@ -6,18 +6,16 @@ JKR is from Dugdale's, from which the choice of model "auto" comes.
 
 import math
 import warnings
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from scipy.stats import norm
 from studies.study import named
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MODULUS, WORK, RADIUS = 4e6, 0.05, 50e-6  # of a soft rubber against a rigid body [Pa], [J/m^2], [m]
 TIP = rm.Paraboloid(radius=RADIUS)
@@ -87,10 +85,8 @@ def measure(quick: bool) -> xr.Dataset:
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw curves, pull-off forces, and the error of JKR."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(15, 4.6), layout="constrained")
     curves, off, error = figure.subplots(1, 3)
     scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL).indentation)

@@ -6,10 +6,12 @@ contact problems with and without adhesion", 2012. Errors are those at given ind
 
 import itertools
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from studies.study import Draw, named
 
@@ -18,10 +20,6 @@ from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_le
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
 RADIUS = 50e-6  # of the asperity whose row is drawn [m]
@@ -157,10 +155,8 @@ def report(result: xr.Dataset) -> str:
     return "\n".join(lines)
 
 
-def draw_row(result: xr.Dataset) -> "Figure":
+def draw_row(result: xr.Dataset) -> Figure:
     """Draw the row at three points of its path, and the path over the exact one; lengths in micrometres."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(15, 7.6), layout="constrained")
     grid = figure.add_gridspec(1, 2, width_ratios=[1.25, 1.0])
     rows, path = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
@@ -177,7 +173,7 @@ def draw_row(result: xr.Dataset) -> "Figure":
     return figure
 
 
-def _draw_stage(ax: "Axes", stage: xr.Dataset, radius: float) -> None:
+def _draw_stage(ax: Axes, stage: xr.Dataset, radius: float) -> None:
     """Draw the MDR profile of the tip, the springs and the stretch of the outermost one in contact."""
     positions, ends = (1e6 * stage[name].to_numpy() for name in ("spring_position", "spring_end"))
     bottom, top, half = -0.95, 0.8, 1.02 * float(positions[-1])
@@ -193,7 +189,7 @@ def _draw_stage(ax: "Axes", stage: xr.Dataset, radius: float) -> None:
     ax.set(xlim=(-half, half), ylim=(bottom - 0.02, top))
 
 
-def _draw_path(ax: "Axes", result: xr.Dataset) -> None:
+def _draw_path(ax: Axes, result: xr.Dataset) -> None:
     """Draw force against indentation, loading and unloading."""
     depth = 1e6 * result.path_indentation.to_numpy()
     turning, springs = int(np.argmax(depth)), result.sizes["spring"] // 2 - 1
@@ -214,10 +210,8 @@ def _draw_path(ax: "Axes", result: xr.Dataset) -> None:
     ax.legend(frameon=False, fontsize=9.5, loc="upper left")
 
 
-def draw_errors(result: xr.Dataset) -> "Figure":
+def draw_errors(result: xr.Dataset) -> Figure:
     """Draw the errors of each shape against the number of springs."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(16, 8.5), layout="constrained")
     axes = figure.subplots(3, 4, sharex=True, sharey=True)
     for ax, name in zip(axes.flat, result["shape"].to_numpy(), strict=False):

@@ -7,10 +7,12 @@ more or less fine, fitted to the eight neighbours. Errors are those of the sprea
 import itertools
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from oracles.gaussian_maps import gaussian_map, wave_numbers, wave_variances
 from oracles.map_summits import Series
 from studies.study import named
@@ -21,10 +23,6 @@ from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.streams import make_streams
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import Moments, SelfAffine
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 WAVES = 64  # shortest waves along a side
 SIZE = 320e-6  # [m]
@@ -151,10 +149,8 @@ def report(result: xr.Dataset) -> str:
     return "\n".join(lines)
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the distribution beside the summits of the maps, and the bias of the fit to neighbours."""
-    from matplotlib.figure import Figure
-
     distribution = distribution_of_maps()
     figure = Figure(figsize=(11, 8), layout="constrained")
     heights, curvatures, conditional, bias = figure.subplots(2, 2).ravel()
@@ -187,7 +183,7 @@ def draw(result: xr.Dataset) -> "Figure":
     return figure
 
 
-def _draw_bias(bias: "Axes", result: xr.Dataset) -> None:
+def _draw_bias(bias: Axes, result: xr.Dataset) -> None:
     """Draw how far paraboloids fitted to neighbours are off, over the fineness of the grid."""
     for name in ("density", "mean_height", "height_variance", "geometric_curvature"):
         values, errors = (100.0 * result[part].sel(statistic=name) for part in ("bias", "bias_error"))

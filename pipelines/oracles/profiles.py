@@ -1,5 +1,7 @@
 """Profiles given by their slope f' alone: g and G are its integrals, with any number of digits (H 17)."""
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeAlias
@@ -8,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from oracles.multiprecision import Number, mp
+from oracles.multiprecision import Number, mp, tanh_sinh
 from roughmdr.shapes import Shape, Tabulated
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -76,6 +78,12 @@ class Profile:
         """Radius [m] of the part where f' = 0."""
         lead = [piece.hi for piece in self.pieces if all(c == 0 for c, _ in piece.terms)]
         return lead[-1] if lead else mp.mpf(0)
+
+    def nodes(self, lo: Number, hi: Number, digits: int) -> Iterator[tuple[Number, Number]]:
+        """Yield nodes and weights from ``lo`` to ``hi`` [m], dense on both sides of each kink."""
+        for left, right in itertools.pairwise([lo, *(b for b in self.kinks if lo < b < hi), hi]):
+            for x, weight in tanh_sinh(digits, 28):
+                yield left + (right - left) * x, (right - left) * weight
 
     def mdr(self, a: Number) -> tuple[Number, Number, Number]:
         """Return g(a) [m], g'(a) [1] and G(a) [m2]; at a corner itself g' is that from inside."""
