@@ -3,10 +3,11 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from oracles.multiprecision import Number, bracket, mp, root
+from oracles.multiprecision import Number, bracket, mp, radius_between, root
 from oracles.profiles import Profile
 
 WRITTEN = 40
@@ -98,10 +99,7 @@ class Asperity:
 
     def _only_turning_point(self, level: float) -> Number:
         """Return the only fold, found by doubling steps in the logarithm of a, or of a/(R - a) for a sphere."""
-
-        def radius(y: Number) -> Number:
-            end: Number = self.profile.end
-            return self.width * mp.exp(y) if end is None else end / (1 + mp.exp(-y))
+        radius = partial(radius_between, 0, self.profile.end, self.width)
 
         def above(y: Number) -> Number:
             return mp.log(self.growth(radius(y)) / mp.mpf(level))
@@ -122,12 +120,7 @@ class Asperity:
         exact = mp.mpf(value)
         branch = [each for each in branches if each.value < exact][-1]
         rise = exact - branch.value
-        start = branch.lo or self.width
-
-        def radius(y: Number) -> Number:
-            if branch.hi is None:
-                return branch.lo + start * mp.exp(y)
-            return branch.lo + (branch.hi - branch.lo) / (1 + mp.exp(-y))
+        radius = partial(radius_between, branch.lo, branch.hi, branch.lo or self.width)
 
         def above(y: Number) -> Number:
             # Next to a fold, next to a corner and far out this is nearly linear in y.

@@ -27,11 +27,6 @@ class Piece:
     hi: Number | None
     terms: Terms
 
-    @property
-    def whole(self) -> bool:
-        """Whether there is no other piece."""
-        return bool(self.lo == 0) and self.hi is None
-
 
 def angle(r: Number, a: Number) -> Number:
     """Return psi where a cos(psi) = r [m], without loss next to r = a; 0 from there on."""
@@ -103,7 +98,7 @@ class Profile:
     @staticmethod
     def _moments(piece: Piece, a: Number) -> list[tuple[Number, Number]]:
         """Return, for each term, ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over the piece, r = a cos(psi)."""
-        if piece.whole:
+        if piece.lo == 0 and piece.hi is None:
             return [whole_moments(power, mp.dps) for _, power in piece.terms]
         end = antiderivatives(angle(piece.lo, a))
         begin = antiderivatives(mp.mpf(0) if piece.hi is None else angle(piece.hi, a))
