@@ -114,7 +114,7 @@ def table(case: Case, strength: float) -> dict[str, Any]:
             rows.append(row(state, answers, WRITTEN))
             if "displacement" in answers and a > 0.5 * size and stated < ENERGIES.get(case.shape, 2):
                 stated += 1
-                rows[-1]["energy"] = digits(energy(curve, state), WRITTEN)
+                rows[-1]["energy"] = digits(energy(curve.exact, state), WRITTEN)
         for part in LIFTED:
             state = curve.state(Place(few(float(part * curve.touch)), True))
             if answers := curve.answers(state):
@@ -130,16 +130,8 @@ def radii(case: Case, size: float) -> list[float]:
     return sorted(found - {0.0})
 
 
-def energy(curve: Curve, state: State) -> Number:
-    """Return U [J], once the state is what the definitions say."""
-    force, gap, found = spring_sums(curve.exact, state)
-    agree(force, state.force, SLOPPY)
-    agree(gap, curve.exact.range, SLOPPY)
-    return found
-
-
-def spring_sums(cohesion: Cohesion, state: State) -> tuple[Number, Number, Number]:
-    """Return P [N], the gap [m] at c and the energy U [J] of the springs, with g by quadrature.
+def energy(cohesion: Cohesion, state: State) -> Number:
+    """Return the energy U [J] of the springs, with g by quadrature, once their force and the gap at c are the state's.
 
     Their lengths are u1 = delta - g(x) for x < a and -beta sqrt(c^2 - x^2) for a < x < c, and
     U = E* ∫_0^c u1^2 dx - w pi a^2 - ∫_a^c (w - sigma0 gap(r)) 2 pi r dr, of which the last, by exchange of the order,
@@ -159,9 +151,9 @@ def spring_sums(cohesion: Cohesion, state: State) -> tuple[Number, Number, Numbe
         weighted -= dx * beta
         squared += dx * u * u
         pull += dx * (cohesion.profile.mdr(x)[0] - delta + u) * height
-    energy = cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
-    gap = cohesion.height(c) - delta + 2 / mp.pi * weighted
-    return 2 * cohesion.effective_modulus * straight, gap, energy
+    agree(2 * cohesion.effective_modulus * straight, state.force, SLOPPY)
+    agree(cohesion.height(c) - delta + 2 / mp.pi * weighted, cohesion.range, SLOPPY)
+    return cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
 
 
 def punch_rows(punch: Punch) -> list[dict[str, Any]]:

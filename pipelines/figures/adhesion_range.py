@@ -35,15 +35,15 @@ def strength(tabor: float) -> float:
     return tabor / rm.tabor(TIP, **_MATERIAL, strength=1.0)
 
 
-def material(model: str, tabor: float) -> dict[str, Any]:
-    """Return the arguments of a model of adhesion."""
-    return {**_MATERIAL, "adhesion": "dugdale", "strength": strength(tabor)} if model == "dugdale" else _MATERIAL
+def material(tabor: float) -> dict[str, Any]:
+    """Return the arguments of Dugdale adhesion with a Tabor number, of JKR adhesion where it is infinite."""
+    return _MATERIAL if math.isinf(tabor) else {**_MATERIAL, "adhesion": "dugdale", "strength": strength(tabor)}
 
 
 def pull_off(points: int) -> xr.Dataset:
     """Return the pull-off force [N] of the paraboloid over the Tabor number, under dead load and fixed grips."""
     numbers = NUMBERS[:: max(1, (NUMBERS.size - 1) // (points - 1))]
-    force = [[float(rm.pull_off(TIP, **material("dugdale", mu), control=control).force) for control in CONTROLS]
+    force = [[float(rm.pull_off(TIP, **material(mu), control=control).force) for control in CONTROLS]
              for mu in numbers.tolist()]  # fmt: skip
     return xr.Dataset(
         {"pull_off_force": (("tabor", "control"), force, named("pull-off force", "N"))},
@@ -62,8 +62,8 @@ def rough(count: int) -> xr.Dataset:
         ensemble = xr.Dataset(columns, attrs={"shape": "paraboloid"})
         path = np.linspace(5.0 * std + WORK / strength(mu), STOPS[j] * std, STEPS)
         jkr, dugdale = (
-            rm.load_separation(ensemble, separation=path, unload=True, **material(model, mu)).force
-            for model in ("jkr", "dugdale")
+            rm.load_separation(ensemble, separation=path, unload=True, **material(number)).force
+            for number in (math.inf, mu)
         )
         error[i, j, k] = abs(jkr - dugdale).max() / max(float(abs(dugdale).max()), _TINY)
     dims = ("roughness", "stop", "rough_tabor")
@@ -92,10 +92,9 @@ def draw(result: xr.Dataset) -> Figure:
     scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL).indentation)
     for i, mu in enumerate((*SHOWN, math.inf)):
         color, label = ("k", "JKR") if math.isinf(mu) else (f"C{i}", f"Tabor number {mu:g}")
-        given = material("jkr" if math.isinf(mu) else "dugdale", mu)
-        lowest = float(rm.pull_off(TIP, **given).indentation)
+        lowest = float(rm.pull_off(TIP, **material(mu)).indentation)
         delta = lowest + (2.0 * depth - lowest) * np.linspace(0.0, 1.0, 400) ** 2
-        force = rm.indent(TIP, **given, indentation=delta).force / scale
+        force = rm.indent(TIP, **material(mu), indentation=delta).force / scale
         curves.plot(delta / depth, force, color=color, label=label)
         curves.plot(delta[0] / depth, force[0], "o", color=color, ms=4)
     curves.set(xlabel="indentation / |δc| of JKR", ylabel="force / πwR", xlim=(-8, 2), ylim=(-2.1, 2.0))

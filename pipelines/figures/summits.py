@@ -111,19 +111,14 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
         columns[f"summit_{name}"] = (
             "summit", np.concatenate([getattr(one, name) for one in found]), named(f"{name}, on maps", "m"),
         )  # fmt: skip
-    units = [unit for unit, _ in STATISTICS.values()]
     coords = {
         "statistic": list(STATISTICS),
-        "unit": ("statistic", units, {"long_name": "unit of a statistic"}),
+        "unit": ("statistic", [unit for unit, _ in STATISTICS.values()], {"long_name": "unit of a statistic"}),
         "points_per_wave": ("points_per_wave", list(grids), named("points of the grid in a shortest wave")),
     }
     moments = distribution.moments
-    attrs = {
-        "maps": count,
-        "summits": sum(one.height.size for one in found),
-        **moments._asdict(),
-        "alpha": moments.alpha,
-    }
+    number = sum(one.height.size for one in found)
+    attrs = {"maps": count, "summits": number, **moments._asdict(), "alpha": moments.alpha}
     return xr.Dataset(columns, coords, attrs)
 
 
