@@ -1,5 +1,6 @@
 """The equilibrium curve of one asperity with adhesion of finite range: its folds, and how its states are reached."""
 
+import itertools
 from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -16,6 +17,13 @@ DIGITS = 45
 CONTROLS = ("displacement", "force")
 NEAREST = 1e-9
 """A state closer to its fold is left out: a double does not distinguish it from the fold."""
+
+
+class Fold(NamedTuple):
+    """A fold: where a control begins to grow along the curve, or to fall."""
+
+    rising: bool
+    state: State
 
 
 class Place(NamedTuple):
@@ -98,20 +106,20 @@ class Curve:
         return radius_between(0, c, c, root(above, *bracket(above)))
 
     @cached_property
-    def minima(self) -> dict[str, list[State]]:
-        """Where each control begins to grow, outwards: the folds that are stable farther out."""
-        return {control: list(self._find_minima(control)) for control in CONTROLS}
+    def folds(self) -> dict[str, list[Fold]]:
+        """All folds of each control, outwards."""
+        return {control: list(self._find_folds(control)) for control in CONTROLS}
 
-    def _find_minima(self, control: str) -> Iterator[State]:
-        rising = [bool(state.grows(control) > 0) for _, state in self.places]
-        if rising[0]:
+    def _find_folds(self, control: str) -> Iterator[Fold]:
+        if self.places[0][1].grows(control) > 0:
             zero = mp.mpf(0)
-            yield State(zero, zero, -self.exact.range, zero, zero, zero, zero)
-        for number in range(1, len(rising)):
-            if rising[number] and not rising[number - 1]:
-                (place, _), (after, _) = self.places[number - 1 : number + 1]
-                yield self.state(after if place.radius == after.radius else self._between(place, after, control))
-        if not rising[-1]:
+            yield Fold(True, State(zero, zero, -self.exact.range, zero, zero, zero, zero))
+        for (place, state), (after, state_after) in itertools.pairwise(self.places):
+            rising = bool(state_after.grows(control) > 0)
+            if rising != (state.grows(control) > 0):
+                at = after if place.radius == after.radius else self._between(place, after, control)
+                yield Fold(rising, self.state(at))
+        if self.places[-1][1].grows(control) <= 0:
             raise ArithmeticError("the outermost branch lies beyond the search")
 
     def _between(self, place: Place, after: Place, control: str) -> Place:
@@ -123,9 +131,13 @@ class Curve:
 
         return Place(mp.exp(root(growth, mp.log(start), mp.log(after.radius))), lifted)
 
+    def minima(self, control: str) -> list[State]:
+        """Return where a control, "displacement" or "force", begins to grow, outwards."""
+        return [fold.state for fold in self.folds[control] if fold.rising]
+
     def pull_off(self, control: str) -> State:
         """Return where a slow retraction ends."""
-        return min(self.minima[control], key=lambda state: state.under(control))
+        return min(self.minima(control), key=lambda state: state.under(control))
 
     def answers(self, state: State) -> dict[str, Number]:
         """Return the controls under which a slow retraction passes ``state``: it is stable and below the outer folds.
@@ -134,7 +146,7 @@ class Curve:
         """
         found = {}
         for control in CONTROLS:
-            value, minima = state.under(control), self.minima[control]
+            value, minima = state.under(control), self.minima(control)
             inner = [each.under(control) for each in minima if each.c <= state.c]
             outer = [each.under(control) for each in minima if each.c > state.c]
             if state.grows(control) > 0 and all(value < each for each in outer):

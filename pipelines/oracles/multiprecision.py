@@ -54,7 +54,7 @@ def bracket(function: Callable[[Number], Number]) -> tuple[Number, Number]:
 
 
 def radius_between(lo: Number, hi: Number | None, size: Number, y: Number) -> Number:
-    """Return a radius above ``lo`` that grows with any number y: by ``size`` e^y, or up to ``hi``."""
+    """Return a radius above ``lo`` that grows with the number y: without end by ``size`` e^y, or up to ``hi``."""
     return lo + size * mp.exp(y) if hi is None else lo + (hi - lo) / (1 + mp.exp(-y))
 
 
