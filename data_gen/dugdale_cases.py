@@ -1,11 +1,11 @@
 """Which asperities the reference tables of adhesion of finite range are of: nanometres to millimetres, soft to hard."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from oracles.dugdale import Cohesion
 from oracles.multiprecision import mp
-from oracles.profiles import Parameters, Profile, knot_slopes, profile_of
+from oracles.profiles import Parameters, Profile, profile_of
 
 _UNEVEN = (0.0, 0.11, 0.2, 0.37, 0.45, 0.7, 0.81, 1.0, 1.3, 1.45, 1.8, 2.4)
 _CONICAL = tuple(x * x if x < 0.5 else x - 0.25 for x in _UNEVEN)
@@ -14,19 +14,19 @@ _EDGE = tuple(0.5 * max(x - 1.0, 0.0) ** 2 for x in _FLAT)
 
 
 def few(number: float) -> float:
-    """``number`` to four digits."""
+    """Return ``number`` to four digits."""
     return float(f"{number:.4g}")
 
 
 def table(width: float, rise: float, r: tuple[float, ...], f: tuple[float, ...]) -> Parameters:
-    """The parameters of a table, stretched."""
+    """Return the parameters of a table, stretched."""
     return {"r": [few(width * x) for x in r], "f": [few(rise * y) for y in f]}
 
 
-@dataclass(frozen=True)
-class Case:
-    """One asperity and the Tabor numbers that it is wanted at. Radii are asked for up to ``most`` sizes, and folds are
-    sought up to ``reach`` sizes.
+class Case(NamedTuple):
+    """One asperity and the Tabor numbers that it is wanted at.
+
+    Radii are asked for up to ``most`` sizes, and folds are sought up to ``reach`` sizes.
     """
 
     shape: str
@@ -38,17 +38,12 @@ class Case:
     reach: float = 100.0
 
     @property
-    def slopes(self) -> list[float] | None:
-        """The slopes at a table's knots."""
-        return knot_slopes(self.parameters["r"], self.parameters["f"]) if self.shape == "tabulated" else None
-
-    @property
     def profile(self) -> Profile:
-        """The profile's slope."""
-        return profile_of(self.shape, self.parameters, self.slopes)
+        """Return the slope of the profile."""
+        return profile_of(self.shape, self.parameters)
 
     def size(self) -> float:
-        """The contact radius [m] of JKR's pull-off under fixed grips, roughly."""
+        """Return the contact radius [m] of JKR's pull-off under fixed grips, roughly."""
         if self.shape == "flat_punch":
             return float(self.parameters["radius"])
         profile = self.profile
@@ -58,7 +53,7 @@ class Case:
         return float(a[np.argmin(g - np.sqrt(2.0 * np.pi * a * self.work / self.effective_modulus))])
 
     def strengths(self) -> list[float]:
-        """The strengths [Pa] of the Tabor numbers."""
+        """Return the strengths [Pa] of the Tabor numbers."""
         stretch = float(np.sqrt(2.0 * np.pi * self.size() * self.work / self.effective_modulus))
         return [few(tabor * float(mp.pi) ** (2 / 3) * self.work / stretch) for tabor in self.tabors]
 

@@ -8,11 +8,9 @@ shapes. A row is a state of equilibrium; "answers" names the controls under whic
 with the state's distance to the fold of its branch, over that of the pull-off to 0.
 """
 
-import itertools
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
@@ -21,12 +19,12 @@ from dugdale_cases import CASES, Case, few
 from oracles.dugdale import FIELDS, Cohesion, State
 from oracles.dugdale_curve import CONTROLS, WORKING, Curve, Place
 from oracles.dugdale_punch import Punch
-from oracles.multiprecision import Number, bracket, digits, mp, root, tanh_sinh
+from oracles.multiprecision import Number, bracket, digits, mp, root
 from oracles.profiles import profile_of
-from references import text
+from references import OUTPUT, head, write, written
 
 MAUGIS_WRITTEN = 30
-SPRINGS_DIGITS, SPRINGS_STEPS = 30, 28
+SPRINGS_DIGITS = 30
 WRITTEN = 25
 LAMBDAS = (1e-3, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.93, 0.95, 1.0, 1.2, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1e3)
 RADII = (0.01, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0)
@@ -38,13 +36,13 @@ TINY, SLOPPY, STEP = mp.mpf(10) ** -28, mp.mpf(10) ** -20, mp.mpf(10) ** -14
 
 
 def agree(one: Number, other: Number, relative: Number) -> None:
-    """ArithmeticError unless two numbers are the same to almost all digits."""
+    """Raise ArithmeticError unless two numbers are the same to almost all digits."""
     if abs(one - other) > relative * max(abs(one), abs(other)):
         raise ArithmeticError(f"{mp.nstr(one, 35)} is not {mp.nstr(other, 35)}")
 
 
 def maugis_equations(lam: Number, A: Number) -> tuple[Number, Number, Number]:
-    """c/a, delta and N of Maugis's sphere by his own equations (1992, eq. 6.16 to 6.18 in his units)."""
+    """Return c/a, delta and N of Maugis's sphere by his own equations (1992, eq. 6.16 to 6.18 in his units)."""
 
     def left(y: Number) -> Number:
         s = mp.exp(y)  # sqrt(m^2 - 1)
@@ -57,18 +55,18 @@ def maugis_equations(lam: Number, A: Number) -> tuple[Number, Number, Number]:
     return m, A * A - 4 * lam * A * s / 3, A**3 - lam * A * A * (s + m * m * angle)
 
 
-def written(state: State, answers: dict[str, Number], count: int) -> dict[str, Any]:
+def row(state: State, answers: dict[str, Number], count: int) -> dict[str, Any]:
     """Return a state as a row of a table."""
-    row: dict[str, Any] = numbers_of(state, count)
+    line: dict[str, Any] = numbers_of(state, count)
     if mp.mpf(float(state.a)) == state.a:
-        row["contact_radius"] = float(state.a)
-    row["stiffness"] = digits(state.stiffness, count)
-    return {**row, "answers": {control: float(mp.nstr(X, 3)) for control, X in answers.items()}}
+        line["contact_radius"] = float(state.a)
+    line["stiffness"] = digits(state.stiffness, count)
+    return {**line, "answers": {control: float(mp.nstr(X, 3)) for control, X in answers.items()}}
 
 
 def numbers_of(state: State, count: int) -> dict[str, str]:
     """Return radii, indentation and force by their names."""
-    return {name: digits(getattr(state, field), count) for name, field in FIELDS.items()}
+    return written({name: getattr(state, field) for name, field in FIELDS.items()}, count)
 
 
 def ends(curve: Curve | Punch, count: int) -> dict[str, dict[str, str]]:
@@ -77,7 +75,7 @@ def ends(curve: Curve | Punch, count: int) -> dict[str, dict[str, str]]:
 
 
 def maugis(lam: float) -> dict[str, Any]:
-    """The entry of one of Maugis's lambda."""
+    """Return the entry of one of Maugis's lambda."""
     with mp.workdps(WORKING):
         profile = profile_of("paraboloid", {"radius": 1.0})
         curve = Curve(profile, mp.mpf(3) / 4, 1 / mp.pi, mp.mpf(lam) / 2, 1.0, 100.0)
@@ -90,134 +88,98 @@ def maugis(lam: float) -> dict[str, Any]:
             agree(state.force, N, TINY)
             (_, up, N_up), (_, down, N_down) = (maugis_equations(mp.mpf(lam), A + A * h) for h in (STEP, -STEP))
             agree(state.stiffness, (N_up - N_down) / (up - down), SLOPPY)
-            rows.append(written(state, curve.answers(state), MAUGIS_WRITTEN))
+            rows.append(row(state, curve.answers(state), MAUGIS_WRITTEN))
         for part in LIFTED:
             state = curve.state(Place(float(mp.nstr(part * curve.touch, 6)), True))
-            rows.append(written(state, curve.answers(state), MAUGIS_WRITTEN))
-        return {
-            "lambda": lam,
-            "pull_off": ends(curve, MAUGIS_WRITTEN),
-            "rows": rows,
-        }
+            rows.append(row(state, curve.answers(state), MAUGIS_WRITTEN))
+        return {"lambda": lam, "pull_off": ends(curve, MAUGIS_WRITTEN), "rows": rows}
 
 
 def table(case: Case, strength: float) -> dict[str, Any]:
-    """The entry of one asperity."""
+    """Return the entry of one asperity."""
     with mp.workdps(WORKING):
-        entry: dict[str, Any] = {"parameters": case.parameters}
-        if case.slopes is not None:
-            entry["slopes"] = case.slopes
-        entry |= {"modulus": case.effective_modulus, "work": case.work, "strength": strength}
+        given = case.effective_modulus, case.work, strength
+        entry = head(case.shape, case.parameters, modulus=given[0], work=given[1], strength=given[2])
         if case.shape == "flat_punch":
-            punch = Punch(case.parameters["radius"], case.effective_modulus, case.work, strength)
+            punch = Punch(case.parameters["radius"], *given)
             return entry | {"pull_off": ends(punch, WRITTEN), "rows": punch_rows(punch)}
         size = case.size()
-        curve = Curve(case.profile, case.effective_modulus, case.work, strength, size, size * case.reach)
+        curve = Curve(case.profile, *given, size, size * case.reach)
         rows, stated = [], 0
         for a in radii(case, size):
             state = curve.state(Place(a, False))
             answers = curve.answers(state)
             if a < case.profile.flat and not answers:
                 continue
-            rows.append(written(state, answers, WRITTEN))
+            rows.append(row(state, answers, WRITTEN))
             if "displacement" in answers and a > 0.5 * size and stated < ENERGIES.get(case.shape, 2):
                 stated += 1
-                rows[-1]["energy"] = digits(energy(curve, state), WRITTEN)
+                rows[-1]["energy"] = digits(energy(curve.exact, state), WRITTEN)
         for part in LIFTED:
             state = curve.state(Place(few(float(part * curve.touch)), True))
             if answers := curve.answers(state):
-                rows.append(written(state, answers, WRITTEN))
+                rows.append(row(state, answers, WRITTEN))
         return {**entry, "pull_off": ends(curve, WRITTEN), "rows": rows}
 
 
 def radii(case: Case, size: float) -> list[float]:
-    """Contact radii [m] from well below the sizes of interest to well above."""
+    """Return contact radii [m] from well below the sizes of interest to well above."""
     found = {few(size * part) for part in (0.02, 0.3, 0.7, 0.95, 1.3, 3.0, case.most)}
     kinks = [float(b) for b in case.profile.kinks]
     found |= {few(b * part) for b in {min(kinks, default=0.0), max(kinks, default=0.0)} for part in (0.5, 1.01, 1.5)}
     return sorted(found - {0.0})
 
 
-def energy(curve: Curve, state: State) -> Number:
-    """U [J], once the state is what the definitions say."""
-    found = spring_sums(curve.exact, state)
-    agree(found.force, state.force, SLOPPY)
-    agree(found.gap, curve.exact.range, SLOPPY)
-    return found.energy
+def energy(cohesion: Cohesion, state: State) -> Number:
+    """Return the energy U [J] of the springs, with g by quadrature, once their force and the gap at c are the state's.
 
-
-class SpringSums(NamedTuple):
-    """P [N], the gap [m] at c and the energy U [J]."""
-
-    force: Number
-    gap: Number
-    energy: Number
-
-
-def spring_sums(cohesion: Cohesion, state: State) -> SpringSums:
-    """Sum over u1 = delta - g(x) for x < a and -beta sqrt(c^2 - x^2) for a < x < c, with g by quadrature.
-
+    Their lengths are u1 = delta - g(x) for x < a and -beta sqrt(c^2 - x^2) for a < x < c, and
     U = E* ∫_0^c u1^2 dx - w pi a^2 - ∫_a^c (w - sigma0 gap(r)) 2 pi r dr, of which the last, by exchange of the order,
     is pi w (c^2 - a^2) - 4 sigma0 ∫_a^c [g(x) - delta + u1(x)] sqrt(c^2 - x^2) dx.
     """
     a, c, delta, beta = state.a, state.c, state.delta, cohesion.beta
     straight, weighted, squared, pull = mp.mpf(0), mp.mpf(0), mp.mpf(0), mp.mpf(0)
-    for x, dx in _nodes(cohesion, mp.mpf(0), a):
+    for x, dx in cohesion.profile.nodes(mp.mpf(0), a, SPRINGS_DIGITS):
         u = delta - cohesion.profile.mdr(x)[0]
         straight += dx * u
         weighted += dx * u / mp.sqrt((c - x) * (c + x))
         squared += dx * u * u
-    for x, dx in _nodes(cohesion, a, c):
+    for x, dx in cohesion.profile.nodes(a, c, SPRINGS_DIGITS):
         height = mp.sqrt((c - x) * (c + x))
         u = -beta * height
         straight += dx * u
         weighted -= dx * beta
         squared += dx * u * u
         pull += dx * (cohesion.profile.mdr(x)[0] - delta + u) * height
-    energy = cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
-    return SpringSums(
-        2 * cohesion.effective_modulus * straight, cohesion.height(c) - delta + 2 / mp.pi * weighted, energy
-    )
-
-
-def _nodes(cohesion: Cohesion, lo: Number, hi: Number) -> Iterator[tuple[Number, Number]]:
-    """Yield nodes and weights from ``lo`` to ``hi`` [m], dense on both sides of each kink."""
-    edges = [lo, *(b for b in cohesion.profile.kinks if lo < b < hi), hi]
-    for left, right in itertools.pairwise(edges):
-        for x, weight in tanh_sinh(SPRINGS_DIGITS, SPRINGS_STEPS):
-            yield left + (right - left) * x, (right - left) * weight
+    agree(2 * cohesion.effective_modulus * straight, state.force, SLOPPY)
+    agree(cohesion.height(c) - delta + 2 / mp.pi * weighted, cohesion.range, SLOPPY)
+    return cohesion.effective_modulus * squared - mp.pi * cohesion.work * c * c + 4 * cohesion.strength * pull
 
 
 def punch_rows(punch: Punch) -> list[dict[str, Any]]:
-    """The states of a flat punch, from next to its end to pressed in."""
+    """Return the states of a flat punch, from next to its end to pressed in."""
     rows = []
     off = {control: punch.pull_off(control) for control in CONTROLS}
     for part in (-0.99, -0.9, -0.5, -0.1, 0.3, 5.0):
         found = punch.state(mp.mpf(few(float(abs(off["displacement"].delta) * part))))
         held = CONTROLS if found.a > 0 else CONTROLS[:1]
         answers = {control: 1 - found.under(control) / off[control].under(control) for control in held}
-        rows.append({**written(found, answers, WRITTEN), "energy": digits(punch.energy(found), WRITTEN)})
+        rows.append({**row(found, answers, WRITTEN), "energy": digits(punch.energy(found), WRITTEN)})
     return rows
 
 
 @click.command(help=(__doc__ or "").split("\n")[0])
-@click.option(
-    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("tests/data"), show_default=True
-)
+@OUTPUT
 @click.option("--shape", "shapes", multiple=True, help='Only these, or "maugis"; default all.')
 def main(output: Path, shapes: tuple[str, ...]) -> None:
     """Write one table a shape."""
-    output.mkdir(parents=True, exist_ok=True)
     for shape in dict.fromkeys(shapes or ["maugis", *(case.shape for case in CASES)]):
         if shape == "maugis":
-            path, entries = output / "maugis.json", [maugis(lam) for lam in LAMBDAS]
+            write(output / "maugis.json", shape, [maugis(lam) for lam in LAMBDAS])
         else:
             cases = [case for case in CASES if case.shape == shape]
-            path = output / f"dugdale_{shape}.json"
             entries = [table(case, strength) for case in cases for strength in case.strengths()]
-        path.write_text(text(shape, entries), encoding="utf-8")
-        rows = sum(len(entry["rows"]) for entry in entries)
-        click.echo(f"{path}: {len(entries)} cases, {rows} rows, {path.stat().st_size} bytes")
+            write(output / f"dugdale_{shape}.json", shape, entries)
 
 
 if __name__ == "__main__":

@@ -46,121 +46,117 @@ class Case(NamedTuple):
     width: float
     rise: float
 
-    @property
-    def slopes(self) -> list[float] | None:
-        """The slopes at the knots of a table."""
-        return knot_slopes(self.parameters["r"], self.parameters["f"]) if self.shape == "tabulated" else None
-
 
 def values(case: Case, control: str, pull_off: Number) -> list[tuple[float, bool]]:
     """Return the controls [m or N] of the rows of a case, and whether each row also states the energy."""
+    stated = control == "indentation"
     if case.work > 0.0:
-        distances = DISTANCES[control]
-        exact = [(float(pull_off * (1 - mp.mpf(X))), X in ENERGY_DISTANCES) for X in distances]
-        return [(value, energy and control == "indentation") for value, energy in exact]
-    unit = case.rise if control == "indentation" else case.effective_modulus * case.width * case.rise
-    return [
-        (float(f"{unit * 10.0**u:.6g}"), u in ENERGY_DECADES and control == "indentation") for u in DECADES[control]
-    ]
+        exact = ((float(pull_off * (1 - mp.mpf(X))), X) for X in DISTANCES[control])
+        return [(value, stated and X in ENERGY_DISTANCES) for value, X in exact]
+    unit = case.rise if stated else case.effective_modulus * case.width * case.rise
+    return [(float(f"{unit * 10.0**u:.6g}"), stated and u in ENERGY_DECADES) for u in DECADES[control]]
 
 
 def table(case: Case) -> dict[str, Any]:
     """Return the entry of one case."""
     with mp.workdps(WORKING):
-        entry: dict[str, Any] = {"parameters": case.parameters}
-        if case.slopes is not None:
-            entry["slopes"] = case.slopes
-        entry |= {"modulus": case.effective_modulus, "work": case.work}
+        entry = head(case.shape, case.parameters, modulus=case.effective_modulus, work=case.work)
         rows = punch_rows(case, entry) if case.shape == "flat_punch" else asperity_rows(case, entry)
         return {**entry, "rows": rows}
 
 
+def head(shape: str, parameters: Parameters, **numbers: float) -> dict[str, Any]:
+    """Return what an entry begins with: the parameters, of a table also the slopes at its knots, and more numbers."""
+    slopes = {"slopes": knot_slopes(parameters["r"], parameters["f"])} if shape == "tabulated" else {}
+    return {"parameters": parameters, **slopes, **numbers}
+
+
 def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     """A flat punch has no slope to integrate: a = b, and Kendall's pull-off at delta = -dl(b)."""
-    b, effective_modulus, work = mp.mpf(case.parameters["radius"]), mp.mpf(case.effective_modulus), mp.mpf(case.work)
+    b, effective_modulus, work = (mp.mpf(x) for x in (case.parameters["radius"], case.effective_modulus, case.work))
     k = 2 * effective_modulus * b
     lost = -mp.sqrt(2 * mp.pi * b * work / effective_modulus)
     end = {"contact_radius": b, "indentation": lost, "force": k * lost}
     if work > 0:
-        written = {name: digits(number, WRITTEN) for name, number in end.items()}
-        entry["pull_off"] = {"displacement": written, "force": written}
+        entry["pull_off"] = dict.fromkeys(("displacement", "force"), written(end))
     rows = []
     for control in DISTANCES:
         for value, energy in values(case, control, end[control]):
-            delta = mp.mpf(value) if control == "indentation" else mp.mpf(value) / k
-            force = mp.mpf(value) if control == "force" else k * delta
+            given = mp.mpf(value)
+            delta, force = (given, k * given) if control == "indentation" else (given / k, given)
             state = {"contact_radius": b, "indentation": delta, "force": force, "stiffness": k}
-            rows.append(
-                row(control, value, state, effective_modulus * b * delta**2 - mp.pi * work * b**2 if energy else None)
-            )
+            found = effective_modulus * b * delta**2 - mp.pi * work * b**2 if energy else None
+            rows.append(row(control, value, state, found))
     return rows
 
 
 def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the rows of every other shape; fills in the pull-off of ``entry``."""
-    asperity = Asperity(
-        profile_of(case.shape, case.parameters, case.slopes), case.effective_modulus, case.work, case.width
-    )
+    profile = profile_of(case.shape, case.parameters)
+    asperity = Asperity(profile, case.effective_modulus, case.work, case.width)
     rows = []
     for control in DISTANCES:
         branches = asperity.branches(control)
         least = min(branches, key=lambda branch: branch.value)
         wanted = values(case, control, least.value)
         if case.work > 0.0:
-            state = asperity.state(least.lo)
-            end = {name: digits(state[name], WRITTEN) for name in ("contact_radius", "indentation", "force")}
-            entry.setdefault("pull_off", {})["displacement" if control == "indentation" else "force"] = end
+            end = asperity.state(least.lo)
+            del end["stiffness"]
+            entry.setdefault("pull_off", {})["displacement" if control == "indentation" else "force"] = written(end)
             outer = branches[-1].value
             if outer > least.value:  # either side of the jump inwards
                 wanted += [(float(outer * (1 + side)), False) for side in (-1e-3, 1e-3)]
         for value, energy in wanted:
             found = asperity.solve(branches, control, value) if value > least.value else None
-            if found is None or (asperity.profile.end is not None and found["indentation"] > 3 * asperity.profile.end):
+            if found is None or (profile.end is not None and found["indentation"] > 3 * profile.end):
                 continue
-            work_done = None
-            if energy:
-                work_done = asperity.energy(found["contact_radius"], found["indentation"])
-            rows.append(row(control, value, found, work_done))
+            a, delta = found["contact_radius"], found["indentation"]
+            rows.append(row(control, value, found, asperity.energy(a, delta) if energy else None))
     return rows
 
 
 def row(control: str, value: float, state: dict[str, Number], energy: Number | None) -> dict[str, Any]:
     """Return one line of a table."""
-    line: dict[str, Any] = {"control": control, "value": value}
-    line |= {name: digits(number, WRITTEN) for name, number in state.items()}
+    line = {"control": control, "value": value, **written(state)}
     return line if energy is None else {**line, "energy": digits(energy, ENERGY_WRITTEN)}
 
 
-def text(shape: str, entries: list[dict[str, Any]]) -> str:
-    """Return the JSON of one shape, a row a line."""
+def written(state: dict[str, Number], count: int = WRITTEN) -> dict[str, str]:
+    """Return numbers written with so many digits."""
+    return {name: digits(number, count) for name, number in state.items()}
+
+
+def write(path: Path, shape: str, entries: list[dict[str, Any]]) -> None:
+    """Write the JSON of one shape, a row a line."""
     blocks = []
     for entry in entries:
-        head = json.dumps({name: value for name, value in entry.items() if name != "rows"})[:-1]
+        begin = json.dumps({name: value for name, value in entry.items() if name != "rows"})[:-1]
         rows = ",\n".join(json.dumps(each) for each in entry["rows"])
-        blocks.append(f'{head}, "rows": [\n{rows}\n]}}')
-    return f'{{"shape": {json.dumps(shape)}, "cases": [\n' + ",\n".join(blocks) + "\n]}\n"
+        blocks.append(f'{begin}, "rows": [\n{rows}\n]}}')
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f'{{"shape": {json.dumps(shape)}, "cases": [\n' + ",\n".join(blocks) + "\n]}\n", encoding="utf-8")
+    count = sum(len(entry["rows"]) for entry in entries)
+    click.echo(f"{path}: {len(entries)} cases, {count} rows, {path.stat().st_size} bytes")
+
+
+OUTPUT = click.option(
+    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("tests/data"), show_default=True
+)
 
 
 @click.command(help=(__doc__ or "").split("\n")[0])
-@click.option(
-    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("tests/data"), show_default=True
-)
+@OUTPUT
 @click.option("--shape", "shapes", type=click.Choice(list(CASES)), multiple=True, help="Only these; default all.")
 @click.option("--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 def main(output: Path, shapes: tuple[str, ...], workers: int) -> None:
     """Write one table a shape."""
-    output.mkdir(parents=True, exist_ok=True)
     with multiprocessing.Pool(workers) as pool:
         pending = {
             shape: pool.map_async(table, [Case(shape, **case) for case in CASES[shape]], chunksize=1)
             for shape in dict.fromkeys(shapes or CASES)
         }
         for shape, result in pending.items():
-            entries = result.get()
-            path = output / f"{shape}.json"
-            path.write_text(text(shape, entries), encoding="utf-8")
-            rows = sum(len(entry["rows"]) for entry in entries)
-            click.echo(f"{path}: {len(entries)} cases, {rows} rows, {path.stat().st_size} bytes")
+            write(output / f"{shape}.json", shape, result.get())
 
 
 if __name__ == "__main__":

@@ -24,10 +24,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
 from oracles.gaussian_maps import gaussian_map, rms_slope
 
 
-def _length(text: str) -> float:
-    return quantity(text, "m")
-
-
 @click.command(help=(__doc__ or "").split("\n")[0])
 @click.argument("output", type=click.Path(dir_okay=False, path_type=Path))
 @click.option("--points", type=click.IntRange(8, 8192), default=256, show_default=True, help="Grid points a side.")
@@ -55,27 +51,20 @@ def main(
     if rms is not None and slope is not None:
         raise click.UsageError("takes --rms or --slope, not both")
     try:
-        side = _length(size)
-        waves = {"hurst": hurst, "long_wave": _length(long_wave), "short_wave": _length(short_wave)}
+        side = quantity(size, "m")
+        waves = {"hurst": hurst, "long_wave": quantity(long_wave, "m"), "short_wave": quantity(short_wave, "m")}
         if slope is None:
-            wanted = SelfAffine.of(**waves, rms_height=_length(rms or "0.5 um"))
-            height = gaussian_map(wanted, points, side, seed)
-            height *= wanted.rms_height / np.std(height)
+            wanted = SelfAffine.of(**waves, rms_height=quantity(rms or "0.5 um", "m"))
         else:
             wanted = SelfAffine.of(**waves, rms_slope=quantity(slope, DIMENSIONLESS))
-            height = gaussian_map(wanted, points, side, seed)
-            height *= wanted.rms_slope / rms_slope(height, side)
+        height = gaussian_map(wanted, points, side, seed)
+        height *= wanted.rms_height / np.std(height) if slope is None else wanted.rms_slope / rms_slope(height, side)
         at = ((np.arange(points) + 0.5) * side / points, {"units": "m", "long_name": "position"})
+        title = f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}"
         dataset = xr.Dataset(
             {"height": (("x", "y"), height, {"units": "m", "long_name": "surface height"})},
             coords={"x": ("x", *at), "y": ("y", *at)},
-            attrs={
-                **provenance(
-                    f"Synthetic self-affine surface, Hurst exponent {hurst:g}, seed {seed}",
-                    f"surface.py {shlex.join(sys.argv[1:])}",
-                ),
-                "periodic": 1,
-            },
+            attrs={**provenance(title, f"surface.py {shlex.join(sys.argv[1:])}"), "periodic": 1},
         )
         output.parent.mkdir(parents=True, exist_ok=True)
         write_netcdf(Labelled.of(dataset), output)

@@ -3,8 +3,7 @@
 python pipelines/batch.py -o results/studies
 """
 
-from benchmarks.batch import measure, report
-from benchmarks.batch_picture import draw
+from benchmarks.batch import draw, measure, report
 from studies.study import Study
 
 STUDY = Study("batch", "What the batch engine costs", measure, draw, report)

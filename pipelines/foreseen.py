@@ -3,10 +3,11 @@
 python pipelines/foreseen.py -o results/studies
 """
 
-from benchmarks.foreseen import draw, measure, report
+from benchmarks.batch import tables
+from benchmarks.foreseen import draw, measure
 from studies.study import Study
 
-STUDY = Study("foreseen", "What roughmdr plan foresees", measure, draw, report)
+STUDY = Study("foreseen", "What roughmdr plan foresees", measure, draw, tables)
 
 if __name__ == "__main__":
     STUDY.command()

@@ -1,7 +1,6 @@
-"""The row of springs, its convergence and its run time: python pipelines/springs.py -o results/studies."""
+"""The row of springs and how it converges: python pipelines/springs.py -o results/studies."""
 
-from figures.springs import measure, report
-from figures.springs_pictures import PICTURES
+from figures.springs import PICTURES, measure, report
 from studies.study import Study
 
 STUDY = Study("springs", "One asperity as a row of springs", measure, PICTURES, report)

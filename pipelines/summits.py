@@ -1,7 +1,6 @@
 """Summits of Gaussian surfaces, drawn and found on maps: python pipelines/summits.py -o results/studies."""
 
-from figures.summits import measure, report
-from figures.summits_picture import draw
+from figures.summits import draw, measure, report
 from studies.study import Study
 
 STUDY = Study("summits", "Summits of Gaussian surfaces", measure, draw, report)

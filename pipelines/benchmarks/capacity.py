@@ -7,13 +7,14 @@ import tempfile
 import time
 from pathlib import Path
 from statistics import median
-from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+from studies.study import table
 
 from benchmarks.child import small_scene
 from roughmdr.batch.diagnostics import row_of
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
@@ -24,21 +25,9 @@ ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; workers of one thread."""
 ENSEMBLE = 1_000_000
 """Asperities of a realisation."""
+PREFIX = "large_"
+"""Of the attributes of a result that are extrapolated."""
 _REPEATS = 30
-
-
-class Costs(NamedTuple):
-    """Measured times [s] and sizes [byte]: of an asperity, and of a task by who spends it."""
-
-    drawing: float
-    visiting: float
-    asperity: float
-    """Memory of an asperity."""
-    caller: float
-    scheduler: float
-    writer: float
-    task_result: float
-    """Size of a task result on disk."""
 
 
 def writing() -> tuple[float, float]:
@@ -58,16 +47,7 @@ def writing() -> tuple[float, float]:
     return median(times), float(len(result.to_bytes()))
 
 
-def collecting() -> float:
-    """Measure the time [s] that the calling process takes to add the moments of one more task to those of its cell."""
-    moments, values, count = MomentTree(), np.ones((4, 400)), 2048
-    started = time.perf_counter()
-    for first in range(count):
-        moments.add(first, Moments.of(values))
-    return (time.perf_counter() - started) / count
-
-
-def capacity(costs: Costs) -> dict[str, float]:
+def capacity(result: xr.Dataset) -> dict[str, float]:
     """Return times [s] and sizes [byte] of the sweep, 200 steps each way, computed as ensembles of ``ENSEMBLE``."""
     scene = small_scene(
         count=ENSEMBLE,
@@ -80,33 +60,35 @@ def capacity(costs: Costs) -> dict[str, float]:
     tasks = split_into_tasks(plan, Rounds(plan).begin(), variables, WORKERS)
     runs = sum(each.last - each.first for task in tasks for each in task.ranges)
     curve = 8.0 * len(variables) * plan.cells[0].path.separation.size
+    of_task = result.sel(scheduler="distributed").isel(workers=-1)
+    by_part = {"caller": of_task.task_caller, "scheduler": of_task.task_scheduler, "writer": result.writing_time}
     return {
         "runs": runs,
         "tasks": len(tasks),
-        "computing": runs * ENSEMBLE * (costs.drawing + costs.visiting),  # of all cores together
-        "caller": len(tasks) * (costs.caller + collecting()),
-        "scheduler": len(tasks) * costs.scheduler,
-        "writer": len(tasks) * costs.writer,
+        "computing": runs * ENSEMBLE * float(result.drawing_time + result.visiting_time),  # of all cores together
+        **{name: len(tasks) * float(seconds) for name, seconds in by_part.items()},
         "statistics": 4.0 * curve * CELLS,
         "curves": curve * runs,
-        "task_results": len(tasks) * costs.task_result,
-        "ensemble": ENSEMBLE * costs.asperity,
-        "whole": ASPERITIES * costs.asperity,
+        "task_results": len(tasks) * float(result.result_size),
+        "ensemble": ENSEMBLE * float(result.asperity_memory),
+        "whole": ASPERITIES * float(result.asperity_memory),
     }
 
 
-def rows(large: dict[str, float]) -> list[list[str]]:
-    """Return what ``capacity`` found, line by line."""
+def report(result: xr.Dataset) -> str:
+    """Return a table of what ``capacity`` found."""
+    large = {name.removeprefix(PREFIX): number for name, number in result.attrs.items() if name.startswith(PREFIX)}
     hours = {name: large[name] / 3600.0 for name in ("computing", "caller", "scheduler", "writer")}
-    useful = hours["computing"] / max(hours[name] for name in ("caller", "scheduler", "writer"))
-    return [
+    computing = hours.pop("computing")
+    rows = [
         ["runs, tasks", f"{large['runs']:,.0f}, {large['tasks']:,.0f}"],
-        ["computing", f"{hours['computing']:.0f} core-hours, {hours['computing'] / WORKERS:.1f} h each"],
-        *([name, f"{hours[name]:.2f} h"] for name in ("caller", "scheduler", "writer")),
-        ["most workers of use", f"{useful:.0f}"],
+        ["computing", f"{computing:.0f} core-hours, {computing / WORKERS:.1f} h each"],
+        *([name, f"{each:.2f} h"] for name, each in hours.items()),
+        ["most workers of use", f"{computing / max(hours.values()):.0f}"],
         ["result, statistics", f"{large['statistics'] / 1e6:.0f} MB"],
         ["result, curves", f"{large['curves'] / 1e9:.1f} GB, held about twice: not to be done"],
         ["task results until the end", f"{large['task_results'] / 1e9:.0f} GB, one file a task"],
         [f"memory, {ENSEMBLE:.0e} a run", f"{large['ensemble'] / 1e6:.0f} MB a worker"],
         [f"memory, {ASPERITIES:.0e} a run", f"{large['whole'] / 1e9:.0f} GB a worker"],
     ]
+    return table([f"{CELLS} cells of {ASPERITIES:,} asperities", f"{WORKERS} workers, extrapolated"], rows)

@@ -6,11 +6,11 @@ Each scene is run in a process of its own. Needs /proc.
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from studies.study import named, table
+from matplotlib.figure import Figure
+from studies.study import named
 
 import roughmdr
 from benchmarks.child import run_command
@@ -18,9 +18,6 @@ from benchmarks.process import in_new_process
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SCENES = {
     "16 x 1000": [],
@@ -57,10 +54,8 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the foreseen over the measured, for time and memory; the band is a factor of two."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(7, 3.6), layout="constrained")
     panel = figure.subplots()
     x = np.arange(result.sizes["scene"])
@@ -71,12 +66,3 @@ def draw(result: xr.Dataset) -> "Figure":
     panel.set_xticks(x, result["scene"].to_numpy())
     panel.legend(frameon=False)
     return figure
-
-
-def report(result: xr.Dataset) -> str:
-    """Return a table of time and memory, planned and taken."""
-    rows = []
-    for number, name in enumerate(result.scene.to_numpy()):
-        seconds, memory = (result[key].to_numpy()[number] for key in ("time", "memory"))
-        rows.append([str(name), *(f"{each:.1f} s" for each in seconds), *(f"{each / 1e6:.0f} MB" for each in memory)])
-    return table(["scene", "time planned", "taken", "memory planned", "taken"], rows)

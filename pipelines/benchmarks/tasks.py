@@ -1,5 +1,6 @@
 """The cost of a task by each scheduler, and the speed-up of two workers."""
 
+import itertools
 import math
 import os
 import tempfile
@@ -8,9 +9,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+from studies.study import named
 
 from benchmarks.child import small_scene
 from roughmdr.batch.plan import Plan, make_plan
@@ -22,27 +24,15 @@ from roughmdr.runner.cluster import connected
 from roughmdr.runner.local import Pool, Processes, Threads
 
 SCHEDULERS = ("threads", "processes", "distributed")
+POOLS: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
 
 
-class Timing(NamedTuple):
-    """Times of a batch, one of each for every task in the order in which they came back."""
+def timed_batch(plan: Plan, pool: Pool, scheduler_pid: int | None = None) -> Floats:
+    """Compute the tasks of a plan by a pool; return four columns with a value for each task that comes back.
 
-    arrival: Floats
-    """Seconds since the start."""
-    inside: Floats
-    """Seconds in the realisations."""
-    caller: Floats
-    """Processor seconds of this process so far."""
-    scheduler: Floats
-    """Processor seconds of the cluster's scheduler so far; NaN where there is none."""
-
-    def per_task(self, column: Floats, skipped: int) -> float:
-        """Return what a task adds to a column, once ``skipped`` tasks have come back."""
-        return float(column[-1] - column[skipped]) / (len(column) - 1 - skipped)
-
-
-def timed_batch(plan: Plan, pool: Pool, scheduler_pid: int | None = None) -> Timing:
-    """Compute the tasks of a plan by a pool."""
+    These are the seconds since the start, those in its realisations, and the processor seconds so far of this process
+    and of the cluster's scheduler; NaN where there is none.
+    """
     rounds, variables = Rounds(plan), tuple(plan.scene.output.variables)
     tasks = split_into_tasks(plan, rounds.begin(), variables, pool.workers, runs_per_task=1)
     rows: list[tuple[float, float, float, float]] = []
@@ -54,61 +44,64 @@ def timed_batch(plan: Plan, pool: Pool, scheduler_pid: int | None = None) -> Tim
         rows.append((time.perf_counter() - started, inside, time.process_time(), scheduler))
 
     pool.compute(iter(tasks), threading.Event(), sink)
-    return Timing(*np.array(rows).T)
+    return np.array(rows).T
 
 
-def speed_ups(count: int, tasks: int, repeats: int) -> dict[str, dict[str, list[float]]]:
-    """Measure for threads and processes how many times as fast two workers are as one, and the seconds inside a task.
+def by_workers(count: int, tasks: int, repeats: int) -> xr.Dataset:
+    """Measure how many times as fast two workers are as one, each repeat, on tasks of one large realisation.
 
-    Taken in turn, on tasks of one large realisation. Threads count from the start on; processes once all have started,
-    for which the first four tasks a worker are left out.
+    It counts once all workers have started, which leaves out the first four tasks a worker.
     """
     plan = make_plan(small_scene(count=count, steps=200, batch={"realizations": tasks}))
-    pools: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
     timed_batch(plan, Threads(2))
-    found: dict[str, dict[str, list[float]]] = {name: {} for name in pools}
-    for _ in range(repeats):
-        for name, figures in found.items():
-            taken = {}
-            for workers in (1, 2):
-                batch = timed_batch(plan, pools[name](workers))
-                threads = name == "threads"
-                taken[workers] = batch.arrival[-1] / tasks if threads else batch.per_task(batch.arrival, 4 * workers)
-                figures.setdefault(f"inside_{workers}", []).append(float(batch.inside.mean()))
-            figures.setdefault("speed_up", []).append(float(taken[1] / taken[2]))
-    return found
+    each, inside = np.empty((2, len(POOLS), repeats, 2))
+    for repeat, (i, pool), workers in itertools.product(range(repeats), enumerate(POOLS.values()), (1, 2)):
+        arrival, seconds, *_ = timed_batch(plan, pool(workers))
+        each[i, repeat, workers - 1], inside[i, repeat, workers - 1] = _per_task(arrival, 4 * workers), seconds.mean()
+    over = ("pool", "repeat")
+    variables = {
+        "speed_up": (over, each[..., 0] / each[..., 1], named("time with one worker over time with two")),
+        "task_time": (over, inside[..., 0], named("time in the realisation of a task, one worker", "s")),
+    }
+    return xr.Dataset(variables, {"pool": list(POOLS)})
 
 
-class Overhead(NamedTuple):
-    """Times of tasks that do next to nothing."""
+def by_scheduler(tasks: int, repeats: int, workers: tuple[int, ...]) -> xr.Dataset:
+    """Measure what a task costs that does next to nothing, for numbers of workers; medians."""
+    found = np.moveaxis(np.array([_overheads(tasks, count, repeats) for count in workers]), -1, 0)
+    about = {
+        "task_overhead": "overhead of a task",
+        "task_caller": "processor time of the caller for a task",
+        "task_scheduler": "processor time of the scheduler for a task",
+    }
+    variables = {
+        name: (("workers", "scheduler"), values, named(about[name], "s"))
+        for name, values in zip(about, found, strict=True)
+    }
+    return xr.Dataset(variables, {"workers": list(workers), "scheduler": list(SCHEDULERS)}, {"tasks": tasks})
 
-    each: float
-    """Seconds a task, besides its realisation."""
-    start: float
-    """Seconds until the first is there."""
-    caller: float
-    """Processor seconds a task of the calling process; NaN where the tasks are computed in it."""
-    scheduler: float
-    """Processor seconds a task of the cluster's scheduler; NaN where there is none."""
 
+def _overheads(tasks: int, workers: int, repeats: int) -> Floats:
+    """Return for each scheduler the seconds of a task beside its realisation, of the caller and of the scheduler.
 
-def overheads(tasks: int, workers: int, repeats: int) -> dict[str, Overhead]:
-    """Measure each scheduler, in turn; the first tenth of the tasks is left out."""
+    The first tenth of the tasks is left out. Threads have no caller beside them.
+    """
     plan = make_plan(small_scene(batch={"realizations": tasks}))
-    rows: dict[str, list[Overhead]] = {name: [] for name in SCHEDULERS}
-    skipped = tasks // 10
+    found, skipped = np.full((repeats, len(SCHEDULERS), 3), np.nan), tasks // 10
     with _cluster(workers) as (address, scheduler_pid), connected(address, None) as cluster:
-        pools: dict[str, Pool] = dict(zip(SCHEDULERS, (Threads(workers), Processes(workers), cluster), strict=True))
+        pools: tuple[Pool, ...] = (Threads(workers), Processes(workers), cluster)
         timed_batch(plan, cluster)  # the workers load what they need
-        for _ in range(repeats):
-            for name, pool in pools.items():
-                batch = timed_batch(plan, pool, scheduler_pid if name == "distributed" else None)
-                inside = float(batch.inside[skipped + 1 :].mean())
-                each = batch.per_task(batch.arrival, skipped) - inside / workers
-                caller = math.nan if name == "threads" else batch.per_task(batch.caller, skipped)
-                scheduler = batch.per_task(batch.scheduler, skipped)
-                rows[name].append(Overhead(each, float(batch.arrival[0]), caller, scheduler))
-    return {name: Overhead(*np.median(np.array(row), axis=0).tolist()) for name, row in rows.items()}
+        for repeat, (i, pool) in itertools.product(range(repeats), enumerate(pools)):
+            arrival, inside, *processor = timed_batch(plan, pool, scheduler_pid if pool is cluster else None)
+            found[repeat, i, 0] = _per_task(arrival, skipped) - inside[skipped + 1 :].mean() / workers
+            found[repeat, i, 1:] = [_per_task(column, skipped) for column in processor]
+    found[:, 0, 1] = np.nan
+    return np.asarray(np.median(found, axis=0))
+
+
+def _per_task(column: Floats, skipped: int) -> float:
+    """Return what a task adds to a column, once ``skipped`` tasks have come back."""
+    return float(column[-1] - column[skipped]) / (len(column) - 1 - skipped)
 
 
 def _processor_seconds(pid: int) -> float:
@@ -122,16 +115,9 @@ def _cluster(workers: int) -> Iterator[tuple[str, int]]:
     """Start a dask scheduler on loopback and workers of one thread, each a process: address and scheduler's process."""
     from distributed.deploy.subprocess import SubprocessCluster
 
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        SubprocessCluster(
-            worker_class="distributed.Worker",
-            n_workers=workers,
-            threads_per_worker=1,
-            dashboard_address="127.0.0.1:0",
-            scheduler_kwargs={"dashboard": False},
-            worker_kwargs={"local_directory": folder},
-        ) as cluster,
-    ):
+    with tempfile.TemporaryDirectory() as folder, SubprocessCluster(
+        worker_class="distributed.Worker", n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0",
+        scheduler_kwargs={"dashboard": False}, worker_kwargs={"local_directory": folder},
+    ) as cluster:  # fmt: skip
         cluster.wait_for_workers(workers, timeout=60.0)
         yield cluster.scheduler_address, cluster.scheduler.process.pid

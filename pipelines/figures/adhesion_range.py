@@ -1,24 +1,21 @@
-"""Adhesion of finite range: how far JKR is right, by the Tabor number, and the cost of each model.
+"""Adhesion of finite range: how far JKR is right, by the Tabor number.
 
 One paraboloid at several Tabor numbers, its pull-off force from DMT to JKR, and for rough surfaces how far the force of
 JKR is from Dugdale's, from which the choice of model "auto" comes.
 """
 
 import math
-import time
 import warnings
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from scipy.stats import norm
 from studies.study import named
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MODULUS, WORK, RADIUS = 4e6, 0.05, 50e-6  # of a soft rubber against a rigid body [Pa], [J/m^2], [m]
 TIP = rm.Paraboloid(radius=RADIUS)
@@ -28,7 +25,6 @@ ROUGH_NUMBERS = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)  # std of the heights over the depth of the JKR pull-off
 STOPS = (2.0, 0.0, -1.0)  # of the flat, in std
 STEPS = 200
-MODELS = ("jkr", "dugdale")
 CONTROLS: tuple[Literal["force"], Literal["displacement"]] = ("force", "displacement")
 _TINY = 1e-300  # in place of no force at all
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
@@ -39,15 +35,15 @@ def strength(tabor: float) -> float:
     return tabor / rm.tabor(TIP, **_MATERIAL, strength=1.0)
 
 
-def material(model: str, tabor: float) -> dict[str, Any]:
-    """Return the arguments of a model of adhesion."""
-    return {**_MATERIAL, "adhesion": "dugdale", "strength": strength(tabor)} if model == "dugdale" else _MATERIAL
+def material(tabor: float) -> dict[str, Any]:
+    """Return the arguments of Dugdale adhesion with a Tabor number, of JKR adhesion where it is infinite."""
+    return _MATERIAL if math.isinf(tabor) else {**_MATERIAL, "adhesion": "dugdale", "strength": strength(tabor)}
 
 
 def pull_off(points: int) -> xr.Dataset:
     """Return the pull-off force [N] of the paraboloid over the Tabor number, under dead load and fixed grips."""
     numbers = NUMBERS[:: max(1, (NUMBERS.size - 1) // (points - 1))]
-    force = [[float(rm.pull_off(TIP, **material("dugdale", mu), control=control).force) for control in CONTROLS]
+    force = [[float(rm.pull_off(TIP, **material(mu), control=control).force) for control in CONTROLS]
              for mu in numbers.tolist()]  # fmt: skip
     return xr.Dataset(
         {"pull_off_force": (("tabor", "control"), force, named("pull-off force", "N"))},
@@ -56,35 +52,27 @@ def pull_off(points: int) -> xr.Dataset:
 
 
 def rough(count: int) -> xr.Dataset:
-    """Return how far JKR is from Dugdale, over the largest force, and seconds an asperity in contact and step."""
+    """Return how far the force of JKR is from Dugdale's, over the largest."""
     depth = -float(rm.pull_off(TIP, **_MATERIAL).indentation)
     quantiles = norm.ppf((np.arange(count) + 0.5) / count)
     error = np.empty((len(RATIOS), len(STOPS), ROUGH_NUMBERS.size))
-    cost = np.empty((len(MODELS), *error.shape))
-    for (i, j, k), _ in np.ndenumerate(error):
+    for i, j, k in np.ndindex(error.shape):
         std, mu = RATIOS[i] * depth, float(ROUGH_NUMBERS[k])
         columns = {"height": ("asperity", quantiles * std), "radius": ("asperity", np.full(count, RADIUS))}
         ensemble = xr.Dataset(columns, attrs={"shape": "paraboloid"})
         path = np.linspace(5.0 * std + WORK / strength(mu), STOPS[j] * std, STEPS)
-        force = []
-        for number, model in enumerate(MODELS):
-            started = time.perf_counter()
-            curve = rm.load_separation(ensemble, separation=path, unload=True, **material(model, mu))
-            visits = max(float(curve.contact_count.sum()), 1.0)
-            cost[number, i, j, k] = (time.perf_counter() - started) / visits
-            force.append(curve.force.to_numpy())
-        error[i, j, k] = np.abs(force[0] - force[1]).max() / max(np.abs(force[1]).max(), _TINY)
+        jkr, dugdale = (
+            rm.load_separation(ensemble, separation=path, unload=True, **material(number)).force
+            for number in (math.inf, mu)
+        )
+        error[i, j, k] = abs(jkr - dugdale).max() / max(float(abs(dugdale).max()), _TINY)
     dims = ("roughness", "stop", "rough_tabor")
     return xr.Dataset(
-        {
-            "jkr_error": (dims, error, named("largest difference of the forces over the largest")),
-            "seconds": (("law", *dims), cost, named("time an asperity in contact and step", "s")),
-        },
+        {"jkr_error": (dims, error, named("largest difference of the forces over the largest"))},
         coords={
             "roughness": ("roughness", list(RATIOS), {"long_name": "std of the heights over the depth at pull-off"}),
             "stop": ("stop", list(STOPS), {"long_name": "closest separation, in std of the heights"}),
             "rough_tabor": ("rough_tabor", ROUGH_NUMBERS, {"long_name": "Tabor number"}),
-            "law": list(MODELS),
         },
     )
 
@@ -93,24 +81,20 @@ def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
-        rough(10)  # compiled before it is timed
         result = xr.merge([pull_off(3), rough(300)] if quick else [pull_off(NUMBERS.size), rough(5000)])
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw curves, pull-off forces, and the error of JKR."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(15, 4.6), layout="constrained")
     curves, off, error = figure.subplots(1, 3)
     scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL).indentation)
     for i, mu in enumerate((*SHOWN, math.inf)):
         color, label = ("k", "JKR") if math.isinf(mu) else (f"C{i}", f"Tabor number {mu:g}")
-        given = material("jkr" if math.isinf(mu) else "dugdale", mu)
-        lowest = float(rm.pull_off(TIP, **given).indentation)
+        lowest = float(rm.pull_off(TIP, **material(mu)).indentation)
         delta = lowest + (2.0 * depth - lowest) * np.linspace(0.0, 1.0, 400) ** 2
-        force = rm.indent(TIP, **given, indentation=delta).force / scale
+        force = rm.indent(TIP, **material(mu), indentation=delta).force / scale
         curves.plot(delta / depth, force, color=color, label=label)
         curves.plot(delta[0] / depth, force[0], "o", color=color, ms=4)
     curves.set(xlabel="indentation / |δc| of JKR", ylabel="force / πwR", xlim=(-8, 2), ylim=(-2.1, 2.0))
@@ -133,10 +117,6 @@ def draw(result: xr.Dataset) -> "Figure":
 
 
 def report(result: xr.Dataset) -> str:
-    """Return the largest error of JKR over the rule, and the cost of each model."""
+    """Return the largest error of JKR over the rule."""
     worst = float((result.jkr_error * result.roughness * result.rough_tabor / SHIFT).max())
-    lines = [f"the error of JKR is at most {worst:.2f} of {SHIFT:g} |δc|/std/Tabor number"]
-    for name in result.law.to_numpy():
-        median = 1e9 * float(result.seconds.sel(law=name).median())
-        lines.append(f"{name:<8} {median:.0f} ns an asperity in contact and step, median")
-    return "\n".join(lines)
+    return f"the error of JKR is at most {worst:.2f} of {SHIFT:g} |δc|/std/Tabor number"

@@ -1,25 +1,13 @@
 """The pictures of one asperity under JKR adhesion, drawn from its numbers."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from studies.study import Draw
 
 import roughmdr as rm
-from figures.drawing import (
-    COMPRESSED,
-    STRETCHED,
-    draw_axes,
-    draw_body,
-    draw_jump,
-    draw_length,
-    draw_springs,
-)
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_jump, draw_length, draw_springs
 
 _STEPS = {
     "pressed": "1  pressed by g(a), without adhesion",
@@ -28,10 +16,8 @@ _STEPS = {
 }
 
 
-def draw_two_steps(result: xr.Dataset) -> "Figure":
+def draw_two_steps(result: xr.Dataset) -> Figure:
     """Draw profile, springs and surface of each stage, in units of the contact at first touch."""
-    from matplotlib.figure import Figure
-
     a0, d0 = float(result.touch_radius), float(result.touch_depth)
     cone, inside = rm.Cone(slope=result.attrs["slope"]), int(result.attrs["springs_inside"])
     number = result.spring.to_numpy()
@@ -59,7 +45,7 @@ def draw_two_steps(result: xr.Dataset) -> "Figure":
     return figure
 
 
-def _label(ax: "Axes", lengths: tuple[float, float, float], size: float, *, pressed: bool) -> None:
+def _label(ax: Axes, lengths: tuple[float, float, float], size: float, *, pressed: bool) -> None:
     """Draw the lengths a, g(a), dl(a) and delta, with guide lines to where they are taken from."""
     a, g, dl = lengths
     delta, above = g - dl, dl + (0.25 if pressed else 0.12) * size
@@ -85,10 +71,8 @@ _KNOWN = {  # under fixed grips and under dead load
 }
 
 
-def draw_pull_off_curves(result: xr.Dataset) -> "Figure":
+def draw_pull_off_curves(result: xr.Dataset) -> Figure:
     """Draw for each shape the force over its pull-off force under dead load, against depth over that at pull-off."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(13, 4.8), layout="constrained")
     for ax, name in zip(figure.subplots(1, 3, sharey=True), result["shape"].to_numpy(), strict=True):
         shape = result.sel(shape=name)
@@ -123,10 +107,8 @@ def draw_pull_off_curves(result: xr.Dataset) -> "Figure":
     return figure
 
 
-def draw_shape_and_pull_off(result: xr.Dataset) -> "Figure":
+def draw_shape_and_pull_off(result: xr.Dataset) -> Figure:
     """Draw the pull-off force over that of a flat face of the same width, against the exponent, with the worst ones."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(7.6, 5.0), layout="constrained")
     ax = figure.subplots()
     for color, ratio in zip((COMPRESSED, STRETCHED, "#3b7a57"), result.relative_stretch.to_numpy(), strict=True):

@@ -1,20 +1,22 @@
-"""The row of springs: how it loads and unloads one asperity, and its error against its run time.
+"""The row of springs: how it loads and unloads one asperity, and how it converges.
 
 The row is drawn as in Fig. 8 of M. Heß, "On the reduction method of dimensionality: the exact mapping of axisymmetric
-contact problems with and without adhesion", 2012. Errors are those at given indentations against the closed forms; run
-times are those of ``rm.indent``, per contact.
+contact problems with and without adhesion", 2012. Errors are those at given indentations against the closed forms.
 """
 
-import time
+import itertools
 import warnings
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from studies.study import named
+from studies.study import Draw, named
 
 import roughmdr as rm
+from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_length, draw_springs
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
@@ -43,6 +45,13 @@ QUICK = COUNTS[:4]
 DEPTHS = np.geomspace(0.31, 23.0, 16)  # above the fold, over its depth
 EXACT = 1e-12  # errors below are roundings
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
+_COLORS = {"none": COMPRESSED, "jkr": STRETCHED}
+_LABELS = {"none": "no adhesion", "jkr": "JKR"}
+_STAGES = {
+    "pressed": "A  loading: springs attach up to a stretch u of Δℓ(x)",
+    "pulled": "B  back at first touch: all are stretched",
+    "last contact": "C  the last contact under fixed grips",
+}
 
 
 def row_of_springs(points: int = 2401) -> xr.Dataset:
@@ -83,28 +92,19 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
     )
 
 
-def errors_of(shape: Shape, work: float, counts: NDArray[np.int64], repeats: int) -> tuple[Floats, float]:
-    """Return the errors of force and radius and the time per contact [s] of each count, and that of closed forms."""
+def errors_of(shape: Shape, work: float, counts: NDArray[np.int64]) -> Floats:
+    """Return the errors of force and radius for each number of springs."""
     off = rm.pull_off(shape, **_MATERIAL)
     depth = -float(off.indentation) * (DEPTHS - (1.0 if work else 0.0))
-    exact, seconds = _timed(shape, work, depth, repeats)
+    given: Any = {"effective_modulus": MODULUS, "work": work, "indentation": depth}
+    exact = rm.indent(shape, **given)
     scale = np.abs(exact.force) - float(rm.pull_off(shape, **_MATERIAL, control="force").force)
-    points = []
+    errors = []
     for count in counts:
-        row, time_of_row = _timed(shape, work, depth, repeats, method="springs", springs=int(count))
+        row = rm.indent(shape, **given, method="springs", springs=int(count))
         relative = (row.force - exact.force) / scale, row.contact_radius / exact.contact_radius - 1.0
-        points.append([*(float(np.sqrt((error**2).mean())) for error in relative), time_of_row])
-    return np.array(points), seconds
-
-
-def _timed(shape: Shape, work: float, depth: Floats, repeats: int, **method: Any) -> tuple[xr.Dataset, float]:
-    """Return the contacts, by closed forms or by springs, and the shortest time for one [s]."""
-    seconds = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        found = rm.indent(shape, effective_modulus=MODULUS, work=work, indentation=depth, **method)
-        seconds.append((time.perf_counter() - started) / depth.size)
-    return found, min(seconds)
+        errors.append([float(np.sqrt((error**2).mean())) for error in relative])
+    return np.array(errors)
 
 
 def order(counts: NDArray[np.int64], errors: Floats) -> float:
@@ -114,21 +114,17 @@ def order(counts: NDArray[np.int64], errors: Floats) -> float:
     return -float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
 
 
-def errors(counts: NDArray[np.int64], repeats: int) -> xr.Dataset:
-    """Return errors, orders and run times of all shapes, with and without adhesion."""
-    found = [[errors_of(shape, work, counts, repeats) for work in ADHESION.values()] for shape in SHAPES.values()]
-    points = np.array([[points for points, _ in one] for one in found])
-    exact = np.array([[seconds for _, seconds in one] for one in found])
-    orders = np.array([[[order(counts, errors) for errors in one.T[:2]] for one in both] for both in points])
+def errors(counts: NDArray[np.int64]) -> xr.Dataset:
+    """Return errors and orders of all shapes, with and without adhesion."""
+    found = np.array([[errors_of(shape, work, counts) for work in ADHESION.values()] for shape in SHAPES.values()])
+    orders = np.apply_along_axis(lambda one: order(counts, one), 2, found)
     over = ("shape", "adhesion", "springs")
     return xr.Dataset(
         {
-            "force_error": (over, points[..., 0], named("relative error of the force, root mean square")),
-            "radius_error": (over, points[..., 1], named("relative error of the contact radius, root mean square")),
+            "force_error": (over, found[..., 0], named("relative error of the force, root mean square")),
+            "radius_error": (over, found[..., 1], named("relative error of the contact radius, root mean square")),
             "force_order": (over[:2], orders[..., 0], named("order of the force in the number of springs")),
             "radius_order": (over[:2], orders[..., 1], named("order of the contact radius in the number of springs")),
-            "time": (over, points[..., 2], named("run time per contact", "s")),
-            "time_exact": (over[:2], exact, named("run time per contact of the closed forms", "s")),
         },
         coords={
             "shape": ("shape", list(SHAPES), {"long_name": "shape of the asperity"}),
@@ -142,19 +138,99 @@ def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure; ``quick`` on short rows."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)  # both sides of each comparison suppose small slopes
-        result = xr.merge([row_of_springs(), errors(QUICK, 1) if quick else errors(COUNTS, 2)])
+        result = xr.merge([row_of_springs(), errors(QUICK if quick else COUNTS)])
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 
 
 def report(result: xr.Dataset) -> str:
-    """Return the orders, and the errors and run times of the longest row."""
+    """Return the orders, and the error of the longest row."""
     lines, last = [], result.isel(springs=-1)
     for name in result["shape"].to_numpy():
         for model in result.adhesion.to_numpy():
             one = last.sel(shape=name, adhesion=model)
             lines.append(
-                f"{name:<21} {model:<5} force: order {float(one.force_order):.2f}, error {float(one.force_error):.1e}; "
-                f"radius: order {float(one.radius_order):.2f}; {int(one.springs)} springs "
-                f"{1e3 * float(one.time):.3g} ms, closed forms {1e3 * float(one.time_exact):.3g} ms"
+                f"{name:<21} {model:<5} force: order {float(one.force_order):.2f}, error {float(one.force_error):.1e} "
+                f"with {int(one.springs)} springs; radius: order {float(one.radius_order):.2f}"
             )
     return "\n".join(lines)
+
+
+def draw_row(result: xr.Dataset) -> Figure:
+    """Draw the row at three points of its path, and the path over the exact one; lengths in micrometres."""
+    figure = Figure(figsize=(15, 7.6), layout="constrained")
+    grid = figure.add_gridspec(1, 2, width_ratios=[1.25, 1.0])
+    rows, path = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
+    axes = rows.subplots(3, 1, sharex=True)
+    for ax, (name, title) in zip(axes, _STAGES.items(), strict=True):
+        stage = result.sel(stage=name)
+        _draw_stage(ax, stage, result.attrs["radius"])
+        delta, a, force = (1e6 * float(stage[f"stage_{one}"]) for one in ("indentation", "contact_radius", "force"))
+        ax.set_title(title, fontsize=10.5, loc="left")
+        ax.set_title(f"δ = {delta:+.3f} µm,  a = {a:.2f} µm,  P = {force:.2f} µN", fontsize=9, loc="right")
+    axes[-1].set_xlabel("x [µm]")
+    rows.supylabel("height above the undeformed surface [µm]", fontsize=10)
+    _draw_path(path.subplots(), result)
+    return figure
+
+
+def _draw_stage(ax: Axes, stage: xr.Dataset, radius: float) -> None:
+    """Draw the MDR profile of the tip, the springs and the stretch of the outermost one in contact."""
+    positions, ends = (1e6 * stage[name].to_numpy() for name in ("spring_position", "spring_end"))
+    bottom, top, half = -0.95, 0.8, 1.02 * float(positions[-1])
+    x = np.linspace(-half, half, 401)
+    g = 1e6 * rm.Paraboloid(radius=radius).g(1e-6 * np.abs(x))
+    draw_body(ax, x, g - 1e6 * float(stage.stage_indentation), top)
+    contact = np.abs(positions) < 1e6 * float(stage.stage_contact_radius)
+    width = 0.2 * float(positions[1] - positions[0])
+    draw_springs(ax, positions, ends, bottom, width=width, attached=contact)
+    outer = np.flatnonzero(contact)[-1]
+    x_outer, u = float(positions[outer]), float(ends[outer])
+    draw_length(ax, (x_outer, 0.0), (x_outer, u), "u", (x_outer + 0.25, 0.5 * u))
+    ax.set(xlim=(-half, half), ylim=(bottom - 0.02, top))
+
+
+def _draw_path(ax: Axes, result: xr.Dataset) -> None:
+    """Draw force against indentation, loading and unloading."""
+    depth = 1e6 * result.path_indentation.to_numpy()
+    turning, springs = int(np.argmax(depth)), result.sizes["spring"] // 2 - 1
+    for part, color, label in (
+        (slice(0, turning + 1), COMPRESSED, "loading"), (slice(turning, None), STRETCHED, "unloading")
+    ):  # fmt: skip
+        exact, row = (1e6 * result[name][part] for name in ("path_force_exact", "path_force"))
+        ax.plot(depth[part], exact, color=color, lw=5.0, alpha=0.25, label=f"{label}, exact")
+        ax.plot(depth[part], row, color=color, lw=1.1, label=f"{label}, {springs} springs a side")
+    for name, title in _STAGES.items():
+        stage = result.sel(stage=name)
+        at = 1e6 * float(stage.stage_indentation), 1e6 * float(stage.stage_force)
+        ax.plot(*at, "ko", ms=5, zorder=4)
+        ax.annotate(title[0], at, (7, -12), textcoords="offset points", fontsize=12, weight="bold")
+    draw_axes(ax)
+    ax.set(xlabel="indentation δ [µm]", ylabel="force P [µN]")
+    ax.set_title("Every tooth is a pair of springs that attaches or detaches", fontsize=10.5)
+    ax.legend(frameon=False, fontsize=9.5, loc="upper left")
+
+
+def draw_errors(result: xr.Dataset) -> Figure:
+    """Draw the errors of each shape against the number of springs."""
+    figure = Figure(figsize=(16, 8.5), layout="constrained")
+    axes = figure.subplots(3, 4, sharex=True, sharey=True)
+    for ax, name in zip(axes.flat, result["shape"].to_numpy(), strict=False):
+        for (model, color), quantity in itertools.product(_COLORS.items(), ("force", "radius")):
+            one = result.sel(shape=name, adhesion=model)
+            order = float(one[f"{quantity}_order"])
+            text = "exact" if np.isnan(order) else f"$N^{{-{order:.2f}}}$"
+            errors = one[f"{quantity}_error"].where(not np.isnan(order))
+            style = "o-" if quantity == "force" else "s:"
+            label = f"{quantity}, {_LABELS[model]}: {text}"
+            ax.plot(one.springs, errors, style, color=color, ms=3, lw=1.0, label=label)
+        ax.set(xscale="log", yscale="log", ylim=(1e-14, 0.1))
+        ax.set_title(name, fontsize=10.5)
+        ax.grid(color="0.92")
+        ax.legend(frameon=False, fontsize=8, loc="lower left")
+    for ax in axes[-1]:
+        ax.set_xlabel("springs N")
+    figure.supylabel("relative error, root mean square over 16 indentations", fontsize=10)
+    return figure
+
+
+PICTURES: dict[str, Draw] = {"springs_row": draw_row, "springs_error": draw_errors}

@@ -4,17 +4,20 @@ On periodic maps the summits are found exactly, by Fourier series, and by parabo
 more or less fine, fitted to the eight neighbours. Errors are those of the spread over the maps.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from oracles.gaussian_maps import gaussian_map, wave_numbers, wave_variances
 from oracles.map_summits import Series
 from studies.study import named
 
-from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits
+from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.streams import make_streams
@@ -36,7 +39,8 @@ STATISTICS = {
     "mean_curvature": ("m-1", "mean of (k1 + k2)/2"),
     "mean_correlation": ("1", "correlation of height and (k1 + k2)/2"),
 }
-FITTED = tuple(STATISTICS)[:5]  # which an ensemble of paraboloids has
+"""Units and words; of paraboloids, without a mean curvature, the first five."""
+FITTED = tuple(STATISTICS)[:5]
 
 
 def distribution_of_maps() -> SummitDistribution:
@@ -85,7 +89,6 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
     distribution, area = distribution_of_maps(), SIZE * SIZE
     streams = make_streams(1, 0)
     sample = distribution.draw(*(streams(number, drawn) for number in range(3)))
-    sampled = statistics(sums(sample), drawn / distribution.density)
     found, by_fit = [], []
     for seed in range(count):
         series = Series.of(gaussian_map(SPECTRUM, MAP_POINTS, SIZE, seed), SIZE, WAVES)
@@ -93,31 +96,29 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
         by_fit.append([sums(fitted(series, points * WAVES)) for points in grids])
     exact = np.array([sums(one) for one in found])
     detected, error = jackknife(lambda total: statistics(total, area), exact)
-    biases = []
-    for grid in range(len(grids)):
-        pairs = np.stack([exact, np.array(by_fit)[:, grid]], axis=1)
-        biases.append(jackknife(lambda pair: statistics(pair[1], area) / statistics(pair[0], area) - 1.0, pairs))
+    pairs = [np.stack([exact, one], axis=1) for one in np.moveaxis(np.array(by_fit), 1, 0)]
+    biases = [jackknife(lambda pair: statistics(pair[1], area) / statistics(pair[0], area) - 1.0, one) for one in pairs]
+    bias, bias_error = np.moveaxis(np.array(biases), 1, 0)
+    over = ("points_per_wave", "statistic")
     columns: dict[str, Any] = {
-        f"summit_{name}": (
-            "summit",
-            np.concatenate([getattr(one, name) for one in found]),
-            named(f"{name}, on maps", "m"),
-        )
-        for name in ("height", "radius")
+        "sampled": ("statistic", statistics(sums(sample), drawn / distribution.density), named("sampled")),
+        "detected": ("statistic", detected, named("on maps")),
+        "error": ("statistic", error, named("standard error on maps")),
+        "bias": (over, bias, named("relative bias of the fit to neighbours")),
+        "bias_error": (over, bias_error, named("standard error of the bias")),
     }
-    for i, (name, (unit, text)) in enumerate(STATISTICS.items()):
-        columns[f"{name}_sampled"] = ((), sampled[i], named(f"{text}, sampled", unit))
-        columns[f"{name}_detected"] = ((), detected[i], named(f"{text}, on maps", unit))
-        columns[f"{name}_error"] = ((), error[i], named(f"{text}, standard error on maps", unit))
-        if name in FITTED:
-            for j, (suffix, label) in enumerate((("bias", "bias"), ("bias_error", "standard error of the bias"))):
-                values = [bias[j][i] for bias in biases]
-                columns[f"{name}_{suffix}"] = (
-                    "points_per_wave", values, named(f"{text}, fit to neighbours, relative {label}")
-                )  # fmt: skip
-    coords = {"points_per_wave": ("points_per_wave", list(grids), named("points of the grid in a shortest wave"))}
+    for name in ("height", "radius"):
+        columns[f"summit_{name}"] = (
+            "summit", np.concatenate([getattr(one, name) for one in found]), named(f"{name}, on maps", "m"),
+        )  # fmt: skip
+    coords = {
+        "statistic": list(STATISTICS),
+        "unit": ("statistic", [unit for unit, _ in STATISTICS.values()], {"long_name": "unit of a statistic"}),
+        "points_per_wave": ("points_per_wave", list(grids), named("points of the grid in a shortest wave")),
+    }
     moments = distribution.moments
-    attrs = {"maps": count, "summits": columns["summit_height"][1].size, **moments._asdict(), "alpha": moments.alpha}
+    number = sum(one.height.size for one in found)
+    attrs = {"maps": count, "summits": number, **moments._asdict(), "alpha": moments.alpha}
     return xr.Dataset(columns, coords, attrs)
 
 
@@ -130,12 +131,61 @@ def report(result: xr.Dataset) -> str:
     """Return the statistics of the sample beside those of the maps, and the bias of the fit to neighbours."""
     lines = []
     for name, (unit, text) in STATISTICS.items():
-        sampled, detected, error = (float(result[f"{name}_{part}"]) for part in ("sampled", "detected", "error"))
+        sampled, detected, error = (
+            float(result[part].sel(statistic=name)) for part in ("sampled", "detected", "error")
+        )
         off = (sampled - detected) / error
         lines.append(
             f"{text:<40} sampled {sampled:.5g}, on maps {detected:.5g} ± {error:.2g} {unit}: {off:+.1f} errors"
         )
     for name in FITTED:
-        biases = ", ".join(f"{100.0 * value:+.2f} %" for value in result[f"{name}_bias"].to_numpy())
+        biases = ", ".join(f"{100.0 * value:+.2f} %" for value in result.bias.sel(statistic=name).to_numpy())
         lines.append(f"{STATISTICS[name][1]:<40} fit to neighbours off by {biases}")
     return "\n".join(lines)
+
+
+def draw(result: xr.Dataset) -> Figure:
+    """Draw the distribution beside the summits of the maps, and the bias of the fit to neighbours."""
+    distribution = distribution_of_maps()
+    figure = Figure(figsize=(11, 8), layout="constrained")
+    heights, curvatures, conditional, bias = figure.subplots(2, 2).ravel()
+    moments = distribution.moments
+    rms, unit = math.sqrt(moments.m0), math.sqrt(moments.m4)
+    summits, k = result.summit_height.to_numpy() / rms, 1.0 / (result.summit_radius.to_numpy() * unit)
+    root, z = np.linspace(0.01, 6.0, 600), np.linspace(-3.0, 5.0, 401)
+    of_root = 2.0 * root * product_density(root**2)
+    given = rms * distribution.height_density(rms * z[:, None], root**2)
+    law_k = 1.0 / distribution.radius(root**2) / unit
+    heights.hist(summits, 80, density=True, color="0.8", label=f"{summits.size} summits of the maps")
+    heights.plot(z, np.trapezoid(given * of_root, root, axis=1), "C0", label="their distribution")
+    heights.plot(z, np.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi), "C1:", label="heights of the surface")
+    heights.set(xlabel="height / √m0", ylabel="density", title=f"heights, α = {moments.alpha:.1f}", xlim=(-3, 5))
+    curvatures.hist(k, 80, density=True, color="0.8", label="summits of the maps")
+    curvatures.plot(law_k, of_root * np.gradient(root, law_k), "C0", label="their distribution")
+    curvatures.set(xlabel="√(k1 k2) / √m4", ylabel="density", title="curvatures", xlim=(0, 4))
+    mean = np.trapezoid(z[:, None] * given, z, axis=0)
+    spread = np.sqrt(np.trapezoid((z[:, None] - mean) ** 2 * given, z, axis=0))
+    conditional.fill_between(law_k, mean - spread, mean + spread, color="C0", alpha=0.2, label="± standard deviation")
+    conditional.plot(law_k, mean, "C0", label="their distribution, mean")
+    edges = np.linspace(0.1, 3.1, 16)
+    bins = [summits[(k >= low) & (k < high)] for low, high in itertools.pairwise(edges)]
+    centres, means, stds = 0.5 * (edges[1:] + edges[:-1]), [part.mean() for part in bins], [part.std() for part in bins]
+    conditional.errorbar(centres, means, stds, fmt="ko", ms=4, lw=0.8, capsize=3, label="the maps")
+    conditional.set(xlabel="√(k1 k2) / √m4", ylabel="height / √m0", title="height given curvature", xlim=(0, 3.2))
+    _draw_bias(bias, result)
+    for axes in (heights, curvatures, conditional, bias):
+        axes.legend(fontsize=8)
+    return figure
+
+
+def _draw_bias(bias: Axes, result: xr.Dataset) -> None:
+    """Draw how far paraboloids fitted to neighbours are off, over the fineness of the grid."""
+    for name in ("density", "mean_height", "height_variance", "geometric_curvature"):
+        values, errors = (100.0 * result[part].sel(statistic=name) for part in ("bias", "bias_error"))
+        bias.errorbar(result.points_per_wave, values, errors, fmt="o-", ms=4, capsize=3, label=STATISTICS[name][1])
+    bias.set_yscale("symlog", linthresh=1.0)
+    bias.yaxis.set_major_formatter("{x:g}")
+    bias.axhline(0.0, color="k", lw=0.6)
+    bias.set_xscale("log", base=2)
+    bias.set_xticks(result.points_per_wave.to_numpy(), [str(int(n)) for n in result.points_per_wave])
+    bias.set(xlabel="points a shortest wave", ylabel="off by [%]", title="paraboloids fitted to neighbours")

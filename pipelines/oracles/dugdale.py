@@ -8,8 +8,8 @@ The curve is I + beta (m theta - c + a) = pi w/(2 sigma0). Along it delta grows 
 force where a D > beta c theta^2, and k = 2 E* (a - beta c theta^2/D); a = 0 is the limit theta = pi/2.
 """
 
-from collections.abc import Callable
 from functools import cache
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,28 +25,22 @@ FIELDS = {"contact_radius": "a", "cohesive_radius": "c", "indentation": "delta",
 """The fields of a state by the names of results."""
 
 
-class Arithmetic(NamedTuple):
-    """Functions of doubles, or of numbers of any precision, and nodes x, 1 - x and weights on (0, 1)."""
-
-    number: Callable[[Any], Any]
-    sqrt: Callable[..., Array]
-    sin: Callable[..., Array]
-    log: Callable[..., Array]
-    exp: Callable[..., Array]
-    atan2: Callable[..., Array]
-    rule: tuple[Array, Array, Array]
-
-
 @cache
-def arithmetic(digits: int) -> Arithmetic:
-    """Return the arithmetic of ``digits``, of doubles where that is 0."""
+def arithmetic(digits: int) -> SimpleNamespace:
+    """Return functions of numbers of ``digits``, of doubles where that is 0, and a rule on (0, 1).
+
+    The rule is nodes x, 1 - x and weights.
+    """
     nodes: Array = np.array(tanh_sinh(digits or 16, STEPS if digits else 12))
-    if digits:
-        sqrt, sin, log, exp = (np.frompyfunc(function, 1, 1) for function in (mp.sqrt, mp.sin, mp.log, mp.exp))
-        x, rest, weight = nodes[:, 0], nodes[::-1, 0], nodes[:, 1]
-        return Arithmetic(mp.mpf, sqrt, sin, log, exp, np.frompyfunc(mp.atan2, 2, 1), (x, rest, weight))
-    x, weight = nodes.astype(np.float64).T
-    return Arithmetic(float, np.sqrt, np.sin, np.log, np.exp, np.arctan2, (x, x[::-1], weight))
+    if not digits:
+        x, weight = nodes.astype(np.float64).T
+        rule = x, x[::-1], weight
+        return SimpleNamespace(
+            number=float, sqrt=np.sqrt, sin=np.sin, log=np.log, exp=np.exp, atan2=np.arctan2, rule=rule
+        )
+    names = {"sqrt": 1, "sin": 1, "log": 1, "exp": 1, "atan2": 2}
+    functions = {name: np.frompyfunc(getattr(mp, name), count, 1) for name, count in names.items()}
+    return SimpleNamespace(number=mp.mpf, rule=(nodes[:, 0], nodes[::-1, 0], nodes[:, 1]), **functions)
 
 
 class Integrals(NamedTuple):
@@ -87,11 +81,9 @@ class Dugdale:
         self.range = work / strength
         """The gap [m] at which cohesion ends."""
 
-    def touching(
-        self, a: Array, c: Array, m_theta: tuple[Array, Array], g_push: tuple[Array, Array], J: Array
-    ) -> State:
+    def touching(self, a: Array, c: Array, m: Array, theta: Array, found: Integrals) -> State:
         """Return the states on the curve with a > 0, from their integrals."""
-        (m, theta), (g, push) = m_theta, g_push
+        g, push, _, J = found
         growth = J - self.beta * m * m / (c * (c + a))
         pull = self.beta * c * theta**2
         force = 2 * self.effective_modulus * push - 2 * self.strength * (a * m + c * c * theta)
@@ -184,7 +176,7 @@ class Cohesion(Dugdale):
         """Return psi where a cos(psi) = r; 0 beyond a."""
         edge = self.math.number(r)
         inner = np.minimum(edge, a)
-        return self.math.atan2(self.math.sqrt((a - inner) * (a + inner)), edge)
+        return np.asarray(self.math.atan2(self.math.sqrt((a - inner) * (a + inner)), edge))
 
     def excess(self, a: Array, m: Array) -> tuple[Array, Array]:
         """Return 2 sigma0 gap(c)/(pi w), which is 1 on the curve, and its derivative by ln(m)."""
@@ -207,14 +199,14 @@ class Cohesion(Dugdale):
             if self.end is not None:  # short of the equator
                 m = np.minimum(m, (before + self.math.sqrt((self.end - a) * (self.end + a))) / 2)
             if np.max(np.abs(step)) < small:
-                return m
+                return np.asarray(m)
         raise ArithmeticError("no cohesive radius")
 
     def at(self, a: Array, m: Array, corner: Array | None = None, inside: bool = False) -> State:
         """Return the states with contact radii ``a`` > 0 [m] and ``m`` [m] on the curve; c is given at a corner."""
         c, theta = self.math.sqrt(a * a + m * m) if corner is None else corner, self.math.atan2(m, a)
         found = self.integrals(a, m, c, inside)
-        return self.touching(a, c, (m, theta), (found.g, found.push), found.J)
+        return self.touching(a, c, m, theta, found)
 
     def lifted(self, c: Array, inside: bool = False) -> State:
         """Return the states with a = 0 and cohesive radii ``c`` [m]."""

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from oracles.dugdale import Cohesion, State
-from oracles.multiprecision import Number, bracket, mp, root
+from oracles.multiprecision import Number, bracket, mp, radius_between, root
 from oracles.profiles import Floats, Profile
 
 WORKING = 55
@@ -53,20 +53,16 @@ class Curve:
         self.size = mp.mpf(size)
         self.corners = [b for b, _ in profile.corners]
 
-    def _radius(self, y: Number) -> Number:
-        end = self.exact.end
-        return self.size * mp.exp(y) if end is None else end / (1 + mp.exp(-y))
-
     @cached_property
     def touch(self) -> Number:
         """The cohesive radius [m] below which a = 0."""
         exact = self.exact
 
         def above(y: Number) -> Number:
-            c = self._radius(y)
+            c = radius_between(0, exact.end, self.size, y)
             return mp.log((exact.height(c) + exact.beta * c * (1 - 2 / mp.pi)) / exact.range)
 
-        return self._radius(root(above, *bracket(above)))
+        return radius_between(0, exact.end, self.size, root(above, *bracket(above)))
 
     def state(self, place: Place) -> State:
         """Return the state at a place."""
@@ -104,11 +100,10 @@ class Curve:
         """Return the contact radius [m] at a cohesive radius of ``c``, which is beyond ``touch``."""
 
         def above(y: Number) -> Number:
-            a = np.array([c / (1 + mp.exp(-y))])
+            a = np.array([radius_between(0, c, c, y)])
             return 1 - self.exact.excess(a, np.array([mp.sqrt((c - a[0]) * (c + a[0]))]))[0][0]
 
-        y = root(above, *bracket(above))
-        return c / (1 + mp.exp(-y))
+        return radius_between(0, c, c, root(above, *bracket(above)))
 
     @cached_property
     def folds(self) -> dict[str, list[Fold]]:
@@ -145,8 +140,9 @@ class Curve:
         return min(self.minima(control), key=lambda state: state.under(control))
 
     def answers(self, state: State) -> dict[str, Number]:
-        """Return the controls under which a slow retraction passes ``state``: it is stable, and the folds farther out
-        lie higher. With each, the distance to the branch's fold over that of the pull-off to 0.
+        """Return the controls under which a slow retraction passes ``state``: it is stable and below the outer folds.
+
+        Each comes with the distance to the branch's fold over that of the pull-off to 0.
         """
         found = {}
         for control in CONTROLS:

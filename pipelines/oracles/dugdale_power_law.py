@@ -13,7 +13,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from oracles.dugdale import Dugdale, State
+from oracles.dugdale import Dugdale, Integrals, State
 from oracles.jkr_power_law import JkrPowerLaw, PowerShape
 from oracles.multiprecision import Number, mp, root
 
@@ -50,7 +50,8 @@ class DugdalePowerLaw(Dugdale):
             step = mp.log((first + second) / gap) * (first + second) / (n * first + second)
             c *= mp.exp(-step)
         a = c * cosine
-        return self.touching(a, c, (c * sine, theta), (g(a), self.jkr.reduced_load(a)), n * g(c) / c * F)
+        found = Integrals(g(a), self.jkr.reduced_load(a), elastic * c**n, n * g(c) / c * F)
+        return self.touching(a, c, c * sine, theta, found)
 
     def lifted(self, c: Number) -> State:
         """Return the equilibrium with a = 0 and cohesive radius ``c``, which does not touch."""

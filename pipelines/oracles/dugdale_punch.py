@@ -1,25 +1,22 @@
 """A flat punch with adhesion of finite range: all its contacts have c = b, and a > 0 until the springs' edges meet."""
 
-from oracles.dugdale import State
+from oracles.dugdale import Dugdale, State
 from oracles.multiprecision import Number, mp, root
 
 
-class Punch:
+class Punch(Dugdale):
     """Radius b [m] on a half-space of ``effective_modulus`` [Pa], ``work`` [J/m2], ``strength`` [Pa]."""
 
     def __init__(self, radius: Number, effective_modulus: Number, work: Number, strength: Number) -> None:
-        self.b, self.effective_modulus, self.work, self.strength = (
-            mp.mpf(x) for x in (radius, effective_modulus, work, strength)
-        )
-        self.beta = 2 * self.strength / self.effective_modulus
+        super().__init__(mp.mpf(effective_modulus), mp.mpf(work), mp.mpf(strength), mp.pi)
+        self.b = mp.mpf(radius)
 
     def state(self, delta: Number) -> State:
         """Return the state at an indentation [m], stable while in contact."""
         b, always = self.b, mp.mpf(1)
+        k = 2 * self.effective_modulus * b
         if delta >= 0:
-            return State(
-                b, b, delta, 2 * self.effective_modulus * b * delta, 2 * self.effective_modulus * b, always, always
-            )
+            return State(b, b, delta, k * delta, k, always, always)
         m = min(b, -delta / self.beta)
         a = mp.sqrt((b - m) * (b + m))
         force = -2 * self.strength * (a * m + b * b * mp.acos(a / b))
@@ -38,16 +35,12 @@ class Punch:
 
         if gap(b) > 0:
             return self.state(-self.beta * root(gap, b * mp.mpf("1e-9"), b))
-        if control == "force":
-            return self.state(-self.beta * b)
-        return self.state(-2 * self.beta * b / mp.pi - self.work / self.strength)
+        return self.state(-self.beta * b if control == "force" else -2 * self.beta * b / mp.pi - self.range)
 
     def energy(self, state: State) -> Number:
         """Return U [J], its integrals done by hand."""
         a, b, beta = state.a, self.b, self.beta
         around = beta**2 * (2 * b**3 - 3 * b * b * a + a**3) / 3  # ∫ u1^2 from a to b
         area = (b * b * mp.acos(a / b) - a * mp.sqrt((b - a) * (b + a))) / 2  # ∫ sqrt(b^2 - x^2) from a to b
-        return (
-            self.effective_modulus * (a * state.delta**2 - around - 2 * beta * state.delta * area)
-            - mp.pi * self.work * b * b
-        )
+        elastic = a * state.delta**2 - around - 2 * beta * state.delta * area
+        return self.effective_modulus * elastic - mp.pi * self.work * b * b

@@ -5,9 +5,9 @@ Profiles are integrals over f' in closed form, none of them as the kernels write
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import roughmdr as rm
+from oracles.jkr import Asperity
 from oracles.jkr_power_law import JkrPowerLaw, PowerShape
 from oracles.multiprecision import Number, mp
 from oracles.profiles import closed_profile
@@ -16,14 +16,6 @@ from roughmdr.shapes import Shape
 _STEP = mp.mpf("1e-15")  # relative, of the first secant
 _RTOL = mp.mpf("1e-28")
 _MAX_STEPS = 60
-
-
-class Point(NamedTuple):
-    """A contact radius [m] with g [m] and a g - G [m2] there."""
-
-    a: Number
-    g: Number
-    reduced_load: Number
 
 
 def radius_of_t(shape: Shape) -> Callable[[Number], Number]:
@@ -42,52 +34,38 @@ def radius_of_t(shape: Shape) -> Callable[[Number], Number]:
     return lambda t: width * t
 
 
-def profile(shape: Shape) -> Callable[[Number], Point]:
-    """Return the profile of a shape that is not a flat punch, as a function of t."""
-    exact, radius = closed_profile(shape), radius_of_t(shape)
-
-    def at(t: Number) -> Point:
-        with mp.workdps(mp.dps + _lost_digits(shape, t)):
-            a = radius(t)
-            g, _, G = exact.mdr(a)
-            return Point(a, g, a * g - G)
-
-    return at
-
-
-def _lost_digits(shape: Shape, t: Number) -> int:
-    """Return how many digits differences lose next to a corner, t = 0 or 1, and next to the equator of a sphere."""
-    if isinstance(shape, PowerShape | rm.PowerSeries | rm.Tabulated):
-        return 0
-    nearest = min(abs(t), abs(t - 1)) or mp.mpf(1)
-    return int(5 * max(0, -mp.log10(nearest)) + (t if isinstance(shape, rm.Sphere) else 0))
-
-
 class ExactContact:
     """One asperity on a half-space of ``effective_modulus`` [Pa], with JKR ``work`` of adhesion [J/m2] or none (0)."""
 
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
-        self.profile = profile(shape)
-        self.power_law = JkrPowerLaw(shape, effective_modulus, work) if isinstance(shape, PowerShape) else None
-        """The fold of a power law has a closed form."""
-        self.effective_modulus = mp.mpf(effective_modulus)
-        self.stretch_at_1 = mp.sqrt(2 * mp.pi * mp.mpf(work) / self.effective_modulus)
+        self.shape, self.radius = shape, radius_of_t(shape)
+        if isinstance(shape, PowerShape):
+            self.asperity: Asperity = JkrPowerLaw(shape, effective_modulus, work)
+        else:
+            self.asperity = Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
+
+    def at(self, t: Number) -> dict[str, Number]:
+        """Return the equilibrium at t, with the digits that differences lose next to a corner or an equator."""
+        t = mp.mpf(t)
+        lost = 0
+        if not isinstance(self.shape, PowerShape | rm.PowerSeries | rm.Tabulated):
+            nearest = min(abs(t), abs(t - 1)) or mp.mpf(1)  # to a corner
+            lost = int(5 * max(0, -mp.log10(nearest)) + (t if isinstance(self.shape, rm.Sphere) else 0))
+        with mp.workdps(mp.dps + lost):
+            return self.asperity.state(self.radius(t))
 
     def indentation(self, t: Number) -> Number:
         """Return delta [m] (H 40)."""
-        a, g, _ = self.profile(mp.mpf(t))
-        return g - self.stretch_at_1 * mp.sqrt(a)
+        return self.at(t)["indentation"]
 
     def force(self, t: Number) -> Number:
         """Return P [N] (H 41)."""
-        a, _, reduced_load = self.profile(mp.mpf(t))
-        return 2 * self.effective_modulus * (reduced_load - self.stretch_at_1 * a * mp.sqrt(a))
+        return self.at(t)["force"]
 
     def fold(self) -> Number:
-        """Return the t where a power law detaches."""
-        if self.power_law is None:
-            raise ValueError("only the folds of power laws have a closed form")
-        return self.power_law.fold("indentation")
+        """Return the t where a power law detaches: only its fold has a closed form."""
+        assert isinstance(self.asperity, JkrPowerLaw)
+        return self.asperity.fold("indentation")
 
     def state(self, indentation: Number, begin: float, low: Number, high: Number) -> Number | None:
         """Return the t of an indentation [m] on the stable branch from ``low`` to ``high``, or None.
@@ -98,7 +76,7 @@ class ExactContact:
         t = min(max(mp.mpf(begin), low), high)
         other = t + _STEP * (t or mp.mpf(1))
         value, value_other = self.indentation(t) - indentation, self.indentation(other) - indentation
-        scale = max(abs(indentation), self.stretch_at_1 * mp.sqrt(self.profile(t).a))
+        scale = max(abs(indentation), self.asperity.dl(self.radius(t)))
         for _ in range(_MAX_STEPS):
             if value == value_other:
                 return None
@@ -118,16 +96,12 @@ class ExactPunch(ExactContact):
     """A flat punch, whose t is its indentation [m] itself."""
 
     def __init__(self, shape: rm.FlatPunch, effective_modulus: float, work: float) -> None:
-        self.radius, self.effective_modulus = mp.mpf(shape.radius), mp.mpf(effective_modulus)
-        self.release_stretch = mp.sqrt(2 * mp.pi * self.radius * mp.mpf(work) / self.effective_modulus)
+        self.stiffness = 2 * mp.mpf(effective_modulus) * mp.mpf(shape.radius)
+        self.release_stretch = mp.sqrt(2 * mp.pi * mp.mpf(shape.radius) * mp.mpf(work) / mp.mpf(effective_modulus))
 
-    def indentation(self, t: Number) -> Number:
-        """Return delta [m]."""
-        return mp.mpf(t)
-
-    def force(self, t: Number) -> Number:
-        """Return P [N]."""
-        return 2 * self.effective_modulus * self.radius * t
+    def at(self, t: Number) -> dict[str, Number]:
+        """Return the equilibrium."""
+        return {"indentation": mp.mpf(t), "force": self.stiffness * t}
 
     def fold(self) -> Number:
         """Return the indentation of detachment [m]."""

@@ -1,13 +1,13 @@
 """One asperity of any profile with JKR adhesion or without: its branches, its folds and its states, exactly."""
 
-import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from oracles.multiprecision import Number, bracket, mp, root, tanh_sinh
+from oracles.multiprecision import Number, bracket, mp, radius_between, root
 from oracles.profiles import Profile
 
 WRITTEN = 40
@@ -55,24 +55,16 @@ class Asperity:
 
     def energy(self, a: Number, indentation: Number) -> Number:
         """Return U = E* ∫_0^a (delta - g)^2 dx - pi w a^2 [J]."""
-        edges = [mp.mpf(0), *(b for b in self.profile.kinks if b < a), a]
-        total = mp.mpf(0)
-        for lo, hi in itertools.pairwise(edges):
-            if hi <= self.profile.flat:
-                total += (hi - lo) * indentation**2
-                continue
-            for x, weight in tanh_sinh(ENERGY_WRITTEN + 10, 28):
-                total += (hi - lo) * weight * (indentation - self.profile.mdr(lo + (hi - lo) * x)[0]) ** 2
-        return self.effective_modulus * total - mp.pi * self.work * a**2
+        nodes = self.profile.nodes(mp.mpf(0), a, ENERGY_WRITTEN + 10)
+        squares = mp.fsum(weight * (indentation - self.profile.mdr(x)[0]) ** 2 for x, weight in nodes)
+        return self.effective_modulus * squares - mp.pi * self.work * a**2
 
     def branches(self, control: str) -> list[Branch]:
         """Return the branches that are stable under ``control``, from the innermost to the outermost."""
         if self.work == 0:
             return [Branch(self.profile.flat, self.profile.end, mp.mpf(0))]
-        starts: list[Number] = []
-        stops: list[Number] = []
-        for rising, at in self._turning_points(FOLD_LEVEL[control]):
-            (starts if rising else stops).append(at)
+        turning_points = list(self._turning_points(FOLD_LEVEL[control]))
+        starts, stops = ([a for rising, a in turning_points if rising is wanted] for wanted in (True, False))
         ends = [*stops, self.profile.end]
         if len(ends) != len(starts) or any(stop <= start for start, stop in zip(starts, stops, strict=False)):
             raise ArithmeticError("minima and maxima do not alternate")
@@ -107,10 +99,7 @@ class Asperity:
 
     def _only_turning_point(self, level: float) -> Number:
         """Return the only fold, found by doubling steps in the logarithm of a, or of a/(R - a) for a sphere."""
-
-        def radius(y: Number) -> Number:
-            end: Number = self.profile.end
-            return self.width * mp.exp(y) if end is None else end / (1 + mp.exp(-y))
+        radius = partial(radius_between, 0, self.profile.end, self.width)
 
         def above(y: Number) -> Number:
             return mp.log(self.growth(radius(y)) / mp.mpf(level))
@@ -131,12 +120,7 @@ class Asperity:
         exact = mp.mpf(value)
         branch = [each for each in branches if each.value < exact][-1]
         rise = exact - branch.value
-        start = branch.lo or self.width
-
-        def radius(y: Number) -> Number:
-            if branch.hi is None:
-                return branch.lo + start * mp.exp(y)
-            return branch.lo + (branch.hi - branch.lo) / (1 + mp.exp(-y))
+        radius = partial(radius_between, branch.lo, branch.hi, branch.lo or self.width)
 
         def above(y: Number) -> Number:
             # Next to a fold, next to a corner and far out this is nearly linear in y.

@@ -1,7 +1,9 @@
-"""One power-law asperity without adhesion or with JKR adhesion, by the formulas as printed, with 60 digits."""
+"""One power-law asperity without adhesion or with JKR adhesion, whose folds have closed forms, with 60 digits."""
 
 import roughmdr as rm
+from oracles.jkr import Asperity
 from oracles.multiprecision import Number, mp
+from oracles.profiles import closed_profile
 
 PowerShape = rm.Paraboloid | rm.Cone | rm.PowerLaw
 
@@ -12,26 +14,15 @@ def kappa(exponent: Number) -> Number:
     return mp.sqrt(mp.pi) / 2 * n * mp.gamma(n / 2) / mp.gamma((n + 1) / 2)
 
 
-def coefficient_and_exponent(shape: PowerShape) -> tuple[Number, Number]:
-    """Return c and n of f = c r^n."""
-    given = {name: mp.mpf(value) for name, value in shape.parameters.items()}
-    if "radius" in given:
-        return 1 / (2 * given["radius"]), mp.mpf(2)
-    if "slope" in given:
-        return given["slope"], mp.mpf(1)
-    n = given["exponent"]
-    return given["coefficient"] if "coefficient" in given else given["rise"] / given["width"] ** n, n
-
-
-class JkrPowerLaw:
+class JkrPowerLaw(Asperity):
     """f = c r^n pressed into a half-space, without (work = 0) or with JKR adhesion."""
 
     def __init__(self, shape: PowerShape, effective_modulus: float, work: float) -> None:
-        c, self.n = coefficient_and_exponent(shape)
+        super().__init__(closed_profile(shape), effective_modulus, work, 1.0)
+        ((slope_at_1, power),) = self.profile.pieces[0].terms
+        self.n = mp.mpf(power) + 1
         self.kappa = kappa(self.n)
-        self.g_at_1 = self.kappa * c
-        self.effective_modulus = mp.mpf(effective_modulus)
-        self.work = mp.mpf(work)
+        self.g_at_1 = self.kappa / self.n * slope_at_1
 
     def g(self, a: Number) -> Number:
         """Return the MDR profile [m]."""
@@ -41,47 +32,38 @@ class JkrPowerLaw:
         """Return a g(a) - G(a) [m2], G the integral of g from 0."""
         return self.n / (self.n + 1) * a * self.g(a)
 
-    def release_stretch(self, a: Number) -> Number:
-        """Return dl(a) [m], the stretch at which a spring at ``a`` detaches (H 44)."""
-        return mp.sqrt(2 * mp.pi * a * self.work / self.effective_modulus)
-
     def indentation(self, a: Number) -> Number:
         """Return delta [m] in equilibrium (H 40)."""
-        return self.g(a) - self.release_stretch(a)
+        return self.g(a) - self.dl(a)
 
     def force(self, a: Number) -> Number:
         """Return P [N] in equilibrium (H 41)."""
-        return 2 * self.effective_modulus * (self.reduced_load(a) - a * self.release_stretch(a))
+        return 2 * self.effective_modulus * (self.reduced_load(a) - a * self.dl(a))
 
     def under(self, control: str, a: Number) -> Number:
         """Return the indentation or the force."""
         return self.force(a) if control == "force" else self.indentation(a)
 
-    def stiffness(self, a: Number) -> Number:
-        """Return dP/d(delta) [N/m] along the equilibria."""
-        slope, dl = self.n * self.g(a) / a, self.release_stretch(a)
-        return 2 * self.effective_modulus * (a * slope - 3 * dl / 2) / (slope - dl / (2 * a))
-
     def fold(self, control: str) -> Number:
         """Return the a where a g' is dl/2 (under a given "indentation") or 3/2 dl ("force"); 0 without adhesion."""
         multiple = mp.mpf(3 if control == "force" else 1) / 2
-        return (multiple * self.release_stretch(1) / (self.n * self.g_at_1)) ** (1 / (self.n - mp.mpf(1) / 2))
+        return (multiple * self.dl(1) / (self.n * self.g_at_1)) ** (1 / (self.n - mp.mpf(1) / 2))
 
     def radius(self, control: str, value: Number) -> Number:
-        """Return the a of the stable branch at an indentation or a force."""
-        if self.work == 0:
-            return (value / self.under(control, mp.mpf(1))) ** (1 / (self.n + (control == "force")))
-        return self._newton(control, value)
+        """Return the a of the stable branch at an indentation or a force.
 
-    def _newton(self, control: str, value: Number) -> Number:
-        """Above the fold the control is convex in ln a, so that Newton's method from the right never overshoots."""
+        Above the fold the control is convex in ln a, so that Newton's method from the right never overshoots.
+        """
+        dead_load = control == "force"
+        if self.work == 0:
+            return (value / self.under(control, mp.mpf(1))) ** (1 / (self.n + dead_load))
         fold = self.fold(control)
         a = fold * mp.exp(1 / self.n)
         while self.under(control, a) < value:
             a = a * mp.exp(1 / self.n)
         for _ in range(500):
-            slope = self.n * self.g(a) - (3 if control == "force" else 1) * self.release_stretch(a) / 2
-            slope *= 2 * self.effective_modulus * a if control == "force" else 1  # by ln a
+            slope = self.n * self.g(a) - (3 if dead_load else 1) * self.dl(a) / 2
+            slope *= 2 * self.effective_modulus * a if dead_load else 1  # by ln a
             change = (self.under(control, a) - value) / slope
             a *= mp.exp(-change)
             if abs(change) < mp.mpf(10) ** -45:

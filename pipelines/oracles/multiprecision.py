@@ -53,6 +53,11 @@ def bracket(function: Callable[[Number], Number]) -> tuple[Number, Number]:
     return low, high
 
 
+def radius_between(lo: Number, hi: Number | None, size: Number, y: Number) -> Number:
+    """Return a radius above ``lo`` that grows with the number y: without end by ``size`` e^y, or up to ``hi``."""
+    return lo + size * mp.exp(y) if hi is None else lo + (hi - lo) / (1 + mp.exp(-y))
+
+
 def digits(number: Number, count: int) -> str:
     """Return ``number`` written with so many digits."""
     return str(mp.nstr(number, count, min_fixed=-4, max_fixed=10))

@@ -1,42 +1,13 @@
-"""Plain alternatives to the sum over asperities: NumPy vectors, or a root finder for each contact; and their cost."""
+"""Plain alternatives to the sum over asperities: NumPy vectors, or a root finder for each contact."""
 
 import math
-import time
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-import roughmdr as rm
-from roughmdr.ensemble import Ensemble
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import compiled
-from roughmdr.shapes import SHAPES, PowerLaw, ProfileShape, Shape
-from roughmdr.shapes.kappa import kappa
-
-
-class Cost(NamedTuple):
-    """The run time of some visits."""
-
-    seconds: float
-    visits: int
-
-    @property
-    def each(self) -> float:
-        """Time per visit [ns]."""
-        return self.seconds / self.visits * 1e9
-
-
-def cost_of(action: Callable[[], int], repeats: int) -> Cost:
-    """Return the shortest wall time of ``action``, which returns its visits."""
-    times, visits = [], 1
-    for _ in range(repeats):
-        started = time.perf_counter()
-        visits = action()
-        times.append(time.perf_counter() - started)
-    return Cost(min(times), visits)
 
 
 class Sums(NamedTuple):
@@ -98,49 +69,3 @@ def with_brentq(height: Floats, radius: Floats, path: Floats, effective_modulus:
             area[step] += np.pi * a * a
             visits += 1
     return Sums(force, area, visits)
-
-
-def by_numpy(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
-    """Return the cost of ``with_numpy``."""
-    columns = ensemble.height, ensemble.parameters["radius"]
-    return cost_of(lambda: with_numpy(*columns, path, effective_modulus, work).visits, 1)
-
-
-def by_brentq(ensemble: Ensemble, path: Floats, effective_modulus: float, work: float) -> Cost:
-    """Return the cost of ``with_brentq``, from a few hundred asperities."""
-    columns = ensemble.height[:300], ensemble.parameters["radius"][:300]
-    return cost_of(lambda: with_brentq(*columns, path, effective_modulus, work).visits, 1)
-
-
-def scalar_g(shape: Shape) -> Callable[[float], float]:
-    """Return g(a) of one shape as a function of floats, the fastest for a root finder."""
-    width, rise, params = shape.nondimensional()
-    if isinstance(shape, PowerLaw):
-        factor, n = kappa(params) * rise, params
-        return lambda a: factor * (a / width) ** n
-    assert isinstance(shape, ProfileShape)
-    mdr_profile, t_of_radius = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
-    numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
-    return lambda a: rise * mdr_profile(t_of_radius(a, width, numbers), numbers)[2]
-
-
-def by_brentq_on(ensemble: Ensemble, effective_modulus: float, work: float) -> Cost:
-    """Return the cost of a root finder on delta = g(a) - dl(a), for 200 contacts of the first asperity."""
-    first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
-    shape: Shape = ensemble.shared_profile or SHAPES[ensemble.shape](**first)
-    fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)
-    g = scalar_g(shape)
-    g(fold)  # compiled before the clock runs
-
-    def indentation(a: float, delta: float) -> float:
-        return g(a) - math.sqrt(2.0 * math.pi * a * work / effective_modulus) - delta
-
-    top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
-
-    def action() -> int:
-        deltas = np.linspace(1e-8, 1e-6, 200)
-        for delta in deltas:
-            brentq(indentation, fold, top, args=(delta,), xtol=1e-15 * fold)
-        return int(deltas.size)
-
-    return cost_of(action, 1)

@@ -1,5 +1,7 @@
 """Profiles given by their slope f' alone: g and G are its integrals, with any number of digits (H 17)."""
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeAlias
@@ -8,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from oracles.multiprecision import Number, mp
+from oracles.multiprecision import Number, mp, tanh_sinh
 from roughmdr.shapes import Shape, Tabulated
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -24,11 +26,6 @@ class Piece:
     lo: Number
     hi: Number | None
     terms: Terms
-
-    @property
-    def whole(self) -> bool:
-        """Whether there is no other piece."""
-        return bool(self.lo == 0) and self.hi is None
 
 
 def angle(r: Number, a: Number) -> Number:
@@ -77,6 +74,12 @@ class Profile:
         lead = [piece.hi for piece in self.pieces if all(c == 0 for c, _ in piece.terms)]
         return lead[-1] if lead else mp.mpf(0)
 
+    def nodes(self, lo: Number, hi: Number, digits: int) -> Iterator[tuple[Number, Number]]:
+        """Yield nodes and weights from ``lo`` to ``hi`` [m], dense on both sides of each kink."""
+        for left, right in itertools.pairwise([lo, *(b for b in self.kinks if lo < b < hi), hi]):
+            for x, weight in tanh_sinh(digits, 28):
+                yield left + (right - left) * x, (right - left) * weight
+
     def mdr(self, a: Number) -> tuple[Number, Number, Number]:
         """Return g(a) [m], g'(a) [1] and G(a) [m2]; at a corner itself g' is that from inside."""
         g, slope, G = mp.mpf(0), mp.mpf(0), mp.mpf(0)
@@ -95,7 +98,7 @@ class Profile:
     @staticmethod
     def _moments(piece: Piece, a: Number) -> list[tuple[Number, Number]]:
         """Return, for each term, ∫ cos(psi)^power and ∫ cos(psi)^power sin(psi)^2 over the piece, r = a cos(psi)."""
-        if piece.whole:
+        if piece.lo == 0 and piece.hi is None:
             return [whole_moments(power, mp.dps) for _, power in piece.terms]
         end = antiderivatives(angle(piece.lo, a))
         begin = antiderivatives(mp.mpf(0) if piece.hi is None else angle(piece.hi, a))
@@ -146,54 +149,47 @@ def closed_profile(shape: Shape) -> Profile:
 
 
 def profile_of(shape: str, parameters: Parameters, slopes: list[float] | None = None) -> Profile:
-    """Return the profile of ``shape`` from its parameters (doubles, taken as exact)."""
+    """Return the profile of ``shape`` from its parameters (doubles, taken as exact); of a table with given slopes."""
     p = {name: mp.mpf(value) for name, value in parameters.items() if isinstance(value, float)}
     if shape == "sphere":
         return SphereProfile(p["radius"])
-    corners: list[tuple[Number, Number]] = []
     if shape == "tabulated":
-        pieces = _tabulated_pieces(parameters["r"], parameters["f"], slopes or [])
-    elif (b := p.get("flat_radius", p.get("blend_radius"))) is not None:
-        inner, outer = _terms_about(shape, p, b)
-        pieces = [Piece(mp.mpf(0), b, inner), Piece(b, None, outer)]
-        jump = sum(c * b ** mp.mpf(power) for c, power in outer) - sum(c * b ** mp.mpf(power) for c, power in inner)
-        corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
-    else:
-        pieces = [Piece(mp.mpf(0), None, _whole_terms(shape, parameters, p))]
-    return Profile(pieces, corners)
+        r, f = parameters["r"], parameters["f"]
+        return Profile(_tabulated_pieces(r, f, slopes or knot_slopes(r, f)))
+    inner, *beyond = _slope_terms(shape, parameters, p)
+    if not beyond:
+        return Profile([Piece(mp.mpf(0), None, inner)])
+    b, (outer,) = p.get("flat_radius", p.get("blend_radius")), beyond
+    jump = sum(c * b ** mp.mpf(power) for c, power in outer) - sum(c * b ** mp.mpf(power) for c, power in inner)
+    corners = [(b, jump)] if shape.startswith(("truncated", "capped")) and jump > 0 else []
+    return Profile([Piece(mp.mpf(0), b, inner), Piece(b, None, outer)], corners)
 
 
-def _whole_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> Terms:
-    """Return the terms of f' of a shape with one piece."""
+def _slope_terms(shape: str, parameters: Parameters, p: dict[str, Number]) -> list[Terms]:
+    """Return the terms of f' of a shape with one piece, or those of its inner and its outer piece."""
+    nothing = ((mp.mpf(0), 0.0),)
     match shape:
         case "cone":
-            return ((p["slope"], 0.0),)
+            return [((p["slope"], 0.0),)]
         case "paraboloid":
-            return ((1 / p["radius"], 1.0),)
+            return [((1 / p["radius"], 1.0),)]
         case "power_law":
             n = p["exponent"]
             c = p["coefficient"] if "coefficient" in p else p["rise"] * p["width"] ** -n
-            return ((n * c, _one_less(n)),)
+            return [((n * c, _one_less(n)),)]
         case "power_series":
             terms = [(mp.mpf(float(n)), mp.mpf(c)) for n, c in parameters["terms"].items()]
-            return tuple((n * c, _one_less(n)) for n, c in terms)
-    raise ValueError(f"no shape {shape}")
-
-
-def _terms_about(shape: str, p: dict[str, Number], b: Number) -> tuple[Terms, Terms]:
-    """Return the terms of f' within and beyond ``b`` [m]."""
-    nothing = ((mp.mpf(0), 0.0),)
-    match shape:
+            return [tuple((n * c, _one_less(n)) for n, c in terms)]
         case "truncated_cone":
-            return nothing, ((p["slope"], 0.0),)
+            return [nothing, ((p["slope"], 0.0),)]
         case "truncated_paraboloid":
-            return nothing, ((1 / p["radius"], 1.0),)
+            return [nothing, ((1 / p["radius"], 1.0),)]
         case "rounded_cone":
-            return ((p["slope"] / b, 1.0),), ((p["slope"], 0.0),)
+            return [((p["slope"] / p["blend_radius"], 1.0),), ((p["slope"], 0.0),)]
         case "capped_paraboloid":
-            return ((1 / p["cap_radius"], 1.0),), ((1 / p["radius"], 1.0),)
+            return [((1 / p["cap_radius"], 1.0),), ((1 / p["radius"], 1.0),)]
         case "rounded_punch":
-            return nothing, ((-b / p["edge_radius"], 0.0), (1 / p["edge_radius"], 1.0))
+            return [nothing, ((-p["flat_radius"] / p["edge_radius"], 0.0), (1 / p["edge_radius"], 1.0))]
     raise ValueError(f"no shape {shape}")
 
 

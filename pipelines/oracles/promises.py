@@ -39,13 +39,13 @@ def natural_scales(exact: JkrPowerLaw) -> list[Number]:
         return []
     grips, dead_load = exact.fold("indentation"), exact.fold("force")
     stiffness = 2 * exact.effective_modulus * grips
-    forces = [exact.force(grips), exact.force(dead_load), stiffness * exact.release_stretch(grips)]
+    forces = [exact.force(grips), exact.force(dead_load), stiffness * exact.dl(grips)]
     return [grips, exact.indentation(grips), stiffness, *forces]
 
 
 def numbers_at(exact: JkrPowerLaw, a: Number) -> list[Number]:
     """Return what floats must hold of the contact with radius ``a``."""
-    return [a, a * a, exact.indentation(a), exact.force(a), exact.stiffness(a)]
+    return [a * a, *exact.state(a).values()]
 
 
 def judge(exact: JkrPowerLaw, control: str, got: Results) -> dict[str, Judged]:
@@ -53,32 +53,30 @@ def judge(exact: JkrPowerLaw, control: str, got: Results) -> dict[str, Judged]:
     branch = "force" if control == "force" else "indentation"
     a, value, fold = mp.mpf(got["contact_radius"]), mp.mpf(got[control]), exact.fold(branch)
     true = value if control == "contact_radius" else exact.radius(control, value)
-    pressed = {"indentation": exact.g(true), "force": 2 * exact.effective_modulus * exact.reduced_load(true)}
-    scale = {name: max(abs(exact.under(name, true)), abs(exact.under(name, fold))) for name in pressed}
-    bound = {"indentation": mp.mpf("1e-13"), "force": mp.mpf("1e-13")}
-    bound["indentation" if control == "contact_radius" else control] = mp.mpf("1e-14")
     X = 1 - exact.under(branch, true) / exact.under(branch, fold) if exact.work else mp.mpf(1)
     forward = mp.mpf("1e-12") + mp.mpf("3e-16") / mp.sqrt(X)
     found = {
-        "contact_radius": (abs(a - true) / true, forward),
-        "contact_area": (abs(got["contact_area"] / (mp.pi * true**2) - 1), 2 * forward),
+        "contact_radius": (abs(a - true) / true, forward, true),
+        "contact_area": (abs(got["contact_area"] / (mp.pi * true**2) - 1), 2 * forward, true**2),
     }
+    pressed = {"indentation": exact.g(true), "force": 2 * exact.effective_modulus * exact.reduced_load(true)}
     for name, compression in pressed.items():
+        scale = max(abs(exact.under(name, true)), abs(exact.under(name, fold)))
+        given = name == control or (name == "indentation" and control == "contact_radius")
         # Each of the four roundings that make a (of its scale, the growth, the product, and a itself) moves g by n u.
-        steepness = max(1, 4 * exact.n * UNIT * compression / scale[name] / mp.mpf("1e-14"))
-        found[f"backward {name}"] = abs(exact.under(name, a) - got[name]) / scale[name], bound[name] * steepness
-        found[name] = abs(exact.under(name, true) - got[name]) / scale[name], forward
-    k = exact.stiffness(true)
+        steepness = max(1, 4 * exact.n * UNIT * compression / scale / mp.mpf("1e-14"))
+        bound = mp.mpf("1e-14" if given else "1e-13") * steepness
+        found[f"backward {name}"] = abs(exact.under(name, a) - got[name]) / scale, bound, scale
+        found[name] = abs(exact.under(name, true) - got[name]) / scale, forward, scale
+    k = exact.state(true)["stiffness"]
     k_error = abs(got["stiffness"] - k) / max(abs(k), 2 * exact.effective_modulus * true)
-    found["stiffness"] = k_error, mp.mpf("1e-12") + mp.mpf("1e-15") / X
-    sizes = {"contact_radius": true, "contact_area": true**2, "stiffness": k, **scale}
-    return _as_floats(found, sizes)
+    found["stiffness"] = k_error, mp.mpf("1e-12") + mp.mpf("1e-15") / X, k
+    return _as_floats(found)
 
 
 def judge_dugdale(exact: DugdalePowerLaw, control: str, got: Results) -> dict[str, Judged]:
     """Return the errors of a contact under adhesion of finite range, except of what no float can hold."""
-    branch = "force" if control == "force" else "indentation"
-    given_radius = control == "contact_radius"
+    branch, given_radius = "force" if control == "force" else "indentation", control == "contact_radius"
     value = mp.mpf(got[control])
     true = exact.at_radius(value) if given_radius else exact.retracted(control, value)
     X, rounded = distance(exact, branch, true), true
@@ -102,10 +100,10 @@ def judge_dugdale(exact: DugdalePowerLaw, control: str, got: Results) -> dict[st
         worth = abs(getattr(rounded, field) - right) / scale  # of the roundings of the control
         allowed = forward + worth
         if name == "stiffness":
-            radius = (_ROUNDINGS if given_radius else forward + worth) * rigid * true.c / scale
+            radius = (_ROUNDINGS if given_radius else allowed) * rigid * true.c / scale
             allowed = mp.mpf("1e-11") + mp.mpf("1e-14") / X + worth + radius
-        found[name] = abs(mp.mpf(got[name]) - right) / scale, allowed
-    return _as_floats(found, scales)
+        found[name] = abs(mp.mpf(got[name]) - right) / scale, allowed, scale
+    return _as_floats(found)
 
 
 def distance(exact: DugdalePowerLaw, branch: str, state: State) -> Number:
@@ -115,10 +113,10 @@ def distance(exact: DugdalePowerLaw, branch: str, state: State) -> Number:
     return abs((state.under(branch) - fold.under(branch)) / pull_off.under(branch))
 
 
-def _as_floats(found: Mapping[str, tuple[Number, Number]], sizes: Mapping[str, Number]) -> dict[str, Judged]:
-    """Return the errors of the quantities whose sizes floats can hold."""
+def _as_floats(found: Mapping[str, tuple[Number, Number, Number]]) -> dict[str, Judged]:
+    """Return the errors and what is allowed of the quantities whose sizes, the third numbers, floats can hold."""
     return {
         name: Judged(float(error), float(allowed))
-        for name, (error, allowed) in found.items()
-        if representable([sizes[name.removeprefix("backward ")]])
+        for name, (error, allowed, size) in found.items()
+        if representable([size])
     }

@@ -183,7 +183,7 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
     k = []
     for log_tau in [*np.linspace(0.01, 4.0, 60) / e, math.log(3.0) / e, math.log(2.0 * exponent + 2.0) / e]:
         a = fold * mp.exp(2 * mp.mpf(log_tau))
-        k.append(float(oracle.stiffness(a) / a))
+        k.append(float(oracle.state(a)["stiffness"] / a))
         indentation = float(oracle.indentation(a))
         if not abs(indentation) < 1e290:
             continue

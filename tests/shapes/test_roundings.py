@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.exact_contact import profile
+from oracles.exact_contact import ExactContact
 from oracles.multiprecision import mp
 from studies.asperity_error.asperities import DRAW
 
@@ -29,16 +29,16 @@ def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
             width, rise, params = shape.nondimensional()
         except rm.RoughmdrError:
             continue
-        numbers, exact = np.atleast_1d(np.asarray(params, dtype=np.float64)), profile(shape)
+        numbers, exact = np.atleast_1d(np.asarray(params, dtype=np.float64)), ExactContact(shape, 1.0, 0.0)
         for t in 10.0 ** np.concatenate([rng.uniform(-4.0, 1.0, 8), rng.uniform(-0.5, 0.5, 8)]):
             _, _, g, _ = curve(t, numbers)
             pushed = push(t, numbers)
             if not (1e-290 < g < 1e290 and 1e-290 < pushed < 1e290):
                 continue
-            point = exact(mp.mpf(float(t)))
+            point = exact.at(mp.mpf(float(t)))
             terms = magnitude(t, numbers) if magnitude is not None else (g, pushed)
-            load = point.reduced_load / rise / width
-            for got, true, size in ((g, point.g / rise, terms[0]), (pushed, load, terms[1])):
+            load = point["force"] / 2 / rise / width
+            for got, true, size in ((g, point["indentation"] / rise, terms[0]), (pushed, load, terms[1])):
                 error = float(abs(got - true)) / max(got, size) * 2.0**53
                 worst = max(worst, error)
                 assert error <= roundings(numbers), (shape, t)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from figures import springs as study
-from figures.springs_pictures import PICTURES
 from scipy.special import gamma
 
 import roughmdr as rm
@@ -266,6 +265,6 @@ def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     write_netcdf(Labelled.of(result), tmp_path / "springs.nc")
     with xr.open_dataset(tmp_path / "springs.nc") as read:
         xr.testing.assert_equal(read.load(), result)
-    for draw in PICTURES.values():
+    for draw in study.PICTURES.values():
         draw(result).savefig(tmp_path / "one.png", dpi=30)
         assert (tmp_path / "one.png").stat().st_size > 3000
