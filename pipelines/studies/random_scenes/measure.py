@@ -12,14 +12,13 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from studies.random_scenes.inputs import Inputs
-from studies.random_scenes.judge import OUTCOMES, judge
-from studies.random_scenes.scenes import scenes
+from studies.random_scenes.judge import OUTCOMES, Verdict, judge
+from studies.random_scenes.scenes import scenes, write_inputs
 from studies.study import named
 
 from roughmdr.shapes import SHAPES
@@ -36,16 +35,10 @@ KINDS = {
     "estimator": ("sampled", "stratified", "expected", "accuracy"),
     "outcome": OUTCOMES,
 }
+QUANTILES = (0.5, 0.99, 1.0)
 
-
-class Record(NamedTuple):
-    """The outcome of one scene."""
-
-    kind: tuple[str, ...]
-    """As in ``KINDS``."""
-    reason: str
-    comparisons: int
-    seconds: float
+Record: TypeAlias = tuple[tuple[str, ...], Verdict, float]
+"""The kind of a scene, as in ``KINDS``, its outcome, and its run time [s]."""
 
 
 def kind_of(scene: dict[str, Any], outcome: str) -> tuple[str, ...]:
@@ -56,24 +49,18 @@ def kind_of(scene: dict[str, Any], outcome: str) -> tuple[str, ...]:
     return shape, section["source"], scene.get("adhesion", {"model": "none"})["model"], estimator, outcome
 
 
-def search(start: int, count: int, inputs: Inputs) -> list[Record]:
+def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> list[Record]:
     """Judge ``count`` scenes; raise Defect, with the smallest scene that shows it, where one is not right."""
-    records = []
+    records = list[Record]()
+    phases, no_checks = (Phase.generate, Phase.shrink), list(HealthCheck)
 
     @seed(start)
-    @settings(
-        max_examples=count,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate, Phase.shrink],
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(scenes(inputs))
+    @settings(max_examples=count, deadline=None, database=None, phases=phases, suppress_health_check=no_checks)
+    @given(scenes(folder, cohesive))
     def judged(scene: dict[str, Any]) -> None:
         started = time.perf_counter()
         verdict = judge(scene)
-        seconds = time.perf_counter() - started
-        records.append(Record(kind_of(scene, verdict.outcome), verdict.reason, verdict.comparisons, seconds))
+        records.append((kind_of(scene, verdict.outcome), verdict, time.perf_counter() - started))
 
     judged()
     return records
@@ -81,26 +68,27 @@ def search(start: int, count: int, inputs: Inputs) -> list[Record]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Judge all scenes; return how many there were of each kind, and why those were refused that were."""
-    each = (QUICK if quick else FULL) // len(SEEDS)
+    each, cohesive = (QUICK if quick else FULL) // len(SEEDS), QUICK_COHESIVE if quick else tuple(SHAPES)
     with tempfile.TemporaryDirectory() as folder:
-        inputs = Inputs.written(Path(folder), QUICK_COHESIVE if quick else tuple(SHAPES))
+        write_inputs(Path(folder))
+        search_part = partial(search, count=each, folder=Path(folder), cohesive=cohesive)
         with ProcessPoolExecutor(len(SEEDS), multiprocessing.get_context("spawn")) as pool:
-            records = [one for part in pool.map(partial(search, count=each, inputs=inputs), SEEDS) for one in part]
+            records = [record for part in pool.map(search_part, SEEDS) for record in part]
+    kinds, verdicts, seconds = zip(*records, strict=True)
     counts = np.zeros([len(names) for names in KINDS.values()], dtype=np.int64)
-    for one in records:
-        counts[tuple(names.index(name) for names, name in zip(KINDS.values(), one.kind, strict=True))] += 1
-    reasons = Counter(one.reason for one in records if one.reason).most_common()
-    seconds = np.quantile([one.seconds for one in records], (0.5, 0.99, 1.0))
+    for kind, count in Counter(kinds).items():
+        counts[tuple(map(tuple.index, KINDS.values(), kind))] = count
+    reasons = Counter(verdict.reason for verdict in verdicts if verdict.reason).most_common()
     return xr.Dataset(
         {
             "scenes": (tuple(KINDS), counts, named("scenes drawn")),
             "reason_count": ("reason", [count for _, count in reasons], named("scenes refused for a reason")),
-            "comparisons": ((), sum(one.comparisons for one in records), named("claims about numbers that held")),
-            "scene_time": ("quantile", seconds, named("run time of a scene", "s")),
+            "comparisons": ((), sum(each.comparisons for each in verdicts), named("claims about numbers that held")),
+            "scene_time": ("quantile", np.quantile(seconds, QUANTILES), named("run time of a scene", "s")),
         },
         {
             **{name: list(names) for name, names in KINDS.items()},
             "reason": [reason for reason, _ in reasons],
-            "quantile": ("quantile", [0.5, 0.99, 1.0], named("part of the scenes that take no longer")),
+            "quantile": ("quantile", list(QUANTILES), named("part of the scenes that take no longer")),
         },
     )

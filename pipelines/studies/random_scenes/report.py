@@ -8,7 +8,6 @@ from studies.random_scenes.judge import OUTCOMES
 from studies.study import table
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
@@ -16,37 +15,26 @@ _LISTED = 12  # reasons in the table
 
 
 def draw(result: xr.Dataset) -> "Figure":
-    """Draw what became of the scenes, by shape and by the rest of their kind."""
+    """Draw a bar of outcomes for each shape of the asperities, adhesion, source and estimator."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12.5, 6.2), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1.0, 0.9))
-    _bars(left, result, ["shape"])
-    _bars(right, result, ["adhesion", "source", "estimator"])
-    left.set_title(f"{int(result.scenes.sum())} scenes by the shape of the asperities")
-    right.set_title("and by adhesion, source and estimator")
-    left.legend(loc="lower right", fontsize=9)
+    kinds = ("shape", "adhesion", "source", "estimator")
+    panels = figure.subplot_mosaic([["shape", kind] for kind in kinds[1:]])
+    for kind in kinds:
+        panel, names = panels[kind], [str(name).replace("_", " ") for name in result[kind].to_numpy()]
+        others = [name for name in result.scenes.dims if name not in (kind, "outcome")]
+        before = np.zeros(len(names))
+        for outcome, colour in zip(OUTCOMES, _COLOURS, strict=True):
+            own = result.scenes.sum(others).sel(outcome=outcome).to_numpy()
+            panel.barh(names, own, left=before, color=colour, label=outcome)
+            before += own
+        panel.invert_yaxis()
+        panel.set(title=kind, xlabel="scenes")
+        panel.grid(axis="x", color="0.92")
+        panel.set_axisbelow(True)
+    panels["shape"].legend(loc="lower right", fontsize=9)
     return figure
-
-
-def _bars(panel: "Axes", result: xr.Dataset, kinds: list[str]) -> None:
-    """Draw a bar for each kind of scenes, with one part for each outcome, and a gap between kinds."""
-    y, labels, counts = list[float](), list[str](), []
-    for number, kind in enumerate(kinds):
-        sums = result.scenes.sum([name for name in result.scenes.dims if name not in (kind, "outcome")])
-        y += (len(y) + 0.7 * number + np.arange(result.sizes[kind])).tolist()
-        names = map(str, result[kind].to_numpy())
-        labels += [f"{name} ({kind})" if len(kinds) > 1 else name.replace("_", " ") for name in names]
-        counts.append(sums.transpose(kind, "outcome").to_numpy())
-    before = np.zeros(len(y))
-    for own, outcome, colour in zip(np.concatenate(counts).T, OUTCOMES, _COLOURS, strict=True):
-        panel.barh(y, own, left=before, color=colour, label=outcome, height=0.78)
-        before += own
-    panel.set_yticks(y, labels)
-    panel.invert_yaxis()
-    panel.set_xlabel("scenes")
-    panel.grid(axis="x", color="0.92")
-    panel.set_axisbelow(True)
 
 
 def report(result: xr.Dataset) -> str:
@@ -55,8 +43,8 @@ def report(result: xr.Dataset) -> str:
     shares = [int(result.scenes.sel(outcome=name).sum()) for name in OUTCOMES]
     outcomes = ", ".join(f"{n} ({100.0 * n / count:.1f} %) {name}" for n, name in zip(shares, OUTCOMES, strict=True))
     median, nearly_all, longest = result.scene_time.to_numpy()
-    pairs = zip(result.reason_count.to_numpy(), result.reason.to_numpy(), strict=True)  # the most frequent first
-    reasons = [[f"{number}", str(reason)] for number, reason in pairs]
+    # The most frequent reasons come first.
+    reasons = [[f"{n}", f"{why}"] for n, why in zip(result.reason_count.values, result.reason.values, strict=True)]
     return f"""
 {count} scenes drawn over all that a scene may ask for: {outcomes}. In none of them was there a NaN, an infinite number,
 or an exception that is no refusal, and {int(result.comparisons)} claims about their numbers all held: without adhesion
