@@ -168,11 +168,7 @@ def asperities(draw: Draw, frame: Frame, shape: str, source: str, folder: Path) 
     if source == "file":
         return {"source": "file", "file": str(folder / f"{shape}.nc")}
     section: Table = {"source": "surface", "file": str(folder / draw(st.sampled_from(("periodic.nc", "open.nc"))))}
-    options = {
-        "detrend": ("none", "mean", "plane", "quadratic"),
-        "periodic": (True, False),
-        "cutoff": ("3 um", 8e-6),
-    }
+    options = {"detrend": ("none", "mean", "plane", "quadratic"), "periodic": (True, False), "cutoff": ("3 um", 8e-6)}
     return section | {key: draw(st.sampled_from(values)) for key, values in options.items() if seldom(draw, 4)}
 
 
