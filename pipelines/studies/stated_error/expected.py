@@ -1,8 +1,9 @@
-"""The expected force by plain and dense quadrature over shape parameters and heights.
+"""The expected force by quadrature over shape parameters and heights.
 
 The distributions and the force of one contact are the package's; which summits are in contact, on which branch, and the
-integrals are not: panels end at all points where anything has a kink, and within each Gauss's rule is taken in a
-variable in which roots at either end are polynomials.
+integrals are not: panels over shape parameters end at all points where anything has a kink, those over heights are
+halved until their halves agree with them, and within each Gauss's rule is taken in a variable in which roots at either
+end are polynomials.
 """
 
 import math
@@ -12,8 +13,6 @@ from functools import cache, cached_property, partial
 from itertools import groupby, pairwise
 
 import numpy as np
-from oracles.profiles import closed_profile
-from scipy.optimize import brentq
 from studies.stated_error.contacts import branch_numbers
 
 from roughmdr.asperity.contact import Contact
@@ -22,25 +21,18 @@ from roughmdr.ensemble.random.population import Population
 from roughmdr.ensemble.random.population_nodes import nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
-from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
+from roughmdr.shapes import SHAPES
 
 ORDERS = (16, 24, 36, 54)
-"""Nodes on each panel, from coarse to fine."""
+"""Nodes on each panel over shape parameters, from coarse to fine."""
 _SCORE_END, _SCORE_PANEL = 8.5, 1.7  # normal scores: where parameters end, and the widest panel
 _MAX_POPULATIONS = 2
 _SCAN = 100  # scores between which kinks are searched
 _HALVINGS = 40
-_HEIGHT_EDGES = np.concatenate([4.0 ** np.arange(-18.0, 0.0), np.arange(1.0, 40.0), 40.0 * 2.0 ** np.arange(10.0)])
-"""Edges of panels over heights, from the lowest, in widths of their distribution."""
-_DEPTH_EDGES = 4.0 ** np.arange(-8.0, 12.0)  # edges above the start of a branch, over the natural depth
-_LEAP_EDGES = 4.0 ** np.arange(-12.0, -1.0)  # edges about a leap, over the natural depth
-_LEAP_RATE = 3.0  # times the usual rate of the force
-_LEAP_SEARCH = 2.0  # natural depths above the start of a branch
-_LEAP_SCAN, _REFINEMENTS = 2_000, 3  # indentations between which leaps are searched, and ever finer scans about one
+_ORDER, _RTOL = 16, 2e-15  # on each panel over heights; of the largest force
 _gauss = cache(np.polynomial.legendre.leggauss)
 
 
@@ -79,8 +71,10 @@ class ExpectedForce:
         """Return the force [N] at each step, with ``order`` nodes on each panel."""
         nodes = self.nodes(self._scores(order))
         total = np.zeros_like(self.separation)
-        for number, share in enumerate(nodes.weights.tolist()):
-            total += share * _EqualTips(self, nodes, number).force(order)
+        for number in np.argsort(-nodes.weights).tolist():  # those of little weight may be less accurate
+            share = float(nodes.weights[number])
+            tolerance = _RTOL * float(np.abs(total).max()) / (share * nodes.weights.size)
+            total += share * _EqualTips(self, nodes, number).force(tolerance)
         return self.scene.asperities.expected_count * total
 
     def _scores(self, order: int) -> Rule:
@@ -164,74 +158,40 @@ class _EqualTips:
         """The ends of all that is in contact, by their names."""
         return tuple((step, branch, self.cuts[low], self.cuts[high]) for step, branch, low, high in self.in_contact)
 
-    def force(self, order: int) -> Floats:
-        """Return the mean force [N] of one such asperity at each step."""
-        parts = [self._panels(*one, order) for one in self.in_contact]
-        if not parts:
-            return np.zeros_like(self.separation)
-        step, branch, y, above, weight = np.concatenate(parts, axis=1)
-        weight *= self.heights.density(y)
-        for k in np.unique(branch).astype(int).tolist():
-            weight[branch == k] *= self._force_on(k, above[branch == k])
-        return np.asarray(np.bincount(step.astype(int), weight, self.separation.size), dtype=np.float64)
-
-    def _panels(self, step: int, branch: int, low: float, high: float, order: int) -> Floats:
-        """Return nodes for summits from low to high [m]: step, branch, y of ``Heights``, depth above foot, weight."""
-        h, foot = self.separation[step], self.branches[branch][0]
-        edges = np.sqrt(np.maximum(self._edges(h, foot, low - h, high - h) - foot, 0.0))
-        s, ds = rule(edges[:-1], edges[1:], order)
-        y = (h - self.heights.origin) + (foot + s * s)
-        return np.array([np.full(s.size, step), np.full(s.size, branch), y, s * s, 2.0 * s * ds])
-
-    def _edges(self, h: float, foot: float, begin: float, end: float) -> Floats:
-        """Return indentations [m] between which all is smooth, and no panel wider than the features there."""
-        lowest, highest, width = self.heights.low - h, self.heights.high - h, self.heights.scale
-        above_foot = foot + (self.depth if self.contact.law.adhesive else end - foot) * _DEPTH_EDGES
-        from_ends = [lowest + width * _HEIGHT_EDGES, highest - width * _HEIGHT_EDGES[_HEIGHT_EDGES < 1.0]]
-        edges = np.concatenate([[begin, end], above_foot, *from_ends, self._corners, self._leap_edges])
-        return np.unique(edges[(edges >= begin) & (edges <= end)])
-
-    @cached_property
-    def _corners(self) -> Floats:
-        """Indentations [m] at which the edge of the contact comes to a kink of the profile, or to the axis."""
-        effective_modulus, adhesion = self.contact.effective_modulus, self.contact.adhesion
-        if adhesion.cohesive:
-            return np.array([-self._zone_at_lift * 2.0 * adhesion.strength / effective_modulus])
-        if not isinstance(self.shape, ProfileShape):
-            return np.zeros(0)
-        radii = [float(b) for b in closed_profile(self.shape).kinks]
-        return np.array([float(self.shape.g(b)) - release_stretch(b, effective_modulus, adhesion.work) for b in radii])
-
-    @property
-    def _zone_at_lift(self) -> float:
-        """The cohesive radius [m] at which contacts cease to touch."""
-        if isinstance(self.shape, FlatPunch):
-            return self.shape.radius
-        shape, adhesion = self.shape, self.contact.adhesion
-        pull = 2.0 * adhesion.strength / self.contact.effective_modulus * (1.0 - 2.0 / math.pi)
-        return float(
-            brentq(lambda c: float(shape.f(c)) + pull * c - adhesion.range, 0.0, adhesion.range / pull, xtol=1e-300)
-        )
-
-    @cached_property
-    def _leap_edges(self) -> Floats:
-        """Indentations [m] about those at which the force all but leaps, since two folds nearly part the branch."""
-        if not self.contact.law.adhesive or self.contact.adhesion.cohesive:
-            return np.zeros(0)
+    def force(self, tolerance: float) -> Floats:
+        """Return the mean force [N] of one such asperity at each step, to the tolerance [N] or to the last digits."""
+        inner = [self.heights.origin + edge for edge in self.heights.edges]
         found = []
-        for branch, (foot, top) in enumerate(self.branches):
-            edges = np.linspace(0.0, min(_LEAP_SEARCH * self.depth, top - foot), _LEAP_SCAN)
-            rate = np.abs(np.diff(self._force_on(branch, edges)))
-            steep = np.maximum(np.maximum(rate[:-2], rate[2:]), _LEAP_RATE * np.median(rate))
-            for i in np.flatnonzero(rate[1:-1] > steep) + 1:
-                low, high = edges[i - 1], edges[i + 2]
-                for _ in range(_REFINEMENTS):
-                    scan = np.linspace(low, high, _SCAN)
-                    k = int(np.abs(np.diff(self._force_on(branch, scan))).argmax())
-                    low, high = scan[max(k - 1, 0)], scan[min(k + 2, _SCAN - 1)]
-                found.append(foot + 0.5 * (low + high))
-        steps = self.depth * np.concatenate([-_LEAP_EDGES, [0.0], _LEAP_EDGES])
-        return (np.array(found)[:, None] + steps).ravel()
+        for number, on, lowest, highest in self.in_contact:
+            edges = np.array([lowest, *(z for z in inner if lowest < z < highest), highest]) - self.separation[number]
+            ends = np.sqrt(np.maximum(edges - self.branches[on][0], 0.0)).tolist()
+            found += [(number, on, *pair) for pair in pairwise(ends)]
+        panels, total = np.array(found).reshape(-1, 4).T, np.zeros_like(self.separation)
+        whole = self._integrals(panels)
+        for _ in range(_HALVINGS):
+            if not whole.size:
+                break
+            step, branch, low, high = panels
+            middle = 0.5 * (low + high)
+            halves = np.array([(step, branch, low, middle), (step, branch, middle, high)])
+            parts = np.array([self._integrals(half) for half in halves])
+            error = np.abs(parts.sum(axis=0) - whole)
+            right = error <= max(tolerance, _RTOL * (np.abs(total).max() + np.abs(parts).sum()))
+            total += np.bincount(step[right].astype(int), parts.sum(axis=0)[right], total.size)
+            panels, whole = np.concatenate(halves[:, :, ~right], axis=1), parts[:, ~right].ravel()
+        return np.asarray(total + np.bincount(panels[0].astype(int), whole, total.size))
+
+    def _integrals(self, panels: Floats) -> Floats:
+        """Return the mean force [N] over panels, [step, branch, low, high]: roots of indentations above its start."""
+        step, branch = panels[:2].astype(int)
+        s, ds = rule(panels[2], panels[3], _ORDER)
+        feet = np.array([start for start, _ in self.branches])[branch]
+        columns = (self.separation[step] - self.heights.origin, feet, branch)
+        origin, foot, at_branch = (np.repeat(column, _ORDER) for column in columns)
+        value = self.heights.density(origin + (foot + s * s)) * 2.0 * s * ds
+        for k in set(branch.tolist()):
+            value[at_branch == k] *= self._force_on(k, (s * s)[at_branch == k])
+        return np.asarray(value.reshape(-1, _ORDER).sum(axis=1))
 
     def _force_on(self, branch: int, above: Floats) -> Floats:
         """Return the force [N] on a branch at indentations [m] above its start."""

@@ -1,7 +1,7 @@
 """numerical_error against the true error of the force, in random scenes.
 
 The scenes are run, and their forces are computed again at least ten times finer: those of draws asperity by asperity
-with 40 digits from the slopes of the profiles, the expected force by dense quadrature.
+with 60 digits from the slopes of the profiles, the expected force by quadrature.
 """
 
 import warnings
