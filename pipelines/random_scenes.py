@@ -1,7 +1,4 @@
-"""Scenes drawn at random over all that a scene may ask for: each is refused in words, or physically right.
-
-python pipelines/random_scenes.py -o results/studies
-"""
+"""Scenes drawn at random, each refused in words or physically right: python pipelines/random_scenes.py."""
 
 from studies.random_scenes.measure import measure
 from studies.random_scenes.report import draw, report

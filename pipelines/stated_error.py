@@ -1,7 +1,4 @@
-"""numerical_error against the true error of the force, in random scenes.
-
-python pipelines/stated_error.py -o results/studies
-"""
+"""numerical_error against the true error of the force, in random scenes: python pipelines/stated_error.py."""
 
 from studies.stated_error.judge import measure
 from studies.stated_error.report import draw, report

@@ -47,44 +47,31 @@ class Scene(NamedTuple):
     def as_table(self) -> dict[str, Any]:
         """The scene as ``rm.run`` takes it."""
         drawn = {"distribution": self.family, **self.parameters, "loc": self.loc, "scale": _SCALE[self.of]}
-        heights = self.of == "heights"
-        asperities = {"source": "random", "shape": "paraboloid", "count": _COUNT, "patch": "1 mm"}
-        asperities["height"] = drawn if heights else {"distribution": "normal", "std": _STD}
-        asperities["radius"] = _RADIUS if heights else drawn
+        normal = {"distribution": "normal", "std": _STD}
+        height, radius = (drawn, _RADIUS) if self.of == "heights" else (normal, drawn)
+        source = {"source": "random", "shape": "paraboloid", "count": _COUNT, "patch": "1 mm"}
         return {
             "material": {"effective_modulus": _MODULUS},
-            "asperities": asperities,
+            "asperities": {**source, "height": height, "radius": radius},
             "path": {"separation": self.separation},
             "output": {"variables": ["force"]},
             "batch": {"estimator": "expected"},
         }
 
     def reference(self) -> tuple[Floats, Floats]:
-        """Return the force [N] at each separation, and a bound on its error."""
-        unit = _COUNT * 4.0 / 3.0 * _MODULUS
-        means = self._drawn() if has_own_sampler(self.family) else self._integrated()
-        return unit * means[0], unit * means[1]
-
-    def _drawn(self) -> tuple[Floats, Floats]:
-        """Return means of R^1/2 (z - h)^3/2 over draws that scipy does not make by its inverse."""
-        draws = self.frozen.rvs(_DRAWS, random_state=np.random.default_rng(_DRAWS))
-        if self.of == "radii":
-            heights = self._normal_heights()
-            return np.sqrt(draws).mean() * heights, _SIGMAS * np.sqrt(draws).std() / math.sqrt(_DRAWS) * heights
-        terms = np.array([math.sqrt(_RADIUS) * np.maximum(draws - h, 0.0) ** 1.5 for h in self.separation])
-        return terms.mean(axis=1), _SIGMAS * terms.std(axis=1) / math.sqrt(_DRAWS)
-
-    def _integrated(self) -> tuple[Floats, Floats]:
-        """Return the same means by quadrature in the probability."""
-        if self.of == "heights":
-            found = np.array([mean_of_heights(self.frozen, h, 1.5) for h in self.separation]) * math.sqrt(_RADIUS)
-            return found[:, 0], found[:, 1]
-        value, doubt = mean_of_radii(self.frozen, 0.5)
-        return value * self._normal_heights(), doubt * self._normal_heights()
-
-    def _normal_heights(self) -> Floats:
+        """Return the force [N] at each separation, and a bound on its error: the mean of R^1/2 (z - h)^3/2."""
+        frozen, heights, separation = self.frozen, self.of == "heights", self.separation
+        if has_own_sampler(self.family):
+            draws = frozen.rvs(_DRAWS, random_state=np.random.default_rng(_DRAWS))
+            terms = [np.maximum(draws - h, 0.0) ** 1.5 for h in separation] if heights else [np.sqrt(draws)]
+            mean, doubt = np.mean(terms, axis=1), _SIGMAS * np.std(terms, axis=1) / math.sqrt(_DRAWS)
+        else:
+            means = [mean_of_heights(frozen, h, 1.5) for h in separation] if heights else [mean_of_radii(frozen, 0.5)]
+            mean, doubt = np.array(means).T
         normal = scipy.stats.norm(scale=_STD)
-        return np.array([mean_of_heights(normal, h, 1.5).value for h in self.separation])
+        other = [math.sqrt(_RADIUS) if heights else mean_of_heights(normal, h, 1.5).value for h in separation]
+        unit = _COUNT * 4.0 / 3.0 * _MODULUS * np.array(other)
+        return unit * mean, unit * doubt
 
 
 class Verdict(NamedTuple):
@@ -115,8 +102,8 @@ def draw(rng: np.random.Generator, of: str, family: str) -> Scene | None:
     names = distribution.shapes.split(", ") if distribution.shapes else []
     for _ in range(_TRIES):
         parameters = {name: float(np.exp(rng.uniform(*np.log(_SHAPE_PARAMETERS)))) for name in names}
-        signs = np.where(rng.random(len(names)) < 0.15, -1.0, 1.0).tolist()
-        parameters = {name: sign * parameters[name] for name, sign in zip(names, signs, strict=True)}
+        for name, share in zip(names, rng.random(len(names)), strict=True):
+            parameters[name] *= -1.0 if share < 0.15 else 1.0
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             try:

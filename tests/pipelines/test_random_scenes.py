@@ -100,7 +100,7 @@ def results() -> dict[str, xr.Dataset]:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_judge_lets_pass_what_is_right(results: dict[str, xr.Dataset], name: str) -> None:
-    assert check(results[name], read(SCENES[name])).made > 300
+    assert check(results[name], read(SCENES[name])) > 300
 
 
 @pytest.mark.parametrize("name", PLANTED)
@@ -126,6 +126,6 @@ def test_any_scene_is_refused_or_right(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "random_scenes.png").stat().st_size > 5000
     with xr.open_dataset(tmp_path / "random_scenes.nc") as result:
-        count = int(result.scenes.sum())
+        count = result.sizes["scene"]
         assert f"{count} scenes drawn" in done.stdout
-        assert result.scenes.sel(outcome=COMPUTED).sum() > 0.6 * count
+        assert (result.outcome == COMPUTED).sum() > 0.6 * count

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+import all_studies
 import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
-from studies import all_studies
 from studies.work_precision import measure
 from studies.work_precision.measure import cheapest, points_of
 from studies.work_precision.points import QUANTITIES, Method, Point

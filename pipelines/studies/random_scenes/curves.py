@@ -37,10 +37,13 @@ class Curves(NamedTuple):
 
     def tolerance(self, name: str) -> Floats:
         """Return by how much values may be off: [row, 1]."""
-        largest = np.abs(self.values[name]).max(axis=1, keepdims=True)
-        if name in FORCES or self.expected:
-            return np.asarray(np.maximum(self.error[:, None], ROUNDING if name not in FORCES else 0.0) * largest)
-        return np.asarray(ROUNDING * largest)
+        rounding = 0.0 if name in FORCES else ROUNDING
+        error = np.maximum(self.error[:, None], rounding) if name in FORCES or self.expected else rounding
+        return np.asarray(error * np.abs(self.values[name]).max(axis=1, keepdims=True))
+
+    def given(self, *names: str) -> Iterator[tuple[str, Floats, Floats]]:
+        """Yield name, values and tolerance of each of these variables that was asked for."""
+        return ((name, self.values[name], self.tolerance(name)) for name in names if name in self.values)
 
 
 def curves_of(result: xr.Dataset, scene: Scene) -> Iterator[Curves]:

@@ -3,8 +3,9 @@
 import math
 import re
 import warnings
+from collections.abc import Iterator
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import tomli_w
@@ -18,9 +19,12 @@ from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
-_CONTACTS = ("contact_area", "contact_count", "contact_radius_sum")
+_CONTACTS = ("contact_count", "contact_area", "contact_radius_sum", "contact_fraction")
 _FOLDERS = re.compile(r"/\S*/|\bscene: ")
 _NUMBERS = re.compile(r"[-+]?\d[\w.+-]*|'[^']*'|\([^)]*\)")
+
+Claims: TypeAlias = Iterator[tuple[str, NDArray[np.bool_] | bool]]
+"""Claims about numbers, in words, and where they hold."""
 
 
 class Defect(AssertionError):  # noqa: N818 - it is what is looked for
@@ -36,26 +40,13 @@ class Verdict(NamedTuple):
     """How many pairs of numbers were compared."""
 
 
-class Claims:
-    """Claims about numbers, counted."""
-
-    def __init__(self) -> None:
-        self.made = 0
-
-    def hold(self, claim: str, holds: NDArray[np.bool_] | bool) -> None:
-        """Raise Defect unless all of them hold."""
-        each = np.asarray(holds)
-        self.made += each.size
-        if not each.all():
-            raise Defect(f"{claim}: not so at {np.argwhere(~np.atleast_1d(each))[0].tolist()}")
-
-
 def judge(table: dict[str, Any]) -> Verdict:
     """Run a scene in memory and check its result; raise Defect, with the scene in TOML, where that is wrong."""
     try:
         return _judged(table)
     except Defect as defect:
-        raise Defect(f"{defect}\n\n{tomli_w.dumps(table)}") from defect.__cause__
+        defect.add_note(tomli_w.dumps(table))
+        raise
 
 
 def _judged(table: dict[str, Any]) -> Verdict:
@@ -66,17 +57,16 @@ def _judged(table: dict[str, Any]) -> Verdict:
             warnings.simplefilter("ignore", FailedRuns)
             scene = read(table)
             result = rm.run(scene, workers=1)
-    except Unfinished as error:
-        raise Defect(f"an unhandled exception in a run: {error}") from error
-    except RoughmdrError as error:
-        return Verdict(REFUSED, reason_of(f"{type(error).__name__}: {error}"))
     except Exception as error:
-        raise Defect(f"an unhandled {type(error).__name__}: {error}") from error
-    claims = check(result, scene)
+        message = f"{type(error).__name__}: {error}"
+        if isinstance(error, RoughmdrError) and not isinstance(error, Unfinished):
+            return Verdict(REFUSED, reason_of(message))
+        raise Defect(f"an unhandled {message}") from error
+    comparisons = check(result, scene)
     failed = result.status.to_numpy() == 1
     if failed.any():
-        return Verdict(FAILED, reason_of(str(result.remark.to_numpy()[failed][0])), claims.made)
-    return Verdict(COMPUTED, comparisons=claims.made)
+        return Verdict(FAILED, reason_of(str(result.remark.to_numpy()[failed][0])), comparisons)
+    return Verdict(COMPUTED, comparisons=comparisons)
 
 
 def reason_of(message: str) -> str:
@@ -84,124 +74,123 @@ def reason_of(message: str) -> str:
     return _NUMBERS.sub("#", _FOLDERS.sub("", message.partition("\n")[0]))[:120]
 
 
-def check(result: xr.Dataset, scene: Scene) -> Claims:
-    """Check all that must be true of a result; raise Defect where it is not."""
-    claims = Claims()
-    _check_numbers(claims, result)
+def check(result: xr.Dataset, scene: Scene) -> int:
+    """Check all that must be true of a result, and count the numbers compared; raise Defect where one is wrong."""
+    made = 0
+    for claim, holds in _claims(result, scene):
+        each = np.atleast_1d(holds)
+        made += each.size
+        if not each.all():
+            raise Defect(f"{claim}: not so at {np.argwhere(~each)[0].tolist()}")
+    return made
+
+
+def _claims(result: xr.Dataset, scene: Scene) -> Claims:
+    """Claim all that must be true of a result."""
+    yield from _claims_on_numbers(result)
     cells = list(curves_of(result, scene))
     for curves in cells:
-        _check_each_step(claims, curves)
-        if curves.scene.work > 0.0:
-            _check_with_adhesion(claims, curves)
-        else:
-            _check_without_adhesion(claims, curves)
+        yield from _claims_on_each_step(curves)
+        yield from (_claims_with_adhesion if curves.scene.work > 0.0 else _claims_without_adhesion)(curves)
     if scene.accuracy is None:
-        _check_over_work(claims, scene, cells)
+        yield from _claims_over_work(scene, cells)
     else:
         missed = result.variables["accuracy_reached"].values > scene.accuracy.relative
-        claims.hold("an error that is missed is told of", ~missed | ("was not reached" in str(result.attrs)))
-    return claims
+        yield "an error that is missed is told of", ~missed | ("was not reached" in str(result.attrs))
 
 
-def _check_numbers(claims: Claims, result: xr.Dataset) -> None:
+def _claims_on_numbers(result: xr.Dataset) -> Claims:
     """Nothing is infinite; a computed value is a number; a failed run has a reason, one of the package's errors."""
     status = result.variables["status"].values
     for name, variable in result.variables.items():
         values = variable.values
         if values.dtype.kind != "f":
             continue
-        claims.hold(f"{name} is not infinite", ~np.isinf(values))
+        yield f"{name} is not infinite", ~np.isinf(values)
         if "step" in variable.dims and name != "separation" and not str(name).endswith("_sem"):
-            claims.hold(f"{name} is a number", ~np.isnan(values) | (status != DONE)[..., None])
+            yield f"{name} is a number", ~np.isnan(values) | (status != DONE)[..., None]
     error = result.variables["numerical_error"].values
-    claims.hold("an error is a number, and not negative", (error >= 0.0) | (status != DONE))
+    yield "an error is a number, and not negative", (error >= 0.0) | (status != DONE)
     for remark in result.variables["remark"].values[status == 1] if "remark" in result.coords else ():
-        names = [part for part in str(remark).split(": ") if isinstance(getattr(errors, part, None), type)]
-        known = bool(names) and issubclass(getattr(errors, names[0]), RoughmdrError)
-        claims.hold(f"a run fails for a reason, not with {remark}", known)
+        found = (getattr(errors, part, None) for part in str(remark).split(": "))
+        kind = next((each for each in found if isinstance(each, type)), object)
+        yield f"a run fails for a reason, not with {remark}", issubclass(kind, RoughmdrError)
 
 
-def _check_each_step(claims: Claims, curves: Curves) -> None:
+def _claims_on_each_step(curves: Curves) -> Claims:
     """Signs, contacts that are none, ratios to the nominal area, means and areas, at every step of its own."""
     values = curves.values
-    for name in (*_CONTACTS, "contact_fraction"):
-        if name in values:
-            claims.hold(f"{name} is not negative", values[name] >= -curves.tolerance(name) * curves.expected)
+    for name, each, slack in curves.given(*_CONTACTS):
+        yield f"{name} is not negative", each >= -slack * curves.expected
     if curves.realizations and "contact_count" in values:
         count = values["contact_count"]
-        claims.hold("contact_count is whole", count == np.round(count))
-        zero = ["contact_area", "contact_radius_sum", "contact_fraction"]
-        if not curves.attracts_at_a_distance:
-            zero += ["force", "pressure", "stiffness", "energy"]
-        for name in zero:
-            if name in values:
-                claims.hold(f"no contact, no {name}", values[name][count == 0.0] == 0.0)
+        yield "contact_count is whole", count == np.round(count)
+        loads = () if curves.attracts_at_a_distance else (*FORCES, "stiffness", "energy")
+        for name, each, _ in curves.given(*_CONTACTS[1:], *loads):
+            yield f"no contact, no {name}", each[count == 0.0] == 0.0
     area = curves.scene.asperities.nominal_area
     for ratio, whole in (("pressure", "force"), ("contact_fraction", "contact_area")):
         if ratio in values and whole in values and area:
             with np.errstate(under="ignore"):
                 same = np.isclose(values[ratio], values[whole] / area, rtol=ROUNDING, atol=1e-300)
-            claims.hold(f"{ratio} is {whole} over the nominal area", same)
-    if not curves.realizations and not curves.expected:
-        for name, (mean, least, greatest) in ((name, rows) for name, rows in values.items() if len(rows)):
-            slack = curves.tolerance(name)[1:].max()
-            claims.hold(f"the mean of {name} is no extreme", (least - slack <= mean) & (mean <= greatest + slack))
+            yield f"{ratio} is {whole} over the nominal area", same
+    if not curves.realizations and not curves.expected and len(curves.error):
+        for name, (mean, least, greatest), tolerance in curves.given(*values):
+            slack = tolerance[1:].max()
+            yield f"the mean of {name} is no extreme", (least - slack <= mean) & (mean <= greatest + slack)
     if curves.realizations and {"contact_area", "contact_radius_sum", "contact_count"} <= values.keys():
         one = np.sqrt(values["contact_area"] / math.pi)
         total, count = values["contact_radius_sum"], values["contact_count"]
         inside = (one * (1.0 - ROUNDING) <= total) & (total <= one * np.sqrt(count) * (1.0 + ROUNDING))
-        claims.hold("radii and areas go together", inside[values["contact_area"] > 1e-290])
+        yield "radii and areas go together", inside[values["contact_area"] > 1e-290]
 
 
-def _check_without_adhesion(claims: Claims, curves: Curves) -> None:
+def _claims_without_adhesion(curves: Curves) -> Claims:
     """All grows as the flat comes down, without memory, the force between the lines that the stiffness draws."""
     order = np.argsort(-curves.separation, kind="stable")
     down = -np.diff(curves.separation[order])
     values = {name: each[:, order] for name, each in curves.values.items()}
     for name, each in values.items():
         if name == "dissipated_energy":
-            claims.hold("nothing is lost without adhesion", each == 0.0)
+            yield "nothing is lost without adhesion", each == 0.0
             continue
         rises, slack = np.diff(each, axis=1), 2.0 * curves.tolerance(name)
-        claims.hold(f"{name} does not fall as the flat comes down", rises >= -slack)
+        yield f"{name} does not fall as the flat comes down", rises >= -slack
         if not curves.expected:
-            claims.hold(f"{name} has no memory", rises[:, down == 0.0] == 0.0)
-        claims.hold(f"{name} is not negative", each >= -0.5 * slack)
+            yield f"{name} has no memory", rises[:, down == 0.0] == 0.0
+        yield f"{name} is not negative", each >= -0.5 * slack
     if {"force", "stiffness"} <= values.keys() and (curves.realizations or curves.expected):
         rises, stiffness = np.diff(values["force"], axis=1), values["stiffness"]
         with np.errstate(over="ignore", under="ignore"):
             least, greatest = stiffness[:, :-1] * down, stiffness[:, 1:] * down
         slack = 2.0 * curves.tolerance("force") + 1e-9 * greatest
-        claims.hold("force and stiffness agree", (rises >= least - slack) & (rises <= greatest + slack))
+        yield "force and stiffness agree", (rises >= least - slack) & (rises <= greatest + slack)
     if {"contact_radius_sum", "stiffness"} <= values.keys():
         exact = 2.0 * curves.scene.effective_modulus * values["contact_radius_sum"]
         slack = np.maximum(2.0 * ROUNDING * exact, curves.expected * 2.0 * curves.tolerance("stiffness"))
-        claims.hold("stiffness is 2 E* times the sum of the radii", np.abs(values["stiffness"] - exact) <= slack)
+        yield "stiffness is 2 E* times the sum of the radii", np.abs(values["stiffness"] - exact) <= slack
 
 
-def _check_with_adhesion(claims: Claims, curves: Curves) -> None:
+def _claims_with_adhesion(curves: Curves) -> Claims:
     """Contacts grow on loading and shrink on unloading; after deeper loading they are larger and pull more."""
     values, move = curves.values, np.diff(curves.separation)
-    for name in (*_CONTACTS, "contact_fraction"):
-        if name in values:
-            rises, slack = np.diff(values[name], axis=1), 2.0 * curves.tolerance(name)
-            claims.hold(f"{name} does not fall as the flat comes down", rises[:, move <= 0.0] >= -slack)
-            claims.hold(f"{name} does not rise as the flat does", rises[:, move >= 0.0] <= slack)
+    for name, each, tolerance in curves.given(*_CONTACTS):
+        rises, slack = np.diff(each, axis=1), 2.0 * tolerance
+        yield f"{name} does not fall as the flat comes down", rises[:, move <= 0.0] >= -slack
+        yield f"{name} does not rise as the flat does", rises[:, move >= 0.0] <= slack
     if {"dissipated_energy", "energy", "force"} <= values.keys():
         # A loss is a difference of energies, and no more accurate than they are.
         lost, stored, force = (values[name] for name in ("dissipated_energy", "energy", "force"))
         whole = np.abs(stored).max(axis=1) + np.abs(force).max(axis=1) * np.ptp(curves.separation)
         slack = 2.0 * curves.tolerance("dissipated_energy") + ROUNDING * whole[:, None]
-        claims.hold("what is lost is lost", np.diff(lost, axis=1, prepend=0.0) >= -slack)
+        yield "what is lost is lost", np.diff(lost, axis=1, prepend=0.0) >= -slack
     for before, after in returns(curves.separation):
-        for name in (*_CONTACTS, "contact_fraction", *FORCES):
-            if name in values:
-                less, more = (after, before) if name in FORCES else (before, after)
-                gain, slack = values[name][:, more] - values[name][:, less], 2.0 * curves.tolerance(name)[:, 0]
-                claims.hold(f"{name} after the flat was lower, against before", gain >= -slack)
+        for name, each, tolerance in curves.given(*_CONTACTS, *FORCES):
+            gain = (each[:, after] - each[:, before]) * (-1.0 if name in FORCES else 1.0)
+            yield f"{name} after the flat was lower, against before", gain >= -2.0 * tolerance[:, 0]
 
 
-def _check_over_work(claims: Claims, scene: Scene, cells: list[Curves]) -> None:
+def _claims_over_work(scene: Scene, cells: list[Curves]) -> Claims:
     """More adhesion: larger contacts, and less force, at every step."""
     axes = [axis.key for axis in scene.sweep.axes]
     if scene.sweep.mode != "product" or "adhesion.work" not in axes:
@@ -213,7 +202,6 @@ def _check_over_work(claims: Claims, scene: Scene, cells: list[Curves]) -> None:
         for weak, strong in pairwise(ordered):
             if strong.scene.adhesion_model.model == "auto" or len(weak.error) != len(strong.error):
                 continue
-            for name in (*_CONTACTS, *FORCES):
-                if name in weak.values:
-                    gain, slack = strong.values[name] - weak.values[name], weak.tolerance(name) + strong.tolerance(name)
-                    claims.hold(f"{name} with more work", (-gain if name in FORCES else gain) >= -slack)
+            for name, each, tolerance in weak.given(*_CONTACTS, *FORCES):
+                gain = (strong.values[name] - each) * (-1.0 if name in FORCES else 1.0)
+                yield f"{name} with more work", gain >= -(tolerance + strong.tolerance(name))

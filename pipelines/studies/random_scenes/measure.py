@@ -8,18 +8,15 @@ as small as it can be, and raised as TOML.
 import multiprocessing
 import tempfile
 import time
-from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from studies.random_scenes.inputs import Inputs
-from studies.random_scenes.judge import OUTCOMES, judge
-from studies.random_scenes.scenes import scenes
+from studies.random_scenes.judge import judge
+from studies.random_scenes.scenes import scenes, write_inputs
 from studies.study import named
 
 from roughmdr.shapes import SHAPES
@@ -29,78 +26,50 @@ SEEDS = (2026, 2027)
 FULL, QUICK = 10_000, 300
 """Scenes in all."""
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
-KINDS = {
-    "shape": tuple(SHAPES),
-    "source": ("random", "nayak", "surface", "file"),
-    "adhesion": ("none", "jkr", "dugdale", "auto"),
-    "estimator": ("sampled", "stratified", "expected", "accuracy"),
-    "outcome": OUTCOMES,
-}
+KINDS = ("shape", "adhesion", "source", "estimator")
 
 
-class Record(NamedTuple):
-    """The outcome of one scene."""
-
-    kind: tuple[str, ...]
-    """As in ``KINDS``."""
-    reason: str
-    comparisons: int
-    seconds: float
-
-
-def kind_of(scene: dict[str, Any], outcome: str) -> tuple[str, ...]:
+def kind_of(scene: dict[str, Any]) -> tuple[str, ...]:
     """Return the kind of a scene, as in ``KINDS``."""
     section = scene["asperities"]
     shape = Path(section["file"]).stem if section["source"] == "file" else section.get("shape", "paraboloid")
     estimator = "accuracy" if "accuracy" in scene else scene.get("batch", {}).get("estimator", "sampled")
-    return shape, section["source"], scene.get("adhesion", {"model": "none"})["model"], estimator, outcome
+    return shape, scene.get("adhesion", {"model": "none"})["model"], section["source"], estimator
 
 
-def search(start: int, count: int, inputs: Inputs) -> list[Record]:
-    """Judge ``count`` scenes; raise Defect, with the smallest scene that shows it, where one is not right."""
+def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> list[tuple[Any, ...]]:
+    """Judge ``count`` scenes: return kind, verdict and run time [s] of each.
+
+    Raise Defect, with the smallest scene that shows it, where one is not right.
+    """
     records = []
+    phases, no_checks = (Phase.generate, Phase.shrink), list(HealthCheck)
 
     @seed(start)
-    @settings(
-        max_examples=count,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate, Phase.shrink],
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(scenes(inputs))
+    @settings(max_examples=count, deadline=None, database=None, phases=phases, suppress_health_check=no_checks)
+    @given(scenes(folder, cohesive))
     def judged(scene: dict[str, Any]) -> None:
         started = time.perf_counter()
         verdict = judge(scene)
-        seconds = time.perf_counter() - started
-        records.append(Record(kind_of(scene, verdict.outcome), verdict.reason, verdict.comparisons, seconds))
+        records.append((*kind_of(scene), *verdict, time.perf_counter() - started))
 
     judged()
     return records
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Judge all scenes; return how many there were of each kind, and why those were refused that were."""
-    each = (QUICK if quick else FULL) // len(SEEDS)
+    """Judge all scenes; return the kind of each, what became of it, and why it was refused if it was."""
+    each, cohesive = (QUICK if quick else FULL) // len(SEEDS), QUICK_COHESIVE if quick else tuple(SHAPES)
     with tempfile.TemporaryDirectory() as folder:
-        inputs = Inputs.written(Path(folder), QUICK_COHESIVE if quick else tuple(SHAPES))
+        write_inputs(Path(folder))
+        search_part = partial(search, count=each, folder=Path(folder), cohesive=cohesive)
         with ProcessPoolExecutor(len(SEEDS), multiprocessing.get_context("spawn")) as pool:
-            records = [one for part in pool.map(partial(search, count=each, inputs=inputs), SEEDS) for one in part]
-    counts = np.zeros([len(names) for names in KINDS.values()], dtype=np.int64)
-    for one in records:
-        counts[tuple(names.index(name) for names, name in zip(KINDS.values(), one.kind, strict=True))] += 1
-    reasons = Counter(one.reason for one in records if one.reason).most_common()
-    seconds = np.quantile([one.seconds for one in records], (0.5, 0.99, 1.0))
+            records = [record for part in pool.map(search_part, SEEDS) for record in part]
+    *words, comparisons, seconds = ([*column] for column in zip(*records, strict=True))
     return xr.Dataset(
         {
-            "scenes": (tuple(KINDS), counts, named("scenes drawn")),
-            "reason_count": ("reason", [count for _, count in reasons], named("scenes refused for a reason")),
-            "comparisons": ((), sum(one.comparisons for one in records), named("claims about numbers that held")),
-            "scene_time": ("quantile", seconds, named("run time of a scene", "s")),
+            "comparisons": ("scene", comparisons, named("claims about numbers that held")),
+            "run_time": ("scene", seconds, named("run time of a scene", "s")),
         },
-        {
-            **{name: list(names) for name, names in KINDS.items()},
-            "reason": [reason for reason, _ in reasons],
-            "quantile": ("quantile", [0.5, 0.99, 1.0], named("part of the scenes that take no longer")),
-        },
+        {name: ("scene", column) for name, column in zip((*KINDS, "outcome", "reason"), words, strict=True)},
     )

@@ -15,26 +15,18 @@ UNITS = {
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/m^2": 1.0},
     "J/m^2": {"J/m^2": 1.0, "mJ/m^2": 1e-3, "N/m": 1.0, "erg/cm^2": 1e-3},
 }
-FAMILIES: dict[str, dict[str, tuple[float, float]]] = {
-    "normal": {},
-    "uniform": {},
-    "lognormal": {},
-    "exponential": {},
+PLAIN = ("arcsine", "cauchy", "exponential", "gumbel_r", "halfnorm", "levy", "lognormal", "normal", "uniform")
+FAMILIES: dict[str, dict[str, tuple[float, float]]] = {name: {} for name in PLAIN} | {
     "lognorm": {"s": (-2, 0.5)},
     "weibull": {"c": (-0.5, 1)},
     "gamma": {"a": (-1, 2)},
     "beta": {"a": (-0.7, 1), "b": (-0.7, 1)},
     "t": {"df": (-0.3, 2)},
-    "cauchy": {},
     "pareto": {"b": (-0.5, 1)},
-    "levy": {},
-    "gumbel_r": {},
     "genextreme": {"c": (-2, 0.5)},
     "skewnorm": {"a": (-1, 1)},
     "triang": {"c": (-2, 0)},
     "truncnorm": {"a": (-1, 0), "b": (0.2, 1)},
-    "arcsine": {},
-    "halfnorm": {},
     "invgauss": {"mu": (-1, 0.5)},
 }
 """Families of scipy.stats, with the powers of ten between which their shape parameters lie."""
@@ -47,11 +39,16 @@ def seldom(draw: Draw, one_in: int) -> bool:
     return bool(draw(st.integers(0, one_in - 1)) == one_in - 1)
 
 
+def power_of_ten(draw: Draw, low: float, high: float) -> float:
+    """Draw a number between two powers of ten."""
+    return float(10.0 ** draw(st.floats(low, high)))
+
+
 def number(draw: Draw, low: float, high: float, unit: float = 1.0) -> float:
     """Draw a number between two powers of ten, times a unit; seldom an extreme one."""
     if seldom(draw, ONE_IN):
         return float(draw(st.sampled_from(EXTREME)))
-    return float(f"{unit * 10.0 ** draw(st.floats(low, high)):.4g}")
+    return float(f"{unit * power_of_ten(draw, low, high):.4g}")
 
 
 def quantity(draw: Draw, value: float, dimension: str) -> float | str:
@@ -65,20 +62,20 @@ def distribution(draw: Draw, size: float, dimension: str, *, positive: bool, bou
     """Draw a distribution of about this size, around it where it is to be positive, else around 0."""
     family = draw(st.sampled_from(sorted(FAMILIES)))
     table: Table = {"distribution": family, **{key: number(draw, *ends) for key, ends in FAMILIES[family].items()}}
-    spread = size if not positive else size * 10.0 ** draw(st.floats(-2.0, 0.5))
+    spread = size * power_of_ten(draw, -2.0, 0.5) if positive else size
     by_moments = family == "lognormal" or (seldom(draw, 8) if family in HEAVY else draw(st.booleans()))
     middle, width = ("mean", "std") if by_moments else ("loc", "scale")
     table[width] = quantity(draw, spread, dimension)
-    if positive and (middle == "mean" or draw(st.booleans())):
+    if positive and (by_moments or draw(st.booleans())):
         table[middle] = quantity(draw, size, dimension)
     elif family == "lognormal":
         table[middle] = quantity(draw, number(draw, -1.0, 1.0, size), dimension)
     if bounded or (positive and not seldom(draw, 6)):
-        table["min"] = quantity(draw, size * (0.35 if bounded else 10.0 ** draw(st.floats(-2.0, -0.1))), dimension)
+        table["min"] = quantity(draw, size * (0.35 if bounded else power_of_ten(draw, -2.0, -0.1)), dimension)
     elif not positive and seldom(draw, 4):
-        table["min"] = quantity(draw, -size * 10.0 ** draw(st.floats(-1.0, 1.0)), dimension)
+        table["min"] = quantity(draw, -size * power_of_ten(draw, -1.0, 1.0), dimension)
     if bounded or seldom(draw, 3):
-        table["max"] = quantity(draw, size * (3.0 if bounded else 10.0 ** draw(st.floats(0.1, 1.5))), dimension)
+        table["max"] = quantity(draw, size * (3.0 if bounded else power_of_ten(draw, 0.1, 1.5)), dimension)
     return table
 
 

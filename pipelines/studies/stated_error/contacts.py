@@ -5,20 +5,26 @@ outwards, or detaches; it begins at first touch.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import pairwise
+from typing import NamedTuple
 
-from oracles.jkr import Asperity, Branch
+import numpy as np
+from oracles.dugdale import Array, Cohesion, Integrals, State
+from oracles.dugdale_curve import Curve, Place, each_of
+from oracles.dugdale_punch import Punch
+from oracles.jkr import Asperity
 from oracles.multiprecision import Number, mp
 from oracles.profiles import closed_profile
 from scipy.optimize import brentq
 
-from roughmdr.kernels.adhesion import release_stretch
-from roughmdr.shapes import Shape
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.shapes import FlatPunch, Paraboloid, Shape
 
-DIGITS = 40
-TANGENT_RANGE = 1e-11  # of the indentation above the start of a branch, where the tangent is right to its square
-_MAX_ITERATIONS = 100
-_LARGEST_LOG = 34.0  # of the distance from the middle of a branch: doubles end there
+_DIGITS = 22  # of the integrals with adhesion of finite range
+_TANGENT_RANGE = 1e-8  # of the indentation above the start of a branch, where the tangent is right to its square
+_BEYOND_FOLDS = 16.0  # times the largest contact radius
+_MIN_RADIUS = 1e-20  # over the next: where contacts begin to touch
 
 
 def branch_numbers(indentations: Iterable[Number], ends: list[tuple[Number, Number]], touch: Number) -> Iterator[int]:
@@ -38,19 +44,15 @@ def branch_numbers(indentations: Iterable[Number], ends: list[tuple[Number, Numb
         yield branch
 
 
-class ContactPath:
+class ContactPath(NamedTuple):
     """One asperity on a half-space, loaded and unloaded."""
 
+    ends: list[tuple[Number, Number]]
+    """Indentations [m] between which each stable branch lies."""
+    force: Callable[[int, Number], Number]
+    """Return the force [N] on a branch at an indentation [m]."""
     touch: Number = 0
     """The indentation [m] at which a contact begins."""
-
-    def __init__(self, ends: list[tuple[Number, Number]]) -> None:
-        self.ends = ends
-        """Indentations [m] between which each stable branch lies."""
-
-    def force(self, branch: int, delta: Number) -> Number:
-        """Return the force [N] on a branch at an indentation [m]."""
-        raise NotImplementedError
 
     def forces(self, indentations: list[Number]) -> list[Number]:
         """Return the force [N] at each indentation [m] of a path."""
@@ -58,71 +60,95 @@ class ContactPath:
         return [self.force(k, delta) if k >= 0 else mp.mpf(0) for k, delta in zip(branches, indentations, strict=True)]
 
 
-class PunchPath(ContactPath):
-    """A flat punch without adhesion or with JKR's: its contact radius is always b."""
+def contact_path(shape: Shape, effective_modulus: float, adhesion: Adhesion, deepest: float) -> ContactPath:
+    """Return the reference of one asperity at indentations up to ``deepest`` [m]."""
+    if not isinstance(shape, FlatPunch):
+        if adhesion.cohesive:
+            return _CohesiveCurve(shape, effective_modulus, adhesion, deepest).path
+        return _jkr_path(shape, effective_modulus, adhesion.work)
+    if adhesion.cohesive:
+        punch = Punch(shape.radius, effective_modulus, adhesion.work, adhesion.strength)
+        ends = [(punch.pull_off("displacement").delta, mp.inf)]
+        return ContactPath(ends, lambda _, delta: punch.state(delta).force, -punch.work / punch.strength)
+    E, b = mp.mpf(effective_modulus), mp.mpf(shape.radius)
+    return ContactPath([(-mp.sqrt(2 * mp.pi * b * adhesion.work / E), mp.inf)], lambda _, delta: 2 * E * b * delta)
 
-    def __init__(self, radius: float, effective_modulus: float, work: float) -> None:
-        b = mp.mpf(radius)
-        super().__init__([(-mp.sqrt(2 * mp.pi * b * work / mp.mpf(effective_modulus)), mp.inf)])
-        self.stiffness = 2 * mp.mpf(effective_modulus) * b
 
-    def force(self, branch: int, delta: Number) -> Number:
+def _jkr_path(shape: Shape, effective_modulus: float, work: float) -> ContactPath:
+    """Return the path of a shape that is no flat punch, without adhesion or with JKR's."""
+    asperity = Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
+    branches = asperity.branches("indentation")
+    tops = [
+        mp.inf if branch.hi in (None, asperity.profile.end) else asperity.state(branch.hi)["indentation"]
+        for branch in branches
+    ]
+
+    def force(number: int, delta: Number) -> Number:
+        branch = branches[number]
+        if delta <= branch.value:
+            return asperity.state(branch.lo)["force"] if branch.lo > 0 else mp.mpf(0)
+        state = asperity.solve([branch], "indentation", delta)
+        if state is None:
+            raise ArithmeticError(f"no contact of {shape} at {delta}")
+        return state["force"]
+
+    return ContactPath([(branch.value, top) for branch, top in zip(branches, tops, strict=True)], force)
+
+
+class _CohesiveParaboloid(Cohesion):
+    """A paraboloid, whose integrals have a closed form."""
+
+    def integrals(self, a: Array, m: Array, c: Array, inside: bool = False) -> Integrals:
+        """Return the integrals for arrays ``a`` > 0, ``m`` > 0 and ``c`` [m]."""
+        curvature = self.slope(np.array([self.math.number(1)]))[0]
+        theta = self.math.atan2(m, a)
+        opening = ((c * c / 2 - a * a) * theta + a * m / 2) * curvature
+        return Integrals(a * a * curvature, 2 * a**3 * curvature / 3, opening, (c * theta + a * m / c) * curvature)
+
+
+class _CohesiveCurve:
+    """A shape that is no flat punch, with adhesion of finite range.
+
+    Where a contact is on its equilibrium curve is found in double precision; its state there has many digits, and the
+    tangent leads from it to the indentation itself.
+    """
+
+    def __init__(self, shape: Shape, effective_modulus: float, adhesion: Adhesion, deepest: float) -> None:
+        kind = _CohesiveParaboloid if isinstance(shape, Paraboloid) else Cohesion
+        E, work, strength = (mp.mpf(each) for each in (effective_modulus, adhesion.work, adhesion.strength))
+        arguments = closed_profile(shape), E, work, strength
+        self.curve = Curve(*arguments, float(shape.nondimensional()[0]), 1.0)
+        self.curve.exact, self.curve.rough = kind(*arguments, _DIGITS), kind(*arguments, 0)
+        radius = float(self.curve.touch)
+        while self._state(Place(radius, False)).delta < deepest:
+            radius *= 2.0
+        self.curve.reach = _BEYOND_FOLDS * radius
+        self.starts = self.curve.minima("displacement")
+        tops = [fold.state.delta for fold in self.curve.folds["displacement"] if not fold.rising]
+        ends = zip((start.delta for start in self.starts), [*tops, mp.inf], strict=True)
+        self.path = ContactPath(list(ends), self._force, -self.curve.exact.range)
+
+    def _state(self, place: Place) -> State:
+        """Return the state at a place in double precision."""
+        radius = np.array([float(place.radius)])
+        rough = self.curve.rough
+        return each_of(rough.lifted(radius) if place.lifted else rough.at(radius, self.curve.roughly(radius)))[0]
+
+    def _force(self, branch: int, delta: Number) -> Number:
         """Return the force [N]."""
-        return self.stiffness * delta
-
-
-class JkrPath(ContactPath):
-    """Any other shape without adhesion or with JKR's."""
-
-    def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
-        width, _, _ = shape.nondimensional()
-        self.shape, self.asperity = shape, Asperity(closed_profile(shape), effective_modulus, work, width)
-        self.branches = self.asperity.branches("indentation")
-        super().__init__([(branch.value, self._top(branch)) for branch in self.branches])
-
-    def _top(self, branch: Branch) -> Number:
-        """Return the indentation [m] where a branch ends."""
-        endless = branch.hi is None or branch.hi == self.asperity.profile.end
-        return mp.inf if endless else self._indentation(branch.hi)[0]
-
-    def _indentation(self, a: Number) -> tuple[Number, Number]:
-        """Return the indentation [m], and its derivative by the radius."""
-        g, slope, _ = self.asperity.profile.mdr(a)
-        stretch = self.asperity.dl(a)
-        return g - stretch, slope - stretch / (2 * a)
-
-    def force(self, branch: int, delta: Number) -> Number:
-        """Return the force [N]: the contact radius by Newton's method, and the remainder along the tangent."""
-        own = self.branches[branch]
-        if delta <= own.value:
-            return self.asperity.state(own.lo)["force"] if own.lo > 0 else mp.mpf(0)
-        a = self._initial_guess(own, float(delta))
-        for _ in range(_MAX_ITERATIONS):
-            state = self.asperity.state(a)
-            rest = delta - state["indentation"]
-            if abs(rest) <= TANGENT_RANGE * (delta - own.value):
-                return state["force"] + state["stiffness"] * rest
-            before, a = a, a + rest / self._indentation(a)[1]
-            a = max(a, (before + own.lo) / 2)
-            a = a if own.hi is None else min(a, (before + own.hi) / 2)
-        raise ArithmeticError(f"no contact of {self.shape} at {delta}")
-
-    def _initial_guess(self, branch: Branch, delta: float) -> Number:
-        """Return the contact radius [m] on a branch in double precision."""
-        low, work, effective_modulus = (
-            float(branch.lo),
-            float(self.asperity.work),
-            float(self.asperity.effective_modulus),
+        start = self.starts[branch]
+        steps = pairwise(self.curve.places)
+        place, after = next(
+            (one, other) for (one, _), (other, state) in steps if state.c > start.c and state.delta >= delta
         )
-        scale = low or float(self.asperity.width)
-
-        def radius(y: float) -> float:
-            if branch.hi is None:
-                return low + scale * math.exp(y)
-            return low + (float(branch.hi) - low) / (1.0 + math.exp(-y))
+        low = float(place.radius) if place.lifted == after.lifted else float(after.radius) * _MIN_RADIUS
 
         def excess(y: float) -> float:
-            a = radius(y)
-            return float(self.shape.g(a)) - release_stretch(a, effective_modulus, work) - delta
+            return float(self._state(Place(math.exp(y), after.lifted)).delta - delta)
 
-        return mp.mpf(radius(brentq(excess, -_LARGEST_LOG, _LARGEST_LOG, xtol=1e-15)))
+        y = brentq(excess, math.log(low), math.log(float(after.radius)), xtol=1e-15)
+        state = self.curve.state(Place(math.exp(y), after.lifted))
+        rest = delta - state.delta
+        if abs(rest) > _TANGENT_RANGE * (delta - start.delta):
+            raise ArithmeticError(f"{delta} was not met")
+        return state.force + state.stiffness * rest

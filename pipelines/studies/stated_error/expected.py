@@ -1,114 +1,92 @@
-"""The expected force by plain and dense quadrature over shape parameters and heights.
+"""The expected force by quadrature over shape parameters and heights.
 
 The distributions and the force of one contact are the package's; which summits are in contact, on which branch, and the
-integrals are not: panels end at all points where anything has a kink, and within each Gauss's rule is taken in a
-variable in which roots at either end are polynomials.
+integrals are not: panels over shape parameters end at all points where anything has a kink, those over heights are
+halved until their halves agree with them, and within each Gauss's rule is taken in a variable in which roots at either
+end are polynomials.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache, cached_property
-from itertools import pairwise
-from typing import Any
+from functools import cache, cached_property, partial
+from itertools import groupby, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
-from oracles.profiles import closed_profile
-from scipy.optimize import brentq
 from studies.stated_error.contacts import branch_numbers
 
 from roughmdr.asperity.contact import Contact
-from roughmdr.ensemble.nodes import Heights, Nodes, Rule
-from roughmdr.ensemble.random.population import Population, Populations
+from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.ensemble.random.population import Population
 from roughmdr.ensemble.random.population_nodes import nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
-from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
-
-Array = NDArray[Any]
+from roughmdr.shapes import SHAPES
 
 ORDERS = (16, 24, 36, 54)
-"""Nodes on each panel, from coarse to fine."""
+"""Nodes on each panel over shape parameters, from coarse to fine."""
 _SCORE_END, _SCORE_PANEL = 8.5, 1.7  # normal scores: where parameters end, and the widest panel
 _MAX_POPULATIONS = 2
 _SCAN = 100  # scores between which kinks are searched
 _HALVINGS = 40
-_HEIGHT_EDGES = np.concatenate([4.0 ** np.arange(-18.0, 0.0), np.arange(1.0, 40.0), 40.0 * 2.0 ** np.arange(10.0)])
-"""Edges of panels over heights, from the lowest, in widths of their distribution."""
-_DEPTH_EDGES = 4.0 ** np.arange(-8.0, 12.0)  # edges above the start of a branch, over the natural depth
-_LEAP_EDGES = 4.0 ** np.arange(-12.0, -1.0)  # edges about a leap, over the natural depth
-_LEAP_RATE = 3.0  # times the usual rate of the force
-_LEAP_SEARCH = 2.0  # natural depths above the start of a branch
-_LEAP_SCAN, _REFINEMENTS = 2_000, 3  # indentations between which leaps are searched, and ever finer scans about one
-
-
-@cache
-def _gauss(order: int) -> tuple[Floats, Floats]:
-    x, weight = np.polynomial.legendre.leggauss(order)
-    return x, weight
+_ORDER, _RTOL = 16, 2e-15  # on each panel over heights; of the largest force
+_gauss = cache(np.polynomial.legendre.leggauss)
 
 
 def rule(low: Floats, high: Floats, order: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights on each panel: [panel, node]."""
+    """Return nodes and weights on each panel, one panel after the other."""
     x, weight = _gauss(order)
-    y = 0.5 * (1.0 + x)
-    fraction, derivative = y * y * (3.0 - 2.0 * y), 6.0 * y * (1.0 - y)
-    length = (high - low)[:, None]
-    return low[:, None] + length * fraction, 0.5 * length * (derivative * weight)
+    y, length = 0.5 * (1.0 + x), (high - low)[:, None]
+    nodes = low[:, None] + length * (y * y * (3.0 - 2.0 * y))
+    return nodes.ravel(), (0.5 * length * (6.0 * y * (1.0 - y) * weight)).ravel()
+
+
+def _over_scores(score: Floats, weight: Floats) -> Rule:
+    """Return the rule for means over a normal score."""
+    return Rule(score, weight * np.exp(-0.5 * score**2) / math.sqrt(2.0 * math.pi))
 
 
 class ExpectedForce:
     """The expected force of a scene without a sweep."""
 
     def __init__(self, scene: Scene, separation: Floats) -> None:
-        self.scene, self.separation = scene, separation
-        self.populations: Populations | None = None
+        self.scene, self.separation, self.nodes = scene, separation, scene.asperities.nodes
         if isinstance(scene.asperities, RandomAsperities):
             # Heights are measured from where most of them are: far from there z - h would lose its digits.
             populations = scene.asperities.populations
             datum = populations.members[0].height.loc
             self.separation = separation - datum
-            moved = tuple(_lowered(each, datum) for each in populations.members)
-            self.populations = replace(populations, members=moved)
+            lowered = replace(populations, members=tuple(_lowered(each, datum) for each in populations.members))
+            self.nodes = partial(nodes_of, lowered)
+        count = self.nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).weights.size
+        self.drawn = count > _MAX_POPULATIONS
+        """Whether a shape parameter is drawn."""
+        self.several = count > 3 * _MAX_POPULATIONS
+        """Whether more than one parameter of a population is drawn: kinks are curves then."""
 
     def force(self, order: int) -> Floats:
         """Return the force [N] at each step, with ``order`` nodes on each panel."""
-        nodes = self._nodes(self._scores(order))
+        nodes = self.nodes(self._scores(order))
         total = np.zeros_like(self.separation)
-        for number, share in enumerate(nodes.weights.tolist()):
-            total += share * _EqualTips(self, nodes, number).force(order)
+        for number in np.argsort(-nodes.weights).tolist():  # those of little weight may be less accurate
+            share = float(nodes.weights[number])
+            tolerance = _RTOL * float(np.abs(total).max()) / (share * nodes.weights.size)
+            total += share * _EqualTips(self, nodes, number).force(tolerance)
         return self.scene.asperities.expected_count * total
-
-    @property
-    def several(self) -> bool:
-        """Whether more than one parameter of a population is drawn: kinks are curves then."""
-        return self._count_of_three > 3 * _MAX_POPULATIONS
-
-    @cached_property
-    def _count_of_three(self) -> int:
-        """The number of nodes with three scores for each parameter."""
-        return self._nodes(Rule(np.arange(-1.0, 2.0), np.ones(3))).weights.size
-
-    def _nodes(self, scores: Rule) -> Nodes:
-        """Return the asperities that stand for all."""
-        return self.scene.asperities.nodes(scores) if self.populations is None else nodes_of(self.populations, scores)
 
     def _scores(self, order: int) -> Rule:
         """Return Gauss's rule on panels that end at the kinks of all steps; the trapezoidal rule for curved kinks."""
-        if self._count_of_three <= _MAX_POPULATIONS:  # nothing is drawn
+        if not self.drawn:
             return Rule(np.zeros(1), np.ones(1))
         if self.several:
             score, step = np.linspace(-_SCORE_END, _SCORE_END, order + order // 2, retstep=True)
-            return Rule(score, float(step) * np.exp(-0.5 * score**2) / math.sqrt(2.0 * math.pi))
+            return _over_scores(score, np.full(score.size, step))
         edges = np.linspace(-_SCORE_END, _SCORE_END, math.ceil(2.0 * _SCORE_END / _SCORE_PANEL) + 1)
         edges = np.union1d(edges, self._kinks)
-        score, weight = rule(edges[:-1], edges[1:], order)
-        return Rule(score.ravel(), (weight * np.exp(-0.5 * score**2)).ravel() / math.sqrt(2.0 * math.pi))
+        return _over_scores(*rule(edges[:-1], edges[1:], order))
 
     @cached_property
     def _kinks(self) -> list[float]:
@@ -128,7 +106,7 @@ class ExpectedForce:
 
     def _label(self, score: float) -> list[object]:
         """Return the ends of all that is in contact, by their names."""
-        nodes = self._nodes(Rule(np.array([score]), np.ones(1)))
+        nodes = self.nodes(Rule(np.array([score]), np.ones(1)))
         return [_EqualTips(self, nodes, number).label for number in range(nodes.weights.size)]
 
 
@@ -143,12 +121,10 @@ class _EqualTips:
     """All asperities with one set of shape parameters."""
 
     def __init__(self, expected: ExpectedForce, nodes: Nodes, number: int) -> None:
-        source, scene = expected.scene.asperities, expected.scene
+        scene, self.heights, self.separation = expected.scene, nodes.heights[number], expected.separation
         values = {name: float(column[number]) for name, column in nodes.parameters.items()}
-        self.shape = source.shared_profile or SHAPES[source.shape_name](**values)
+        self.shape = scene.asperities.shared_profile or SHAPES[scene.asperities.shape_name](**values)
         self.contact = Contact.of(self.shape, scene.effective_modulus, scene.adhesion_model)
-        self.heights: Heights = nodes.heights[number]
-        self.separation = expected.separation
         self.depth = self.contact.depth[0]
         """The natural depth [m]."""
         self.feet, tops = branch_ends(self.contact)
@@ -168,99 +144,54 @@ class _EqualTips:
     @property
     def in_contact(self) -> Iterator[tuple[int, int, float, float]]:
         """Step, branch, lowest and highest summit [m] of what is in contact."""
-        ends = list(self.cuts)
-        middles = (0.5 * (low + high) for low, high in pairwise(ends))
-        branch = [list(branch_numbers(z - self.separation, self.branches, self.touch)) for z in middles]
-        for step in range(self.separation.size):
-            begin = 0
-            for number in range(1, len(branch) + 1):
-                if number == len(branch) or branch[number][step] != branch[begin][step]:
-                    if branch[begin][step] >= 0:
-                        yield step, branch[begin][step], ends[begin], ends[number]
-                    begin = number
+        cuts = list(pairwise(self.cuts))
+        paths = (0.5 * (low + high) - self.separation for low, high in cuts)
+        branches = [list(branch_numbers(path, self.branches, self.touch)) for path in paths]
+        for step, at_step in enumerate(zip(*branches, strict=True)):
+            for branch, group in groupby(zip(at_step, cuts, strict=True), key=lambda pair: pair[0]):
+                if branch >= 0:
+                    ends = [end for _, cut in group for end in cut]
+                    yield step, branch, ends[0], ends[-1]
 
     @property
     def label(self) -> tuple[object, ...]:
         """The ends of all that is in contact, by their names."""
         return tuple((step, branch, self.cuts[low], self.cuts[high]) for step, branch, low, high in self.in_contact)
 
-    def force(self, order: int) -> Floats:
-        """Return the mean force [N] of one such asperity at each step."""
-        parts = [self._panels(*one, order) for one in self.in_contact]
-        if not parts:
-            return np.zeros_like(self.separation)
-        step, branch, foot, above, weight = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-        density = self.heights.density((self.separation[step] - self.heights.origin) + (foot + above))
-        force = np.zeros_like(above)
-        for one in np.unique(branch).tolist():
-            force[branch == one] = self._force_on(one, above[branch == one])
-        return np.asarray(np.bincount(step, weight * density * force, self.separation.size), dtype=np.float64)
+    def force(self, tolerance: float) -> Floats:
+        """Return the mean force [N] of one such asperity at each step, to the tolerance [N] or to the last digits."""
+        inner = [self.heights.origin + edge for edge in self.heights.edges]
+        found = []
+        for number, on, lowest, highest in self.in_contact:
+            edges = np.array([lowest, *(z for z in inner if lowest < z < highest), highest]) - self.separation[number]
+            ends = np.sqrt(np.maximum(edges - self.branches[on][0], 0.0)).tolist()
+            found += [(number, on, *pair) for pair in pairwise(ends)]
+        panels, total = np.array(found).reshape(-1, 4).T, np.zeros_like(self.separation)
+        whole = self._integrals(panels)
+        for _ in range(_HALVINGS):
+            if not whole.size:
+                break
+            step, branch, low, high = panels
+            middle = 0.5 * (low + high)
+            halves = np.array([(step, branch, low, middle), (step, branch, middle, high)])
+            parts = np.array([self._integrals(half) for half in halves])
+            error = np.abs(parts.sum(axis=0) - whole)
+            right = error <= max(tolerance, _RTOL * (np.abs(total).max() + np.abs(parts).sum()))
+            total += np.bincount(step[right].astype(int), parts.sum(axis=0)[right], total.size)
+            panels, whole = np.concatenate(halves[:, :, ~right], axis=1), parts[:, ~right].ravel()
+        return np.asarray(total + np.bincount(panels[0].astype(int), whole, total.size))
 
-    def _panels(self, step: int, branch: int, low: float, high: float, order: int) -> tuple[Array, ...]:
-        """Return the nodes for summits from low to high [m].
-
-        Step, branch, its start [m], indentations above that [m] and weights [m].
-        """
-        h, foot = self.separation[step], self.branches[branch][0]
-        edges = np.sqrt(np.maximum(self._edges(h, foot, low - h, high - h) - foot, 0.0))
-        s, ds = (each.ravel() for each in rule(edges[:-1], edges[1:], order))
-        return np.full(s.size, step), np.full(s.size, branch), np.full(s.size, foot), s * s, 2.0 * s * ds
-
-    def _edges(self, h: float, foot: float, begin: float, end: float) -> Floats:
-        """Return indentations [m] between which all is smooth, and no panel wider than the features there."""
-        lowest, highest, width = self.heights.low - h, self.heights.high - h, self.heights.scale
-        above_foot = foot + (self.depth if self.contact.law.adhesive else end - foot) * _DEPTH_EDGES
-        from_ends = [lowest + width * _HEIGHT_EDGES, highest - width * _HEIGHT_EDGES[_HEIGHT_EDGES < 1.0]]
-        edges = np.concatenate([[begin, end], above_foot, *from_ends, self._corners, self._leap_edges])
-        return np.unique(edges[(edges >= begin) & (edges <= end)])
-
-    @cached_property
-    def _corners(self) -> Floats:
-        """Indentations [m] at which the edge of the contact comes to a kink of the profile, or to the axis."""
-        effective_modulus, adhesion = self.contact.effective_modulus, self.contact.adhesion
-        if adhesion.cohesive:
-            return np.array([-self._zone_at_lift * 2.0 * adhesion.strength / effective_modulus])
-        if not isinstance(self.shape, ProfileShape):
-            return np.zeros(0)
-        radii = [float(b) for b in closed_profile(self.shape).kinks]
-        return np.array([float(self.shape.g(b)) - release_stretch(b, effective_modulus, adhesion.work) for b in radii])
-
-    @cached_property
-    def _leap_edges(self) -> Floats:
-        """Indentations [m] about those at which the force all but leaps, since two folds nearly part the branch."""
-        if not self.contact.law.adhesive or self.contact.adhesion.cohesive:
-            return np.zeros(0)
-        found = [np.zeros(0)]
-        for branch, (foot, top) in enumerate(self.branches):
-            edges = np.linspace(0.0, min(_LEAP_SEARCH * self.depth, top - foot), _LEAP_SCAN)
-            rate = np.abs(np.diff(self._force_on(branch, edges)))
-            steep = np.maximum(np.maximum(rate[:-2], rate[2:]), _LEAP_RATE * np.median(rate))
-            for i in np.flatnonzero(rate[1:-1] > steep) + 1:
-                low, high = edges[i - 1], edges[i + 2]
-                for _ in range(_REFINEMENTS):
-                    scan = np.linspace(low, high, _SCAN)
-                    k = int(np.abs(np.diff(self._force_on(branch, scan))).argmax())
-                    low, high = scan[max(k - 1, 0)], scan[min(k + 2, _SCAN - 1)]
-                steps = self.depth * _LEAP_EDGES
-                found.append(foot + 0.5 * (low + high) + np.concatenate([-steps, [0.0], steps]))
-        return np.concatenate(found)
-
-    @property
-    def _zone_at_lift(self) -> float:
-        """The cohesive radius [m] at which contacts cease to touch."""
-        if isinstance(self.shape, FlatPunch):
-            return self.shape.radius
-        adhesion, end = self.contact.adhesion, 1.0
-        pull = 2.0 * adhesion.strength / self.contact.effective_modulus * (1.0 - 2.0 / math.pi)
-
-        def excess(c: float) -> float:
-            return float(self.shape.f(c)) + pull * c - adhesion.range
-
-        while excess(end) > 0.0:
-            end *= 0.5
-        while excess(end) < 0.0:
-            end *= 2.0
-        return float(brentq(excess, 0.5 * end, end, xtol=1e-300, rtol=1e-14))
+    def _integrals(self, panels: Floats) -> Floats:
+        """Return the mean force [N] over panels, [step, branch, low, high]: roots of indentations above its start."""
+        step, branch = panels[:2].astype(int)
+        s, ds = rule(panels[2], panels[3], _ORDER)
+        feet = np.array([start for start, _ in self.branches])[branch]
+        columns = (self.separation[step] - self.heights.origin, feet, branch)
+        origin, foot, at_branch = (np.repeat(column, _ORDER) for column in columns)
+        value = self.heights.density(origin + (foot + s * s)) * 2.0 * s * ds
+        for k in set(branch.tolist()):
+            value[at_branch == k] *= self._force_on(k, (s * s)[at_branch == k])
+        return np.asarray(value.reshape(-1, _ORDER).sum(axis=1))
 
     def _force_on(self, branch: int, above: Floats) -> Floats:
         """Return the force [N] on a branch at indentations [m] above its start."""

@@ -1,27 +1,28 @@
 """numerical_error against the true error of the force, in random scenes.
 
 The scenes are run, and their forces are computed again at least ten times finer: those of draws asperity by asperity
-with 40 digits from the slopes of the profiles, the expected force by dense quadrature.
+with 60 digits from the slopes of the profiles, the expected force by quadrature.
 """
 
 import warnings
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from multiprocessing import get_context
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from oracles.multiprecision import Number, mp
-from studies.stated_error.contacts import DIGITS, ContactPath, JkrPath, PunchPath
+from oracles.dugdale import Array
+from oracles.multiprecision import mp
+from studies.stated_error.contacts import ContactPath, contact_path
 from studies.stated_error.expected import ORDERS, ExpectedForce
-from studies.stated_error.finite_range import CohesivePath, CohesivePunchPath
 from studies.stated_error.scenes import RandomScene, scene
 from studies.study import named
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
-from roughmdr.shapes import SHAPES, FlatPunch, Shape
+from roughmdr.shapes import SHAPES
 
 SCENES, QUICK = 200, 60
 FINER = 10.0
@@ -53,53 +54,36 @@ def judge(drawn: RandomScene, disturbance: float = 0.0) -> Judged:
     stated = float(result.numerical_error.max())
     exact = reference(drawn, result.separation.to_numpy(), stated)
     computed = result.force_mean if "force_mean" in result else result.force.isel(realization=0)
-    largest = max(abs(each) for each in exact)
-    disturbed = computed.to_numpy() + disturbance * stated * float(largest)
-    error = max(abs(one - other) for one, other in zip(exact, disturbed.tolist(), strict=True))
+    largest = np.abs(exact).max()
+    error = np.abs(computed.to_numpy() + disturbance * stated * float(largest) - exact).max()
     return Judged(float(error / largest) if largest else float(error), stated)
 
 
-def reference(drawn: RandomScene, separation: Floats, stated: float) -> list[Number]:
+def reference(drawn: RandomScene, separation: Floats, stated: float) -> Array:
     """Return the force [N] at each step, of any precision; the mean over all realisations."""
     given = read(drawn.table)
     if drawn.estimator == "expected":
-        return list(expected_force(given, separation, stated))
+        return expected_force(given, separation, stated)
     count = given.batch.realizations
-    each = [force_of_draws(given, realization, separation) for realization in range(count)]
-    return [sum(parts) / count for parts in zip(*each, strict=True)]
+    return np.asarray(sum(force_of_draws(given, each, separation) for each in range(count)) / count)
 
 
-def force_of_draws(scene: Scene, realization: int, separation: Floats) -> list[Number]:
+def force_of_draws(scene: Scene, realization: int, separation: Floats) -> Array:
     """Return the force [N] at each step, of the asperities of one realisation of a scene without a sweep."""
     source = scene.asperities
     drawn = source.ensemble(scene.seed, realization, stratified=scene.batch.estimator == "stratified")
     columns = {} if drawn.shared_profile is not None else drawn.parameters
-    with mp.workdps(DIGITS):
-        path = [mp.mpf(h) for h in separation.tolist()]
-        total = [mp.mpf(0)] * len(path)
-        contacts: dict[tuple[float, ...], ContactPath] = {}
-        deepest = float(drawn.height.max() - separation.min()) if drawn.height.size else 0.0
-        for number, z in enumerate(drawn.height.tolist()):
-            values = {name: float(column[number]) for name, column in columns.items()}
-            key = tuple(values.values())
-            if key not in contacts:
-                shape = source.shared_profile or SHAPES[source.shape_name](**values)
-                contacts[key] = contact_path(shape, scene, deepest)
-            forces = contacts[key].forces([mp.mpf(z) - h for h in path])
-            total = [one + other for one, other in zip(total, forces, strict=True)]
-        return total
+    deepest = float(drawn.height.max(initial=-np.inf) - separation.min())
 
+    @cache
+    def path_of(*values: float) -> ContactPath:
+        shape = source.shared_profile or SHAPES[source.shape_name](**dict(zip(columns, values, strict=True)))
+        return contact_path(shape, scene.effective_modulus, scene.adhesion_model, deepest)
 
-def contact_path(shape: Shape, scene: Scene, deepest: float) -> ContactPath:
-    """Return the reference of one asperity of a scene, at indentations up to ``deepest`` [m]."""
-    adhesion, effective_modulus = scene.adhesion_model, scene.effective_modulus
-    if isinstance(shape, FlatPunch):
-        if adhesion.cohesive:
-            return CohesivePunchPath(shape.radius, effective_modulus, adhesion.work, adhesion.strength)
-        return PunchPath(shape.radius, effective_modulus, adhesion.work)
-    if adhesion.cohesive:
-        return CohesivePath(shape, effective_modulus, adhesion.work, adhesion.strength, deepest)
-    return JkrPath(shape, effective_modulus, adhesion.work)
+    h, total = np.array([mp.mpf(each) for each in separation.tolist()]), np.full(separation.size, mp.mpf(0))
+    for z, *values in zip(drawn.height.tolist(), *(column.tolist() for column in columns.values()), strict=True):
+        total += path_of(*values).forces((z - h).tolist())
+    return total
 
 
 def expected_force(scene: Scene, separation: Floats, stated: float) -> Floats:
@@ -128,18 +112,20 @@ def measure(quick: bool) -> xr.Dataset:
 
 def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
     """Return the errors of each scene that was not refused."""
-    kept = [(one, errors) for one, errors in zip(drawn, judged, strict=True) if not errors.refused]
-    scenes, errors = [one for one, _ in kept], [each for _, each in kept]
-    honest = np.array([each.honest for each in errors], dtype=np.int8)
+    computed = [pair for pair in zip(drawn, judged, strict=True) if not pair[1].refused]
+    rows = [(*one[:4], *errors[:2], errors.honest) for one, errors in computed]
+    number, shape, adhesion, estimator, true, stated, honest = ([*column] for column in zip(*rows, strict=True))
     return xr.Dataset(
         {
-            "true_error": ("scene", [each.true for each in errors], named("true error over the largest force")),
-            "stated_error": ("scene", [each.stated for each in errors], named("numerical_error")),
-            "honest": ("scene", honest, named("1 where the true error is within")),
+            "true_error": ("scene", true, named("true error over the largest force")),
+            "stated_error": ("scene", stated, named("numerical_error")),
+            "honest": ("scene", np.array(honest, dtype=np.int8), named("1 where the true error is within")),
         },
         {
-            "scene": ("scene", [one.number for one in scenes], named("number of the scene")),
-            **{name: ("scene", [getattr(one, name) for one in scenes]) for name in ("estimator", "adhesion", "shape")},
+            "scene": ("scene", number, named("number of the scene")),
+            "estimator": ("scene", estimator),
+            "adhesion": ("scene", adhesion),
+            "shape": ("scene", shape),
         },
-        {"refused": len(drawn) - len(kept)},
+        {"refused": len(drawn) - len(rows)},
     )

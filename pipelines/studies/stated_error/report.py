@@ -64,11 +64,7 @@ def report(result: xr.Dataset) -> str:
         rows.append([*cells, f"{worst:.2g}"])
     head = "estimator, scenes, honest, stated: median, 95 %, stated/true: median, 95 %, true/stated: at most"
     false = [f"- scene {n}: `{scene(n).table}`" for n in result.scene[result.honest == 0].to_numpy().tolist()]
-    parts = [
-        f"The true error is within the stated one in {100.0 * float(result.honest.mean()):.1f} % of "
-        f"{result.sizes['scene']} random scenes (at least {100 * HONEST:.0f} % are asked for; "
-        f"{result.attrs['refused']} more were refused).",
-        table(head.split(", "), rows),
-        *(["Not within it:\n\n" + "\n".join(false)] if false else []),
-    ]
-    return "\n\n".join(parts)
+    share = f"{100.0 * float(result.honest.mean()):.1f} % of {result.sizes['scene']} random scenes"
+    asked = f"(at least {100 * HONEST:.0f} % are asked for; {result.attrs['refused']} more were refused)"
+    parts = [f"The true error is within the stated one in {share} {asked}.", table(head.split(", "), rows)]
+    return "\n\n".join([*parts, *(["Not within it:", "\n".join(false)] if false else [])])
