@@ -87,7 +87,7 @@ class Verdict(NamedTuple):
 
 def families() -> list[str]:
     """Return all families that are drawn from."""
-    return [name for name in known_families() if name not in SLOW]
+    return [name for name in known_families() if name not in SLOW and hasattr(scipy.stats, name)]
 
 
 def has_own_sampler(family: str) -> bool:

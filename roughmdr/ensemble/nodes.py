@@ -21,7 +21,7 @@ class UpperTail(NamedTuple):
     xi: float  # index of extreme values: heights grow as fraction^-xi
 
     def over_edge(self, growth: float) -> float:
-        """Return the force of the tail over that of one height at its edge, if a force grows as height^growth."""
+        """Return the force of the tail divided by that of one height at its edge, if forces grow as height^growth."""
         return self.fraction * float(mean_over_edge(np.array(growth * self.xi)))
 
 
@@ -35,7 +35,7 @@ class Heights(NamedTuple):
     edges: tuple[float, ...]
     """y, ascending; a negligible fraction lies below the first, ``tail`` is above the last."""
     scale: float
-    """[m]; half of the summits lie within it, or nearly all of the upper half within three times that."""
+    """[m]; the interquartile range, or a third of the distance from the median to score 3 if that is larger."""
     tail: UpperTail
     origin: float  # [m]
 
@@ -58,7 +58,10 @@ def fraction_above(score: float) -> float:
 
 
 def mean_over_edge(index: Floats) -> Floats:
-    """Return the mean over a tail of what grows as fraction^-index, over its value at the edge; inf if unbounded."""
+    """Return the mean, over a tail, of a quantity that grows as fraction^-index, divided by its value at the edge.
+
+    inf where the mean is unbounded.
+    """
     return np.where(index < 1.0, 1.0 / np.where(index < 1.0, 1.0 - index, 1.0), math.inf)
 
 

@@ -20,7 +20,9 @@ MAX_COUNT = 1_000_000_000
 
 
 class Source(Section):
-    """[asperities]: each source declares its keys and overrides what follows."""
+    """[asperities]: a source declares its keys and overrides what raises NotImplementedError, and defaults as
+    needed.
+    """
 
     is_random: ClassVar[bool] = True
     """Whether realisations differ."""

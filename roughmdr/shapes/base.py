@@ -36,7 +36,7 @@ class Shape(ABC):
     """Whether its kernels are made from its ``Profile`` and describe a contact by the parameter t of that."""
     shared: ClassVar[bool] = False  # all asperities of an ensemble have one profile
     flat: ClassVar[bool] = False  # the tip is flat to one width
-    corner: ClassVar[bool] = False  # g' is infinite at the edge of such a flat, or where a blunter tip ends
+    corner: ClassVar[bool] = False  # g' jumps to infinity, at the edge of a flat or of a blunter tip
     body_radius: ClassVar[tuple[str, ...]] = ()
     """The parameters whose sum is the radius where the body that the profile stands for ends."""
 

@@ -109,7 +109,7 @@ def _t_of_q(q: float, params: Params) -> float:
 def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, float]:
     """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
     c = params[0]
-    low, high = 0.0, 0.61575390344349083  # q where it ends to fall for c = 0
+    low, high = 0.0, 0.61575390344349083  # q where it stops falling for c = 0
     for _ in range(60):
         q = 0.5 * (low + high)
         square = 1.0 + q * q

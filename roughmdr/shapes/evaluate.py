@@ -23,7 +23,10 @@ law = _Kernel("law")
 
 
 def _loop(r: Floats, width: Floats, rise: Floats, params: Floats, f: Floats, slope: Floats) -> None:
-    """Fill f [m] and f' [1]; the rounding of r/width is put right, since next to the edge of a flat f is all of it."""
+    """Fill f [m] and f' [1].
+
+    f is corrected for the rounding of r/width: next to the edge of a flat it is no larger than that.
+    """
     for i in range(r.size):
         k = min(i, width.size - 1)
         scaled = r[i] / width[k]

@@ -12,7 +12,8 @@ from roughmdr.numerics.vector_math import atan, atan_minus_cubic, q_minus_atan, 
 from roughmdr.shapes.base import ProfileShape, Shape, check_radii
 from roughmdr.shapes.profile import Params, Profile, one, q_of_radius, t_is_q
 
-# Where sqrt(a) g'(a), infinite at the corner, ends to fall: q^3 atan q + q^2 = 2; 6 q^4 + 3 q^2 = 2 in 12 q^2 + 3.
+# Where sqrt(a) g'(a), infinite at the corner, stops falling: q^3 atan q + q^2 = 2 for the cone, 6 q^4 + 3 q^2 = 2 for
+# the paraboloid.
 _CONE_SOFTENING_END = 1.0424561234141570
 _PARABOLOID_SOFTENING_END = 0.61575390344349083
 

@@ -35,9 +35,9 @@ def _gamma_step(z: float) -> Pair:
 def precise_kappa(exponent: float) -> Pair:
     """Return kappa(n) = sqrt(pi)/2 n Gamma(n/2)/Gamma((n + 1)/2) (H 26)."""
     if exponent < _MIN_EXPONENT:
-        return extended.two_sum(1.0, exponent * math.log(2.0))  # and terms of its square
+        return extended.two_sum(1.0, exponent * math.log(2.0))  # the next term is O(n^2)
     if exponent > _MAX_EXPONENT:
-        return math.sqrt(0.5 * math.pi) * math.sqrt(exponent), 0.0  # and 1/4 of its inverse
+        return math.sqrt(0.5 * math.pi) * math.sqrt(exponent), 0.0  # the next term is 1/(4 n) of it
     half = (0.5 * exponent, 0.0)
     return extended.divide(extended.multiply(extended.sqrt(extended.PI), half), _gamma_step(half[0]))
 

@@ -70,8 +70,8 @@ class Cone(_Power):
 class PowerLaw(_Power):
     """f = c r^n (exponent n [1], coefficient c) or f = H (r/l)^n (exponent n, width l [m], rise H [m]).
 
-    c is the number that it is in metres; its unit, m^(1-n), changes with n. The second set keeps its numbers in range
-    for steep exponents. ShapeError unless all of one set are given, > 0.
+    c is a plain number, for r and f in metres; its unit, m^(1-n), changes with n. The second set keeps its numbers in
+    range for steep exponents. ShapeError unless all of one set are given, > 0.
     """
 
     exponent: float

@@ -67,7 +67,7 @@ def _power_elastic_integral(a: float, params: Params) -> float:
 
 
 def _power_roundings(params: Params) -> float:
-    """Add the roundings of t in its power to those of any profile."""
+    """Return the roundings of any power, and n times that of t."""
     return 14.0 + params[0]
 
 

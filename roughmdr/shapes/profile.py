@@ -68,7 +68,7 @@ def _nothing_to_precompute(params: Any) -> None:
 
 
 class Profile(NamedTuple):
-    """The functions of a profile; g and G as in H 17."""
+    """The functions of a profile; g and G as in ``shapes.base``."""
 
     mdr_profile: Callable[..., tuple[Any, Any, Any, Any]]  # (t, params) -> a, da/dt, g, dg/dt
     reduced_load: Callable[..., Any]  # (t, params) -> ∫_0^a x g'(x) dx = a g - G, without that difference
@@ -81,11 +81,11 @@ class Profile(NamedTuple):
     kink: Callable[[float, float, Params], bool] = _no_kink
     """(low, high, params) -> whether g' is not smooth for t from low to high."""
     mdr_integral: Callable[..., Any] | None = None
-    """(t, params) -> G; None where a g - reduced_load does not cancel: it does where g rises from 0 at the edge of a
-    flat, or next to one."""
+    """(t, params) -> G; needed where a g - reduced_load cancels, as g rises from 0 at the edge of a flat or next to
+    it."""
     elastic_integral: Callable[..., Any] | None = None
     """(t, params) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
-    corner: bool = False  # whether g' jumps up to infinity where sqrt(a) g' begins to fall
+    corner: bool = False  # whether g' jumps to infinity, at the edge of a flat or of a blunter tip
     flat: bool = False  # whether the profile is flat to one width, where g and t begin
     end: float = math.inf  # the radius where the profile ends
     breakpoint_count: Callable[[Params], int] = zero  # params -> number of radii at which g is not smooth
@@ -98,4 +98,4 @@ class Profile(NamedTuple):
     term_sizes: Callable[[float, Params], tuple[float, float]] | None = None
     """(t, params) -> sizes of the terms that g and reduced_load are sums of; None where the terms do not cancel."""
     precompute: Callable[[Any], None] = _nothing_to_precompute
-    """(params) fills in what else the functions need, in the second element of parameters that are one number."""
+    """Fills in what else the functions need; the params of a shape that has one have a spare second element for it."""

@@ -73,7 +73,7 @@ def _check_distinct(exponents: list[float]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class PowerSeries(SharedProfile):
-    """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c the number that it is in metres, [m^(1-n)].
+    """f = sum of c r^n over ``terms`` {n: c}, with n [1] and c [m^(1-n)], plain numbers for r and f in metres.
 
     ShapeError unless there is a term and all n and c are finite and > 0.
     """

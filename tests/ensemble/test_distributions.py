@@ -20,7 +20,7 @@ from roughmdr.scene import read
 
 UM = 1e-6
 SLOW = ("levy_stable", "studentized_range")  # seconds for a quantile
-FAMILIES = [name for name in known_families() if name not in SLOW]
+FAMILIES = [name for name in known_families() if name not in SLOW and hasattr(scipy.stats, name)]
 LEVELS = np.array([0.03, 0.2, 0.5, 0.8, 0.97])
 NOT_AT_ZERO = "its mean is not at z = 0"
 

@@ -96,9 +96,9 @@ class SummitDistribution(NamedTuple):
     def height_density(self, z: ArrayLike, v: ArrayLike) -> Floats:
         """Return the density [1/m] of the heights z [m] of summits with v [1], at least 0.
 
-        With c^2 = 3/(2 alpha), w^2 = (1 - 2 c^2/3) m0 and the residual variance t^2 = 1 - c^2 of a surface of m0 = 1 it
-        is exp(-z^2/(2 w^2))/(sqrt(2 pi) w) erfc(y)/erfc(sqrt(3 v/2)), where y = (sqrt(v) - B)/sqrt(2/A),
-        A = (3 - 2 c^2)/t^2 and B = c z/(sqrt(m0) (3 - 2 c^2)): the joint density over S from sqrt(v) to infinity.
+        It is exp(-z^2/(2 w^2))/(sqrt(2 pi) w) erfc(y)/erfc(sqrt(3 v/2)), the integral of the joint density over S from
+        sqrt(v) to infinity. Here c^2 = 3/(2 alpha), w^2 = (1 - 2 c^2/3) m0, t^2 = 1 - c^2 (the residual variance where
+        m0 = 1), y = (sqrt(v) - B)/sqrt(2/A), A = (3 - 2 c^2)/t^2 and B = c z/(sqrt(m0) (3 - 2 c^2)).
         """
         from scipy.special import erfc, erfcx
 

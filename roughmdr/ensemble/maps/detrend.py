@@ -12,7 +12,7 @@ from roughmdr.numerics.arguments import Floats
 Trend = Literal["none", "mean", "plane", "quadratic"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "plane": 1, "quadratic": 2}
 
-_KERNEL_WIDTH = 1.5  # of the Gaussian, in cut-offs; beyond, it is below 1e-14 of its height
+_KERNEL_WIDTH = 1.5  # of the Gaussian, in cut-offs; beyond, it is about 1e-14 of its height
 _CUTOFF_RTOL = 1e-9  # a wave as long as the cut-off is kept
 
 
@@ -91,7 +91,9 @@ def _cut_spectrum(height: Floats, along_x: float, along_y: float) -> None:
 
 
 def _smooth(field: Floats, along_x: float, along_y: float) -> None:
-    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; it is 0 outside."""
+    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; outside it counts as
+    0.
+    """
     from scipy import fft
 
     # The Gaussian is a product of one along x and one along y. Along an axis with one point the field is constant.

@@ -21,8 +21,9 @@ _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors o
 
 # Points per summit below which there is a warning. On maps without noise, the fit finds the mean curvature of the
 # summits 2 % low at 290 points per summit, 9 % at 74, 15 % at 42 and 29 % at 19 where all waves are equally long; 3 %
-# at 260, 14 % at 68 and 23 % at 42 where they are self-affine. White noise alone has 9.5. Weak noise on long waves has
-# many; the misfit of the fit shows it: up to 0.15, the mean curvature is within 15 %, whatever the cause.
+# at 260, 14 % at 68 and 23 % at 42 where they are self-affine. A map of white noise has 9.5 points per summit. With
+# weak noise on long waves there are many, and only the misfit of the fit shows it: up to a misfit of 0.15 the mean
+# curvature is within 15 %, whatever the cause.
 FEW_POINTS = 40.0
 
 

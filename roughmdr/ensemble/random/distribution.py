@@ -15,8 +15,10 @@ _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 _FAR_SCORE, _NEGLIGIBLE = 8.0, 1e-14  # values beyond this score are checked unless negligible in the mean of cubes
 _MEAN_ERROR = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
 _DRAW_SCORES = np.arange(-8.0, 9.0)  # normal scores as far as draws reach
-_BROAD = 0.2  # step of the logarithm in one score up to which few draws give the spread of forces
-_LONG_TAIL = 15.0  # of two scores: it is 4 of them in a normal distribution and 12 in an exponential one
+_BROAD = 0.2  # change of log(value) in one normal score up to which a few draws show the spread of forces
+_LONG_TAIL = (
+    15.0  # from the median to score 8, over that to score 2: 4 in a normal distribution, 11 in an exponential one
+)
 _FAR_FRACTION = 1e-15  # beyond it some inverses of scipy are wrong by orders of magnitude, as that of invgauss
 
 
@@ -107,7 +109,10 @@ class Distribution:
         return values
 
     def _checked_values(self, scores: Floats, values: Floats) -> Floats:
-        """Return values far out, NaN where too few lie beyond them unless they are negligible in a mean."""
+        """Return values far out; NaN, for an inverse that is wrong, where too few lie beyond one.
+
+        That is less than half of the expected fraction, unless the value is negligible in the mean of the cubes.
+        """
         below, above = self.fractions(values)
         expected, beyond = ndtr(-np.abs(scores)), np.where(scores > 0.0, above, below)
         near = np.abs(self.from_scores(np.array([-_FAR_SCORE, _FAR_SCORE])) - self.loc).max()

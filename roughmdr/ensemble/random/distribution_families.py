@@ -1,8 +1,9 @@
-"""Declare the families of distributions that a scene can name; a new one is an entry of ``FAST_FAMILIES``.
+"""Declare the families of distributions that a scene can name.
 
-Every continuous distribution of scipy.stats is a family already, by its name there. scipy.stats takes longer to import
-than a small scene to compute: the families that most scenes use are declared here on scipy.special and give the same
-bits, as a test checks. A name that is not scipy's is an entry of ``ALIASES``.
+Every continuous distribution of scipy.stats is a family already, by its name there. ``FAST_FAMILIES`` holds those that
+most scenes use, on scipy.special, since scipy.stats takes longer to import than a small scene to compute; they give the
+same bits as scipy's. A family that scipy lacks is one more entry there. A second name for a family is an entry of
+``ALIASES``; it has the parameters, loc and scale of that family.
 """
 
 import math

@@ -12,7 +12,7 @@ from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.schema.wording import close_matches
 
 _COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
-_LOCATION = ("loc", "mean", "std")  # std with the default mean
+_LOCATION = ("loc", "mean", "std")  # any of these determines it: std together with the default mean
 _MIN_FRACTION = 1e-200  # that a truncated distribution keeps: less has no digits left
 _MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # of a family: far beyond, scipy can crash the whole process
 
@@ -22,9 +22,9 @@ class DistributionReader:
     """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
 
     The parameters are scipy's (the family's own, loc, scale), with which the distribution is scipy's, loc = 0 by
-    default; or mean and std, to which it is moved and scaled. ``mean`` is the default mean of those that have a std.
-    ``scale`` has no default: a length of 1 m is never meant. ``min`` and ``max`` truncate what the others describe.
-    Raises RoughmdrError, with the names that are allowed, where the entry cannot be read.
+    default; or mean and std, to which it is moved and scaled. ``mean`` is used where a std is given but neither mean
+    nor loc. ``scale`` has no default: a length of 1 m is never meant. ``min`` and ``max`` truncate what the others
+    describe. Raises RoughmdrError, with the names that are allowed, where the entry cannot be read.
     """
 
     dimension: str

@@ -55,7 +55,7 @@ class Populations:
 
     @property
     def random_streams(self) -> tuple[int, ...]:
-        """The streams that draws depend on: without those of quantities that are constant."""
+        """The streams that draws depend on: that of the heights, and those of parameters that are not constant."""
         random = {name for each in self.members for name in each.random_parameters}
         streams = (stream for name, stream in self.parameter_streams.items() if name in random)
         return (HEIGHT, *((POPULATION,) if len(self.members) > 1 else ()), *streams)

@@ -11,16 +11,16 @@ from roughmdr.ensemble.random.distribution_families import ndtr
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.numerics.arguments import Floats
 
-# Normal scores at which edges may lie: on each side the farthest of the first where the family's inverse is finite, and
-# above it those of the second that matter, if the upper tail is heavy.
+# Normal scores at which edges may lie: on each side the farthest of _LIGHT_TAIL_ENDS with a finite quantile, and above
+# it, if the upper tail is heavy, those of _HEAVY_TAIL_ENDS that still bear force.
 _LIGHT_TAIL_ENDS = (HEIGHT_END, 8.0, 6.5, 5.0)
 _HEAVY_TAIL_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)
 _BULK = 3.0  # normal scores between which most heights lie: 99.7 %
 _QUARTILE = 0.6745  # normal score of the upper quartile
-_MAX_FORCE_EXPONENT = 3.0  # no force grows faster with the indentation than to this power: exponents above 1/2
+_MAX_FORCE_EXPONENT = 3.0  # forces grow as indentation^(1 + 1/n), n > 1/2
 _NEGLIGIBLE_FORCE = 1e-16  # of the force that the bulk bears
 _NEXT_TO_LOC = 1e-14  # of the scale
-_RESOLUTION = 2.0**-48  # of a height, or of the scale: the smallest width of a distribution of heights
+_RESOLUTION = 2.0**-48  # smallest width of the heights, over a height or over the scale
 _MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
 
 
@@ -57,7 +57,7 @@ def _edges(from_scores: Callable[[Floats], Floats], unit: float) -> tuple[tuple[
     """Return edges [m], scale [m] and upper tail of heights y [m] at normal scores; ``unit`` is that of y [m]."""
     low_bulk, lower, median, upper, bulk = from_scores(np.array([-_BULK, -_QUARTILE, 0.0, _QUARTILE, _BULK])).tolist()
     narrowest = _RESOLUTION * max(unit, abs(median))  # heights that go with an extreme parameter may all be equal
-    # The highest count, where most heights are next to a pole.
+    # Where most heights lie next to a pole, the upper ones set the scale.
     scale = max(upper - lower, (bulk - median) / _BULK, narrowest)
     ends = np.array(_LIGHT_TAIL_ENDS)
     low = next((y for y in from_scores(-ends).tolist() if math.isfinite(y)), low_bulk)

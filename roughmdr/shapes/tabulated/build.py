@@ -14,7 +14,7 @@ from roughmdr.shapes.tabulated.abel import integrals
 from roughmdr.shapes.tabulated.lookup import DEGREE, HEAD, PIECE, beginnings, elastic_integral_between
 
 _RTOL = 3e-15  # of the largest value on a piece: what the last coefficients may leave
-_NOISE = 1e-11  # below it, what halving does not lower is rounding
+_NOISE = 1e-11  # an error below this that halving the piece does not lower is rounding
 _MIN_HALF_LENGTH = 2.0**-20  # of a piece, relative to the interval between two knots
 _OCTAVES_BEYOND = 2  # beyond the last knot, until the far field is right: 16^-14 is below rounding
 _SAMPLES = 8  # on each piece, in the search for where sqrt(a) g' falls
@@ -28,7 +28,7 @@ _TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_POINTS, DEGREE
 
 
 class _Interval(NamedTuple):
-    """Radii with q = sqrt(a^2 - base^2) from start to stop, times the length."""
+    """Radii whose q = sqrt(a^2 - base^2) lies between start and stop, both times the length."""
 
     base: float
     length: float

@@ -138,7 +138,7 @@ def _kink(low: float, high: float, params: Params) -> bool:
 
 
 def _breakpoint_count(params: Params) -> int:
-    """Return the number of pieces: one begins at each breakpoint, and the last breakpoint is the end of the last."""
+    """Return the number of pieces: breakpoints are the beginnings of all but the first, and the end of the last."""
     return beginnings(params)[1]
 
 

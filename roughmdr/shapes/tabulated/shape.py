@@ -80,7 +80,7 @@ class Tabulated(SharedProfile):
         pieces = np.array(self._exact_pieces(), dtype=np.float64)
         return np.ascontiguousarray(pieces[:, 0]), np.ascontiguousarray(pieces[:, 1:])
 
-    # By way of the given heights, which the params hold with their roundings summed up.
+    # From the given heights: those in the params are sums, whose roundings add up.
     def f(self, r: ArrayLike) -> Floats:
         s, (c0, c1, c2), piece = self._locate(r)
         return np.asarray(self.heights[piece] + self._units[1] * s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)))
