@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from roughmdr.variables import RUN_DIAGNOSTICS
 
-Row = Mapping[str, Any]
-"""Diagnostics of one run, or of several that are merged, by name."""
+Row = Mapping[str, Any]  # diagnostics of one run, or of several that are merged, by name
 Columns = dict[str, NDArray[Any]]
 
 
@@ -22,29 +21,33 @@ def row_of(**known: Any) -> Row:
 
 def columns_of(rows: Sequence[Row]) -> Columns:
     """Return the diagnostics of runs as arrays."""
+    return {name: np.array([row[name] for row in rows], dtype=each.dtype) for name, each in RUN_DIAGNOSTICS.items()}
+
+
+def complete(stated: Columns, count: int) -> Columns:
+    """Return the diagnostics of runs that are done, of which a file may not state all."""
     return {
-        name: np.array([row[name] for row in rows], dtype=declared.dtype) for name, declared in RUN_DIAGNOSTICS.items()
+        name: stated[name].astype(each.dtype) if name in stated else np.full(count, each.unstated, dtype=each.dtype)
+        for name, each in RUN_DIAGNOSTICS.items()
     }
 
 
 def not_run(shape: tuple[int, ...]) -> Columns:
     """Return the diagnostics of realisations that did not run; texts are objects, since any may be put there."""
     return {
-        name: np.full(shape, declared.missing, dtype=object if declared.dtype is str else declared.dtype)
-        for name, declared in RUN_DIAGNOSTICS.items()
+        name: np.full(shape, each.missing, dtype=object if each.dtype is str else each.dtype)
+        for name, each in RUN_DIAGNOSTICS.items()
     }
 
 
 def merge(columns: Mapping[str, Sequence[Any] | NDArray[Any]]) -> Row:
     """Return the diagnostics of several runs together, which are in the order of their realisations."""
-    merged = {}
-    for name, declared in RUN_DIAGNOSTICS.items():
-        column = columns[name]
-        if declared.merge == "first":
-            merged[name] = next(filter(None, column), declared.missing)
-        else:
-            merged[name] = column[0] if len(column) == 1 else getattr(np, declared.merge).reduce(column)
-    return merged
+    return {
+        name: next(filter(None, columns[name]), declared.missing)
+        if declared.merge == "first"
+        else getattr(np, declared.merge).reduce(columns[name])
+        for name, declared in RUN_DIAGNOSTICS.items()
+    }
 
 
 def merge_rows(rows: Sequence[Row]) -> Row:

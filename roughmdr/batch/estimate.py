@@ -10,13 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import START_UP, file_bytes, result_bytes
 from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realization
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
+from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError
-from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.memory import available_memory
 
 _MAX_ASPERITIES = 10_000  # beyond, time and memory grow in proportion
@@ -33,20 +31,13 @@ class Estimate(NamedTuple):
 
     runs: int
     tasks: int
-    seconds: float
-    """In all."""
-    start_up: float
-    """Until the first asperity is made."""
-    memory: float
-    """Peak, in all."""
-    resident: float
-    """Memory of Python and its packages; 0 where the system does not tell."""
-    available_memory: float
-    """How much more memory this process could be given; inf where the system does not tell."""
-    file: float
-    """Size of the result on disk."""
-    failures: tuple[str, ...]
-    """Which of the cells that were tried cannot be computed, and why."""
+    seconds: float  # in all
+    start_up: float  # until the first asperity is made
+    memory: float  # peak, in all
+    resident: float  # of Python and its packages; 0 where the system does not tell
+    available_memory: float  # how much more this process could be given; inf where the system does not tell
+    file: float  # size of the result on disk
+    failures: tuple[str, ...]  # which of the cells that were tried cannot be computed, and why
 
 
 def estimate(plan: Plan, workers: int) -> Estimate:
@@ -56,8 +47,16 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     prepare_all(plan, first)
     resident = _resident()
     cells = np.random.default_rng(0).permutation(len(plan.cells))[:_MAX_CELLS]
-    costs, failures = _costs(plan, rounds, sorted(cells.tolist()))
     variables = plan.scene.output.variables
+    costs, failures = [], []
+    for cell in sorted(cells.tolist()):
+        try:
+            costs.append(_cost(plan.cells[cell], rounds.methods[cell].estimator, variables))
+        except RoughmdrError as error:
+            failures.append(f"{plan.name_of(cell, 0)}: {error}")
+    if not costs:
+        raise RoughmdrError(failures[0])
+    run_seconds, run_bytes = zip(*costs, strict=True)
     runs = sum(each.last - each.first for each in first)
     tasks = len(split_into_tasks(plan, first, variables, workers))
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -65,34 +64,18 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
     if plan.keeps_statistics:
         memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
-    computing = float(costs[:, 0].mean()) * runs / busy
+    computing = float(np.mean(run_seconds)) * runs / busy
     return Estimate(
         runs=runs,
         tasks=tasks,
         seconds=START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps,
         start_up=START_UP,
-        memory=resident + memory + busy * float(costs[:, 1].max()),
+        memory=resident + memory + busy * max(run_bytes),
         resident=resident,
         available_memory=available_memory()[0],
         file=file,
         failures=tuple(failures),
     )
-
-
-def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[Floats, list[str]]:
-    """Return [cell, time and memory] of one run of those cells that can be run, and why the others cannot.
-
-    RoughmdrError where none can.
-    """
-    costs, failures = [], []
-    for cell in cells:
-        try:
-            costs.append(_cost(plan.cells[cell], rounds.methods[cell].estimator, plan.scene.output.variables))
-        except RoughmdrError as error:
-            failures.append(f"{plan.name_of(cell, 0)}: {error}")
-    if not costs:
-        raise RoughmdrError(failures[0])
-    return np.array(costs), failures
 
 
 def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, float]:

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.moments import mean_and_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.layout import done_of, swept_sizes
-from roughmdr.result.statistics import mean_and_error
 from roughmdr.storage.labelled import Labelled
 
 

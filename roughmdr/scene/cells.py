@@ -15,8 +15,7 @@ from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
 from roughmdr.schema.quantities import Reader
 
-_Values = tuple[tuple[str, object], ...]
-"""Swept keys of one section, each with its value."""
+_Values = tuple[tuple[str, object], ...]  # swept keys of one section, each with its value
 _SectionCache = dict[tuple[str, _Values], tuple[dict[str, Any], Any]]
 """Sections by their name and swept values, each as a table and validated."""
 

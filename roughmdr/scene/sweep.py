@@ -28,12 +28,9 @@ class Axis(NamedTuple):
     """One swept key."""
 
     key: str
-    entries: tuple[object, ...]
-    """As they would stand in the scene."""
-    values: NDArray[Any]
-    """In SI; names as they are."""
-    unit: str
-    """Of the values; empty for names."""
+    entries: tuple[object, ...]  # as they would stand in the scene
+    values: NDArray[Any]  # in SI; names as they are
+    unit: str  # of the values; empty for names
     long_name: str
 
     @property

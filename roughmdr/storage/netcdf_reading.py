@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 LOCK = threading.Lock()
 """Held by every call of the library, which crashes when two threads are in it."""
-WORKING_MEMORY = 2**26
-"""Bytes that the library needs at most while it handles a block of an array."""
+WORKING_MEMORY = 2**26  # bytes that the library needs at most while it handles a block of an array
 _BLOCK_SIZE = 2**16  # elements of an array handed to the library at a time
 
 

@@ -95,15 +95,8 @@ class CheckpointStore:
                 temporary.unlink(missing_ok=True)
                 raise
             sync_folder(self.folder)
-        self._append(
-            {
-                "file": file,
-                "sha256": hashlib.sha256(content).hexdigest(),
-                "rows": len(result.first),
-                "realizations": result.realizations,
-                "run_time": float(result.diagnostics["run_time"].sum()),
-            }
-        )
+        digest = hashlib.sha256(content).hexdigest()
+        self._append({"file": file, "sha256": digest, "realizations": result.realizations})
         self._next += 1
 
     def clear(self) -> None:
