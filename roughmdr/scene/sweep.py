@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.path import Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS, udunits
+from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 
@@ -37,11 +37,6 @@ class Axis(NamedTuple):
     def name(self) -> str:
         """Name of the coordinate."""
         return self.key.replace(".", "_")
-
-    @property
-    def numeric(self) -> bool:
-        """Whether the values are numbers, not names."""
-        return self.values.dtype.kind != "U"
 
 
 @dataclass(frozen=True)
@@ -72,7 +67,7 @@ class Sweep:
         """Return the swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
-            unit = {"units": udunits(axis.unit)} if axis.numeric else {}
+            unit = {"units": axis.unit.replace("/m^2", " m-2")} if axis.values.dtype.kind != "U" else {}
             dimension = "cell" if self.mode == "zip" else axis.name
             coordinates[axis.name] = Array((dimension,), axis.values, {**unit, "long_name": axis.long_name})
         return coordinates
@@ -143,13 +138,12 @@ def _axis(key: str, value: object, readers: dict[str, Reader], *, ordered: bool)
     unit, long_name = reader.dimension, f"swept {key}"
     if in_sigma:
         unit, long_name = DIMENSIONLESS, f"swept {key}, in standard deviations of the heights"
-    if not ordered:
-        return Axis(key, tuple(entries), np.array(numbers), unit, long_name)
-    if len(set(numbers)) < len(numbers):
-        raise EntryError(key, value, "holds a value twice; a dimension needs each once")
     order = list(range(len(numbers)))
-    if not isinstance(numbers[0], str) and numbers != sorted(numbers, reverse=True):
-        order.sort(key=numbers.__getitem__)  # a coordinate rises or falls (CF-1.11, section 1.3)
+    if ordered:
+        if len(set(numbers)) < len(numbers):
+            raise EntryError(key, value, "holds a value twice; a dimension needs each once")
+        if not isinstance(numbers[0], str) and numbers != sorted(numbers, reverse=True):
+            order.sort(key=numbers.__getitem__)  # a coordinate rises or falls (CF-1.11, section 1.3)
     return Axis(key, tuple(entries[i] for i in order), np.array([numbers[i] for i in order]), unit, long_name)
 
 
