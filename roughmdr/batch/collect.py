@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.batch.diagnostics import Columns, Row, merge, merge_rows, not_run
 from roughmdr.batch.moments import Moments, MomentTree
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import FAILED, NOT_RUN
 

@@ -4,7 +4,6 @@ import math
 import os
 import time
 import tracemalloc
-from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realizat
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError
-from roughmdr.storage.memory import available_memory
+from roughmdr.storage.memory import available_memory, peak_memory
 
 _MAX_ASPERITIES = 10_000  # beyond, time and memory grow in proportion
 _MAX_STEPS = 500
@@ -45,7 +44,7 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     rounds = Rounds(plan)
     first = rounds.begin()
     prepare_all(plan, first)
-    resident = _resident()
+    resident = peak_memory()
     cells = np.random.default_rng(0).permutation(len(plan.cells))[:_MAX_CELLS]
     variables = plan.scene.output.variables
     costs, failures = [], []
@@ -103,15 +102,3 @@ def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, floa
     drawing, summing = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
     ratio = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
     return ratio * (drawing + summing * cell.steps / path.separation.size), ratio * memory
-
-
-def _resident() -> float:
-    """Return the peak memory of this process so far [byte]; it has loaded nearly all that a run loads."""
-    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
-    with suppress(OSError, StopIteration), open("/proc/self/status") as status:
-        return next(1024.0 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
-    with suppress(ImportError):
-        import resource
-
-        return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
-    return 0.0

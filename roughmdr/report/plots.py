@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.report.plot_data import EXPECTED, Curve, OverlayLine, result_curves
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words
 from roughmdr.schema.wording import escape_controls
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CURVE_VARIABLES
 

@@ -186,8 +186,8 @@ def _batches(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
         yield batch
 
 
-def _compute_unless(stop: threading.Event | Event | None, task: Task) -> TaskResult | None:
-    return None if stop is not None and stop.is_set() else compute(task)
+def _compute_unless(stop: threading.Event | Event, task: Task) -> TaskResult | None:
+    return None if stop.is_set() else compute(task)
 
 
 _halt: Event | None = None  # set when the batch that a worker process works for is to stop
@@ -210,4 +210,4 @@ def _end_with_parent() -> None:
 
 
 def _compute_unless_halted(task: Task) -> TaskResult | None:
-    return _compute_unless(_halt, task)
+    return None if _halt is not None and _halt.is_set() else compute(task)

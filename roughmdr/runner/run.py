@@ -3,6 +3,7 @@
 import threading
 import warnings
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,7 @@ from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
-from roughmdr.storage.file_checks import check_writable, destination
+from roughmdr.storage.files import check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED
@@ -122,7 +123,7 @@ def execute(
     rounds = Rounds(plan)
     with ExitStack() as stack:
         writer = CheckpointWriter(target, stack)
-        reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
+        reusable = ReusableRows(rounds.keys, _computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
         if target is not None and resume:
             old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
@@ -149,27 +150,26 @@ def execute(
             raise
 
 
-def computed_variables(plan: Plan) -> tuple[str, ...]:
+def _computed_variables(plan: Plan) -> tuple[str, ...]:
     """Return the variables that are computed: those asked for and, where an error is asked for, the force."""
     asked = plan.scene.output.variables
     return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
 
 
+@dataclass
 class _Batch:
     """A plan while it is carried out."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        rounds: Rounds,
-        writer: CheckpointWriter,
-        reusable: ReusableRows,
-        pool: Pool,
-        runs_per_task: int | None,
-    ) -> None:
-        self._plan, self._rounds, self._writer, self._reusable, self._pool = plan, rounds, writer, reusable, pool
-        self._runs_per_task, self._variables = runs_per_task, computed_variables(plan)
-        watched = None if plan.scene.accuracy is None else _FORCE
+    _plan: Plan
+    _rounds: Rounds
+    _writer: CheckpointWriter
+    _reusable: ReusableRows
+    _pool: Pool
+    _runs_per_task: int | None
+
+    def __post_init__(self) -> None:
+        plan, watched = self._plan, None if self._plan.scene.accuracy is None else _FORCE
+        self._variables = _computed_variables(plan)
         self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
 
     def run(self, old: Labelled | None, command: str, *, quiet: bool) -> Labelled:

@@ -87,9 +87,8 @@ class FlatPath(Section):
         path = np.array([each.value * sigma if each.in_sigma else each.value for each in self._given])
         if isinstance(self.separation, Range):
             start, stop = path.tolist()
-            path = (
-                np.linspace(start, stop, self.separation.steps) if math.isfinite(stop - start) else np.array([np.inf])
-            )
+            finite = math.isfinite(stop - start)
+            path = np.linspace(start, stop, self.separation.steps) if finite else np.array([np.inf])
         if not np.isfinite(path).all():
             raise SceneError("path.separation: reaches beyond the largest float")
         return path

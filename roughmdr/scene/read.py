@@ -17,7 +17,7 @@ from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
 from roughmdr.schema.wording import printable, short_repr
-from roughmdr.storage.file_checks import check_regular_file, is_open_pipe
+from roughmdr.storage.files import check_regular_file, is_open_pipe
 from roughmdr.storage.netcdf_reading import read_attribute
 
 _NETCDF_MAGIC = (b"\x89HDF", b"CDF")

@@ -105,9 +105,8 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
     mode = table.get("mode", "product")
     faults = []
     if mode not in ("product", "zip"):
-        faults.append(
-            Fault("sweep.mode", short_repr(mode), f"not available{suggestion(str(mode), ['product', 'zip'])}")
-        )
+        hint = suggestion(str(mode), ["product", "zip"])
+        faults.append(Fault("sweep.mode", short_repr(mode), f"not available{hint}"))
     readers = {
         key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in _SECTIONS or key in _PATH_KEYS
     }
@@ -120,7 +119,7 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
         except EntryError as error:
             entry = "" if error.value is None else short_repr(error.value)
             faults.append(Fault(f"sweep.{printable(error.key)}", entry, str(error)))
-    faults += _conflicts(mode, axes) if axes else []
+    faults += _conflicts(mode, axes)
     if not axes and not faults:
         faults.append(Fault("sweep", "", 'names no key to sweep, like "adhesion.work" = ["10 mJ/m^2", "50 mJ/m^2"]'))
     return (None, faults) if faults else (Sweep(mode, tuple(axes)), [])
@@ -196,17 +195,14 @@ def _spaced_entries(key: str, table: dict[str, Any], reader: Reader) -> list[obj
     return [ends[0], *inner, ends[1]]
 
 
-def _conflicts(mode: str, axes: list[Axis]) -> list[Fault]:
-    faults = []
-    for axis in axes:
+def _conflicts(mode: str, axes: list[Axis]) -> Iterator[Fault]:
+    counts = [len(axis.entries) for axis in axes]
+    for axis, count in zip(axes, counts, strict=True):
         for other in axes:
             if axis.key.startswith(f"{other.key}."):
-                faults.append(Fault(f"sweep.{axis.key}", "", f"is a part of {other.key}, which is swept too"))
-        if mode == "zip" and len(axis.entries) != len(axes[0].entries):
-            count, first = len(axis.entries), len(axes[0].entries)
-            message = f"has {count} values, {axes[0].key} has {first}; mode = 'zip' takes equally many"
-            faults.append(Fault(f"sweep.{axis.key}", "", message))
-    cells = math.prod(len(axis.entries) for axis in axes)
-    if mode == "product" and cells > _MAX_CELLS:
-        faults.append(Fault("sweep", "", f"has {cells} cells; at most {_MAX_CELLS} are allowed"))
-    return faults
+                yield Fault(f"sweep.{axis.key}", "", f"is a part of {other.key}, which is swept too")
+        if mode == "zip" and count != counts[0]:
+            message = f"has {count} values, {axes[0].key} has {counts[0]}; mode = 'zip' takes equally many"
+            yield Fault(f"sweep.{axis.key}", "", message)
+    if mode == "product" and math.prod(counts) > _MAX_CELLS:
+        yield Fault("sweep", "", f"has {math.prod(counts)} cells; at most {_MAX_CELLS} are allowed")

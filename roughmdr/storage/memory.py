@@ -27,6 +27,18 @@ def available_memory() -> tuple[float, str]:
     return min(_limits(), default=(math.inf, ""))
 
 
+def peak_memory() -> float:
+    """Return the most memory that this process has had so far [byte]; 0 if it is not known."""
+    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
+    if peak := _read_sizes("/proc/self/status").get("VmHWM"):
+        return peak
+    with suppress(ImportError):
+        import resource
+
+        return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
+    return 0.0
+
+
 def _limits() -> Iterator[tuple[float, str]]:
     used = _read_sizes("/proc/self/status")
     with suppress(ImportError, AttributeError):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.storage.file_checks import check_regular_file
+from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
 from roughmdr.variables import AUXILIARY_COORDINATES

@@ -19,15 +19,9 @@ _SVG_HEAD = 4096  # bytes, within which an SVG has its root element
 
 def provenance(title: str, command: str) -> dict[str, str]:
     """Return the attributes that name the command and the versions that made a file."""
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    history = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}: {command}"
     source, packages = _versions()
-    return {
-        "Conventions": "CF-1.11",
-        "title": title,
-        "source": source,
-        "history": f"{now}: {command}",
-        "packages": packages,
-    }
+    return {"Conventions": "CF-1.11", "title": title, "source": source, "history": history, "packages": packages}
 
 
 @cache

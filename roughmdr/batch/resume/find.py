@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from roughmdr.batch.diagnostics import complete
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
 from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.store import CheckpointStore
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import TaskResult, complete
 from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
@@ -79,9 +78,8 @@ def reuse(
     if reasons and not matches:
         unique = list(dict.fromkeys(reasons))
         more = f" and {len(unique) - _MAX_CHANGES} more" if len(unique) > _MAX_CHANGES else ""
-        raise StoreError(
-            f"{target}: holds results of another scene: {'; '.join(unique[:_MAX_CHANGES])}{more}: {_REMEDY}"
-        )
+        changed = "; ".join(unique[:_MAX_CHANGES]) + more
+        raise StoreError(f"{target}: holds results of another scene: {changed}: {_REMEDY}")
 
 
 def _what_would_be_lost(old: Labelled, plan: Plan, reusable: ReusableRows) -> str:
@@ -118,7 +116,7 @@ def _counts(result: Labelled) -> dict[str, int]:
     done = result.variables["status"].values == DONE
     if "realization" in result.sizes:
         runs = done.reshape(-1, done.shape[-1])
-        counts = (runs * np.arange(1, runs.shape[1] + 1)).max(axis=1)
+        counts = (runs * np.arange(1, runs.shape[1] + 1)).max(axis=1)  # up to the last that is done
     else:
         counts = np.where(done, result.variables["realization_count"].values, 0).ravel()
     return dict(zip(_keys(result), counts.astype(int).tolist(), strict=True))

@@ -22,8 +22,7 @@ from typing import Any
 
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
-from roughmdr.storage.atomic import sync_folder
-from roughmdr.storage.file_checks import convert_os_errors
+from roughmdr.storage.files import convert_os_errors, sync_folder
 
 # Errors of disks without locks, such as some that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
