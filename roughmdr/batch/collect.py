@@ -106,9 +106,8 @@ class Collector:
         for cell, (key, count) in enumerate(cells):
             total = self._total(key, count)
             if total is not None:
-                arrays = total.mean, total.standard_error, total.minimum, total.maximum
-                for name, values in zip(statistics, arrays, strict=True):
-                    statistics[name][cell] = values
+                statistics["mean"][cell], statistics["sem"][cell] = total.mean, total.standard_error
+                statistics["min"][cell], statistics["max"][cell] = total.minimum, total.maximum
             elif key not in self._diagnostics or self._diagnostics[key]["status"] != FAILED:
                 raise AssertionError("a realisation was neither computed nor did it fail")
             first, remark = self._remarks.get(key, (0, ""))

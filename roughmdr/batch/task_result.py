@@ -16,7 +16,7 @@ from roughmdr.variables import RUN_DIAGNOSTICS
 
 Integers = NDArray[np.int64]
 _DIAGNOSTIC = "diagnostic."  # before the name of each in a file, apart from those of the other arrays
-_MOMENTS = ("mean", "spread", "minimum", "maximum")
+_MOMENTS = Moments._fields[1:]
 Row = Mapping[str, Any]  # diagnostics of one run, or of several that are merged, by name
 Columns = dict[str, NDArray[Any]]
 
@@ -43,7 +43,7 @@ class TaskResult(NamedTuple):
         shape = (len(rows), len(variables), steps)
         arrays = tuple(
             np.array([getattr(each, name) for each in moments]).reshape(shape)
-            for name in (_MOMENTS if (size > 1).any() else ("mean",))
+            for name in (_MOMENTS if (size > 1).any() else _MOMENTS[:1])
         )
         cells, firsts = (np.array(each, dtype=np.int64) for each in (cell, first))
         return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, columns_of(diagnostics))
