@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from studies.study import OUTPUT, QUICK
 
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 
 NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes")
 

@@ -166,7 +166,7 @@ def plot(
     """
     from roughmdr.report.plots import format_of, plot
     from roughmdr.result.layout import asked_variables
-    from roughmdr.storage.file_checks import check_writable
+    from roughmdr.storage.files import check_writable
     from roughmdr.storage.result_file import check_same_kind, read_result
 
     check_writable(output, [result])
@@ -223,8 +223,7 @@ def new(scene: Path) -> None:
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.storage.atomic import replace_atomically
-    from roughmdr.storage.file_checks import check_writable
+    from roughmdr.storage.files import check_writable, replace_atomically
 
     check_writable(scene)
     if scene.exists():
@@ -250,7 +249,7 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     from roughmdr.ensemble import make
     from roughmdr.report.summary import describe_ensemble
     from roughmdr.scene import read
-    from roughmdr.storage.file_checks import check_writable
+    from roughmdr.storage.files import check_writable
     from roughmdr.storage.netcdf_writing import write_netcdf
     from roughmdr.storage.result_file import check_same_kind, provenance
 

@@ -26,7 +26,7 @@ from roughmdr.runner import local
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.file_checks import destination
+from roughmdr.storage.files import destination
 
 _CLI = "from roughmdr.cli import main; main()"
 _OF_SMALL_TASKS = """

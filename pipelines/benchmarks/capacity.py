@@ -13,12 +13,11 @@ import xarray as xr
 from studies.study import table
 
 from benchmarks.child import small_scene
-from roughmdr.batch.diagnostics import row_of
 from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import TaskResult, row_of
 from roughmdr.batch.tasks import split_into_tasks
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.process import peak_memory
-from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.plan import Plan, make_plan, simulate_realization
 from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.tasks import prepare_all
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read

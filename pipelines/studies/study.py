@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import click
 import xarray as xr
 
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 from roughmdr.storage.result_file import provenance

@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.batch.diagnostics import Columns, Row, merge, merge_rows, not_run
 from roughmdr.batch.moments import Moments, MomentTree
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import FAILED, NOT_RUN
 
@@ -15,12 +14,8 @@ from roughmdr.variables import FAILED, NOT_RUN
 class CollectedResults(NamedTuple):
     """All results of a batch; arrays lie over the cells and, where curves are kept, over the realisations."""
 
-    values: Floats
-    """[cell, realization, variable, step]; of no cell where moments are kept."""
-    moments: Moments
-    """[cell, variable, step]; of no cell where curves are kept, and ``size`` is not used."""
-    sem: Floats
-    """Standard errors of the means, as ``moments``."""
+    values: dict[str, Floats]
+    """"curves" [cell, realization, variable, step], or "mean", "sem", "min" and "max" [cell, variable, step]."""
     diagnostics: Columns
 
 
@@ -42,8 +37,8 @@ class Collector:
         """Add the result of a task."""
         if not self._keep_moments:
             self._results.append(result)
-        if not self._keep_moments and self._watched is None:
-            return
+            if self._watched is None:
+                return
         part = np.s_[:] if self._keep_moments else np.s_[self._watched]
         rows_of: dict[str, list[int]] = {}
         columns = result.cell, result.first, result.diagnostics["status"], result.diagnostics["remark"]
@@ -51,7 +46,7 @@ class Collector:
             key = result.keys[cell]
             rows_of.setdefault(key, []).append(row)
             if status != FAILED:
-                self._trees.setdefault(key, MomentTree()).add(first, result.moments(row).select(part))
+                self._trees.setdefault(key, MomentTree()).add(first, result.moments_of(row).select(part))
             if remark:  # of the realisation that comes first, whichever is done first
                 self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
         for key, rows in rows_of.items():
@@ -86,8 +81,7 @@ class Collector:
             cells_of.setdefault(key, []).append(cell)
         count = np.array([count for _, count in cells])
         shape = len(cells), int(count.max())
-        values = np.full((*shape, *self._shape), np.nan)
-        diagnostics = not_run(shape)
+        curves, diagnostics = np.full((*shape, *self._shape), np.nan), not_run(shape)
         while self._results:
             result = self._results.pop()
             rows = zip(result.cell.tolist(), result.first.tolist(), strict=True)
@@ -99,29 +93,25 @@ class Collector:
             ]
             if selected:
                 row, cell, first = np.array(selected).T
-                values[cell, first] = result.values[row]
+                curves[cell, first] = result.moments[0][row]
                 for name, array in diagnostics.items():
                     array[cell, first] = result.diagnostics[name][row]
         if ((diagnostics["status"] == NOT_RUN) & (np.arange(shape[1]) < count[:, None])).any():
             raise AssertionError("a realisation was neither computed nor did it fail")
-        empty = np.empty((0, *self._shape))
-        return CollectedResults(values, Moments.of(empty), empty, diagnostics)
+        return CollectedResults({"curves": curves}, diagnostics)
 
     def _collect_moments(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
-        shape = (len(cells), *self._shape)
-        mean, spread, minimum, maximum, sem = (np.full(shape, np.nan) for _ in range(5))
+        statistics = {name: np.full((len(cells), *self._shape), np.nan) for name in ("mean", "sem", "min", "max")}
         diagnostics = not_run((len(cells),))
         for cell, (key, count) in enumerate(cells):
             total = self._total(key, count)
             if total is not None:
-                mean[cell], spread[cell], minimum[cell], maximum[cell] = total[1:]
-                sem[cell] = total.standard_error
+                statistics["mean"][cell], statistics["sem"][cell] = total.mean, total.standard_error
+                statistics["min"][cell], statistics["max"][cell] = total.minimum, total.maximum
             elif key not in self._diagnostics or self._diagnostics[key]["status"] != FAILED:
                 raise AssertionError("a realisation was neither computed nor did it fail")
-            if key in self._diagnostics:
-                first, remark = self._remarks.get(key, (0, ""))
-                row = {**self._diagnostics[key], "remark": f"realisation {first}: {remark}" if first else remark}
-                for name, array in diagnostics.items():
-                    array[cell] = row[name]
-        values = np.empty((0, 1, *self._shape))
-        return CollectedResults(values, Moments(0, mean, spread, minimum, maximum), sem, diagnostics)
+            first, remark = self._remarks.get(key, (0, ""))
+            row = {**self._diagnostics[key], "remark": f"realisation {first}: {remark}" if first else remark}
+            for name, array in diagnostics.items():
+                array[cell] = row[name]
+        return CollectedResults(statistics, diagnostics)

@@ -4,20 +4,17 @@ import math
 import os
 import time
 import tracemalloc
-from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import START_UP, file_bytes, result_bytes
 from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realization
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.tasks import BLOCK_SIZE, split_into_tasks
+from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError
-from roughmdr.numerics.arguments import Floats
-from roughmdr.storage.memory import available_memory
+from roughmdr.storage.memory import available_memory, peak_memory
 
 _MAX_ASPERITIES = 10_000  # beyond, time and memory grow in proportion
 _MAX_STEPS = 500
@@ -33,20 +30,13 @@ class Estimate(NamedTuple):
 
     runs: int
     tasks: int
-    seconds: float
-    """In all."""
-    start_up: float
-    """Until the first asperity is made."""
-    memory: float
-    """Peak, in all."""
-    resident: float
-    """Memory of Python and its packages; 0 where the system does not tell."""
-    available_memory: float
-    """How much more memory this process could be given; inf where the system does not tell."""
-    file: float
-    """Size of the result on disk."""
-    failures: tuple[str, ...]
-    """Which of the cells that were tried cannot be computed, and why."""
+    seconds: float  # in all
+    start_up: float  # until the first asperity is made
+    memory: float  # peak, in all
+    resident: float  # of Python and its packages; 0 where the system does not tell
+    available_memory: float  # how much more this process could be given; inf where the system does not tell
+    file: float  # size of the result on disk
+    failures: tuple[str, ...]  # which of the cells that were tried cannot be computed, and why
 
 
 def estimate(plan: Plan, workers: int) -> Estimate:
@@ -54,10 +44,18 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     rounds = Rounds(plan)
     first = rounds.begin()
     prepare_all(plan, first)
-    resident = _resident()
+    resident = peak_memory()
     cells = np.random.default_rng(0).permutation(len(plan.cells))[:_MAX_CELLS]
-    costs, failures = _costs(plan, rounds, sorted(cells.tolist()))
     variables = plan.scene.output.variables
+    costs, failures = [], []
+    for cell in sorted(cells.tolist()):
+        try:
+            costs.append(_cost(plan.cells[cell], rounds.methods[cell].estimator, variables))
+        except RoughmdrError as error:
+            failures.append(f"{plan.name_of(cell, 0)}: {error}")
+    if not costs:
+        raise RoughmdrError(failures[0])
+    run_seconds, run_bytes = zip(*costs, strict=True)
     runs = sum(each.last - each.first for each in first)
     tasks = len(split_into_tasks(plan, first, variables, workers))
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -65,34 +63,18 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
     if plan.keeps_statistics:
         memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
-    computing = float(costs[:, 0].mean()) * runs / busy
+    computing = float(np.mean(run_seconds)) * runs / busy
     return Estimate(
         runs=runs,
         tasks=tasks,
         seconds=START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps,
         start_up=START_UP,
-        memory=resident + memory + busy * float(costs[:, 1].max()),
+        memory=resident + memory + busy * max(run_bytes),
         resident=resident,
         available_memory=available_memory()[0],
         file=file,
         failures=tuple(failures),
     )
-
-
-def _costs(plan: Plan, rounds: Rounds, cells: list[int]) -> tuple[Floats, list[str]]:
-    """Return [cell, time and memory] of one run of those cells that can be run, and why the others cannot.
-
-    RoughmdrError where none can.
-    """
-    costs, failures = [], []
-    for cell in cells:
-        try:
-            costs.append(_cost(plan.cells[cell], rounds.methods[cell].estimator, plan.scene.output.variables))
-        except RoughmdrError as error:
-            failures.append(f"{plan.name_of(cell, 0)}: {error}")
-    if not costs:
-        raise RoughmdrError(failures[0])
-    return np.array(costs), failures
 
 
 def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, float]:
@@ -120,15 +102,3 @@ def _cost(cell: Cell, estimator: str, variables: list[str]) -> tuple[float, floa
     drawing, summing = np.mean([run() for _ in range(_REPEATS)], axis=0).tolist()
     ratio = scene.asperities.expected_count / section.expected_count if estimator != "expected" else 1.0
     return ratio * (drawing + summing * cell.steps / path.separation.size), ratio * memory
-
-
-def _resident() -> float:
-    """Return the peak memory of this process so far [byte]; it has loaded nearly all that a run loads."""
-    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
-    with suppress(OSError, StopIteration), open("/proc/self/status") as status:
-        return next(1024.0 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
-    with suppress(ImportError):
-        import resource
-
-        return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
-    return 0.0

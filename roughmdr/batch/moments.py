@@ -6,9 +6,11 @@ the result does not depend on who computed which of them, or when.
 
 import math
 from collections.abc import Iterator
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats
 
@@ -67,9 +69,7 @@ def dyadic_blocks(first: int, last: int) -> Iterator[tuple[int, int]]:
 
 
 def block_moments(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
-    """Yield each block of the realisations ``first`` ..., whose ``values`` lie along the first axis: where it begins,
-    and its moments.
-    """
+    """Yield the first realisation and the moments of each block of ``values`` [realization, ...], from ``first`` on."""
     for begin, count in dyadic_blocks(first, first + len(values)):
         moments = Moments.of(values[begin - first : begin - first + count])
         while len(moments.mean) > 1:
@@ -79,12 +79,26 @@ def block_moments(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
 
 def moments_of(values: Floats) -> Moments:
     """Return the moments of the realisations along the first axis, of which there is at least one."""
-    tree = MomentTree()
-    tree.add_curves(0, values)
-    total = tree.total(len(values))
-    if total is None:
-        raise AssertionError("there is at least one realisation")
-    return total
+    return reduce(Moments.merged, (moments for _, moments in block_moments(0, values)))
+
+
+def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Return the mean and its standard error over the realisations that are ``done`` [..., realization], cell by cell.
+
+    ``values`` lie over the same and, where there are more dimensions, over those too. NaN for the error of a single
+    realisation, and for both where none is done.
+    """
+    values = np.moveaxis(values, done.ndim - 1, 0)
+    if done.all():
+        moments = moments_of(values)
+        return moments.mean, moments.standard_error
+    mean, error = (np.full(values.shape[1:], math.nan) for _ in range(2))
+    for cell in np.ndindex(done.shape[:-1]):
+        kept = values[(done[cell], *cell)]
+        if len(kept):
+            moments = moments_of(kept)
+            mean[cell], error[cell] = moments.mean, moments.standard_error
+    return mean, error
 
 
 class MomentTree:
@@ -109,10 +123,7 @@ class MomentTree:
 
     def total(self, count: int) -> Moments | None:
         """Return the moments of the first ``count`` realisations; None where some are missing."""
-        total: Moments | None = None
-        for first, size in dyadic_blocks(0, count):
-            block = self.blocks.get(first)
-            if block is None or block.size != size:
-                return None
-            total = block if total is None else total.merged(block)
-        return total
+        sizes = dict(dyadic_blocks(0, count))
+        if any(first not in self.blocks or self.blocks[first].size != size for first, size in sizes.items()):
+            return None
+        return reduce(Moments.merged, (self.blocks[first] for first in sizes))

@@ -5,12 +5,10 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import SceneError
-from roughmdr.loading.path import branches
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
@@ -35,8 +33,7 @@ class Plan(NamedTuple):
 
     scene: Scene
     cells: tuple[Cell, ...]
-    left_out: tuple[str, ...]
-    """Lines "part: reason"."""
+    left_out: tuple[str, ...]  # lines "part: reason"
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -65,25 +62,21 @@ class Plan(NamedTuple):
 
     def coordinates(self) -> dict[str, Array]:
         """Return the swept values, the separation over those of them that change it, and the branch."""
+        paths = [cell.path for cell in self.cells]
+        separation, dims = paths[0].separation, ["step"]
+        if any(path is not paths[0] for path in paths):
+            separation = np.array([path.separation for path in paths]).reshape(*self.sizes.values(), -1)
+            for axis, name in reversed(list(enumerate(self.sizes))):
+                first_only = separation.take([0], axis)
+                if (separation == first_only).all():
+                    separation = first_only.squeeze(axis)
+                else:
+                    dims.insert(0, name)
         return {
             **self.scene.sweep.coordinates(),
-            "separation": self._separation(),
+            "separation": Array(tuple(dims), separation, COORDINATES["separation"].attrs),
             "branch": self.cells[0].path.branch(),
         }
-
-    def _separation(self) -> Array:
-        first = self.cells[0].path
-        if all(cell.path is first for cell in self.cells):
-            return Array(("step",), first.separation, COORDINATES["separation"].attrs)
-        separation = np.array([cell.path.separation for cell in self.cells]).reshape(*self.sizes.values(), -1)
-        dims = ["step"]
-        for axis, name in reversed(list(enumerate(self.sizes))):
-            first_only = separation.take([0], axis)
-            if (separation == first_only).all():
-                separation = first_only.squeeze(axis)
-            else:
-                dims.insert(0, name)
-        return Array(tuple(dims), separation, COORDINATES["separation"].attrs)
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -91,25 +84,20 @@ def make_plan(scene: Scene) -> Plan:
 
     SceneError where a map cannot be read, a path cannot be laid out, or two cells differ in where they load and unload.
     """
-    return Plan(scene, tuple(_cells(scene)), tuple(left_out(scene)))
-
-
-def _cells(scene: Scene) -> Iterator[Cell]:
     paths: dict[tuple[bytes, bool], LoadingPath] = {}
-    first: NDArray[np.str_] | None = None
+    cells: list[Cell] = []
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         loading = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = loading.tobytes(), cell.work > 0.0
         if key not in paths:
             paths[key] = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            branch = branches(paths[key].separation)
-            first = branch if first is None else first
-            if not np.array_equal(branch, first):
-                raise SceneError(
-                    f"sweep: with {describe_cell(values)} the flat loads and unloads at other steps than in the first "
-                    "cell"
-                )
-        yield Cell(cell, paths[key])
+            first = next(iter(paths.values()))
+            if not np.array_equal(paths[key].branch().values, first.branch().values):
+                others = "the flat loads and unloads at other steps than in the first cell"
+                raise SceneError(f"sweep: with {describe_cell(values)} {others}")
+        cells.append(Cell(cell, paths[key]))
+    left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
+    return Plan(scene, tuple(cells), tuple(left_out))
 
 
 def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
@@ -133,12 +121,8 @@ def simulate_realization(
     return simulate_ensemble(scene, path, ensemble, variables)
 
 
-def left_out(scene: Scene) -> list[str]:
-    """Return what the scene does not need, and why, as lines "part: reason", with the cells where not in all."""
-    return count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
-
-
 def _left_out(scene: Scene) -> Iterator[str]:
+    """Yield what a scene without a sweep does not need, and why, as lines "part: reason"."""
     if scene.adhesion is None:
         yield "adhesion: the scene has no [adhesion]"
     elif scene.work == 0.0:
@@ -156,8 +140,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
     if scene.asperities.is_random:
         yield "positions: asperities are independent; nothing depends on their positions"
     yield "interaction: asperities are independent; the scene has no [interaction]"
-    unasked = [name for name in CURVE_VARIABLES if name not in scene.output.variables]
-    if unasked:
+    if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"

@@ -22,18 +22,15 @@ class CellMethod(NamedTuple):
     realizations: int
     error: float = math.nan
     """Error of the mean force over its largest value, of draws the standard error; NaN where not known."""
-    drawn_error: float = math.nan
-    """Standard error of the draws alone, without asperities that they may not have met."""
+    drawn_error: float = math.nan  # standard error of the draws alone, without asperities that they may not have met
 
 
 class CellHistory(NamedTuple):
     """The method of a cell, and those tried before it."""
 
     method: CellMethod
-    draws: CellMethod | None = None
-    """Draws that the expected law replaced."""
-    expected: CellMethod | None = None
-    """The expected law, where its error is too large."""
+    draws: CellMethod | None = None  # draws that the expected law replaced
+    expected: CellMethod | None = None  # the expected law, where its error is too large
 
 
 class Rounds:
@@ -81,13 +78,13 @@ class Rounds:
         return RunRange(key, self._plan.cells[cell], estimator, first, count)
 
     def _first_method(self, cell: int) -> CellMethod:
-        accuracy = self._accuracy
         estimator, *other = self._plan.cells[cell].scene.estimators
-        if accuracy is None:
+        if self._accuracy is None:
             return self._method(cell, estimator, self._plan.cells[cell].scene.batch.realizations)
-        if estimator == "expected" or (other and self._is_dearer(cell, self._first_count(accuracy))):
+        count = self._first_count(self._accuracy)
+        if estimator == "expected" or (other and self._is_dearer(cell, count)):
             return self._method(cell, "expected", 1)
-        return self._method(cell, estimator, self._first_count(accuracy))
+        return self._method(cell, estimator, count)
 
     def _method(self, cell: int, estimator: str, count: int) -> CellMethod:
         return CellMethod(self._keys[estimator][cell], estimator, count)

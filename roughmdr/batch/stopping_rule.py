@@ -8,8 +8,7 @@ from roughmdr.batch.moments import Moments
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 
-FIRST = 16
-"""Realisations at least, before a standard error is believed at all."""
+FIRST = 16  # realisations at least, before a standard error is believed at all
 _SCORE_99 = 2.326  # normal score of 99 %, the fraction of cases in which the true standard error is to be met
 _ADDED_FRACTION = 0.7  # of the realisations that seem to be missing, before the next look
 _MIN_GROWTH, _MAX_GROWTH = 0.02, 4  # from one look to the next: realisations added over present; after over before

@@ -1,92 +1,70 @@
-"""The result of a task: a table that knows its cells by their keys, and can be stored as bytes."""
+"""The result of a task: a table that knows its cells by their keys, and can be stored as bytes.
+
+Diagnostics, as ``RUN_DIAGNOSTICS`` declares them, are a row for one run and columns for several.
+"""
 
 import io
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.diagnostics import Columns, Row, columns_of
 from roughmdr.batch.moments import Moments
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import RUN_DIAGNOSTICS
 
 Integers = NDArray[np.int64]
 _DIAGNOSTIC = "diagnostic."  # before the name of each in a file, apart from those of the other arrays
+_MOMENTS = Moments._fields[1:]
+Row = Mapping[str, Any]  # diagnostics of one run, or of several that are merged, by name
+Columns = dict[str, NDArray[Any]]
 
 
 class TaskResult(NamedTuple):
     """A row for each realisation, or for several that were merged (``moments.py``); all arrays begin with the rows."""
 
-    keys: tuple[str, ...]
-    """Keys of the cells (``resume/keys.py``)."""
+    keys: tuple[str, ...]  # keys of the cells (``resume/keys.py``)
     variables: tuple[str, ...]
-    cell: Integers
-    """Index of the key that a row belongs to."""
-    first: Integers
-    """First realisation of a row."""
-    size: Integers
-    """Number of realisations of a row."""
-    values: Floats
-    """[row, variable, step]; means, where there are several."""
-    spread: Floats
-    """Shape of ``values``, and so the next two, where moments are kept; [row, 0, 0] where curves are."""
-    minimum: Floats
-    maximum: Floats
+    cell: Integers  # index of the key that a row belongs to
+    first: Integers  # first realisation of a row
+    size: Integers  # number of realisations of a row
+    moments: tuple[Floats, ...]
+    """Means [row, variable, step] and, where a row has several realisations, spreads, minima and maxima."""
     diagnostics: Columns
 
     @classmethod
     def of(
-        cls,
-        keys: Sequence[str],
-        variables: Sequence[str],
-        rows: Sequence[tuple[int, int, Moments, Row]],
-        steps: int,
+        cls, keys: Sequence[str], variables: Sequence[str], rows: Sequence[tuple[int, int, Moments, Row]], steps: int
     ) -> "TaskResult":
         """Make the table of rows: index of the key, first realisation, moments [variable, step] and diagnostics."""
         cell, first, moments, diagnostics = zip(*rows, strict=True) if rows else ((), (), (), ())
         size = np.array([each.size for each in moments], dtype=np.int64)
         shape = (len(rows), len(variables), steps)
-
-        def stacked(name: str) -> Floats:
-            if name != "mean" and (size == 1).all():
-                return np.empty((len(rows), 0, 0))
-            return np.array([getattr(each, name) for each in moments]).reshape(shape)
-
-        return cls(
-            keys=tuple(keys),
-            variables=tuple(variables),
-            cell=np.array(cell, dtype=np.int64),
-            first=np.array(first, dtype=np.int64),
-            size=size,
-            values=stacked("mean"),
-            spread=stacked("spread"),
-            minimum=stacked("minimum"),
-            maximum=stacked("maximum"),
-            diagnostics=columns_of(diagnostics),
+        arrays = tuple(
+            np.array([getattr(each, name) for each in moments]).reshape(shape)
+            for name in (_MOMENTS if (size > 1).any() else _MOMENTS[:1])
         )
+        cells, firsts = (np.array(each, dtype=np.int64) for each in (cell, first))
+        return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, columns_of(diagnostics))
 
     @property
     def realizations(self) -> int:
         """Number of realisations in all rows."""
         return int(self.size.sum())
 
-    @property
-    def single(self) -> bool:
-        """Whether every row is one realisation."""
-        return bool((self.size == 1).all())
-
-    def moments(self, row: int) -> Moments:
+    def moments_of(self, row: int) -> Moments:
         """Return the moments of all variables of a row."""
         if self.size[row] == 1:
-            return Moments.of(self.values[row])
-        return Moments(int(self.size[row]), self.values[row], self.spread[row], self.minimum[row], self.maximum[row])
+            return Moments.of(self.moments[0][row])
+        return Moments(int(self.size[row]), *(array[row] for array in self.moments))
 
     def select_rows(self, rows: Integers) -> "TaskResult":
         """Return the table of some of the rows."""
-        arrays = {name: getattr(self, name)[rows] for name in _ARRAYS}
-        return self._replace(**arrays, diagnostics={name: each[rows] for name, each in self.diagnostics.items()})
+        cell, first, size = (array[rows] for array in (self.cell, self.first, self.size))
+        diagnostics = {name: column[rows] for name, column in self.diagnostics.items()}
+        moments = tuple(array[rows] for array in self.moments)
+        return TaskResult(self.keys, self.variables, cell, first, size, moments, diagnostics)
 
     def with_variables(self, names: Sequence[str]) -> "TaskResult | None":
         """Return the table with these variables in this order; None where one is missing."""
@@ -95,13 +73,12 @@ class TaskResult(NamedTuple):
         if not set(names) <= set(self.variables):
             return None
         order = [self.variables.index(name) for name in names]
-        moments = () if self.single else ("spread", "minimum", "maximum")
-        arrays = {name: getattr(self, name)[:, order] for name in ("values", *moments)}
-        return self._replace(variables=tuple(names), **arrays)
+        return self._replace(variables=tuple(names), moments=tuple(array[:, order] for array in self.moments))
 
     def to_bytes(self) -> bytes:
         """Return the table as the content of a file."""
-        arrays = {name: np.asarray(getattr(self, name)) for name in self._fields if name != "diagnostics"}
+        arrays = {name: np.asarray(getattr(self, name)) for name in ("keys", "variables", "cell", "first", "size")}
+        arrays |= dict(zip(_MOMENTS, self.moments, strict=False))
         arrays |= {_DIAGNOSTIC + name: column for name, column in self.diagnostics.items()}
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **arrays)
@@ -112,14 +89,50 @@ class TaskResult(NamedTuple):
         """Read the table that the content of a file holds; ValueError, KeyError or OSError where it holds none."""
         with np.load(io.BytesIO(content), allow_pickle=False) as file:
             keys, variables = (tuple(file[name].tolist()) for name in ("keys", "variables"))
-            arrays = {name: file[name] for name in _ARRAYS}
-            diagnostics = {
-                name: file[_DIAGNOSTIC + name]
-                if _DIAGNOSTIC + name in file
-                else np.full(arrays["size"].shape, declared.unstated, dtype=declared.dtype)
-                for name, declared in RUN_DIAGNOSTICS.items()
-            }
-        return cls(keys, variables, **arrays, diagnostics=diagnostics)
+            cell, first, size = (file[name] for name in ("cell", "first", "size"))
+            moments = tuple(file[name] for name in _MOMENTS if name in file)
+            stated = {name.removeprefix(_DIAGNOSTIC): file[name] for name in file if name.startswith(_DIAGNOSTIC)}
+        return cls(keys, variables, cell, first, size, moments, complete(stated, size.size))
 
 
-_ARRAYS = tuple(name for name in TaskResult._fields if name not in ("keys", "variables", "diagnostics"))
+def row_of(**known: Any) -> Row:
+    """Return the diagnostics of a run: those that are known, and what stands for the others."""
+    if undeclared := known.keys() - RUN_DIAGNOSTICS.keys():
+        raise AssertionError(f"not declared in RUN_DIAGNOSTICS: {', '.join(undeclared)}")
+    return {name: known.get(name, declared.missing) for name, declared in RUN_DIAGNOSTICS.items()}
+
+
+def columns_of(rows: Sequence[Row]) -> Columns:
+    """Return the diagnostics of runs as arrays."""
+    return {name: np.array([row[name] for row in rows], dtype=each.dtype) for name, each in RUN_DIAGNOSTICS.items()}
+
+
+def complete(stated: Columns, count: int) -> Columns:
+    """Return the diagnostics of runs that are done, of which a file may not state all."""
+    return {
+        name: stated[name].astype(each.dtype) if name in stated else np.full(count, each.unstated, dtype=each.dtype)
+        for name, each in RUN_DIAGNOSTICS.items()
+    }
+
+
+def not_run(shape: tuple[int, ...]) -> Columns:
+    """Return the diagnostics of realisations that did not run; texts are objects, since any may be put there."""
+    return {
+        name: np.full(shape, each.missing, dtype=object if each.dtype is str else each.dtype)
+        for name, each in RUN_DIAGNOSTICS.items()
+    }
+
+
+def merge(columns: Mapping[str, Sequence[Any] | NDArray[Any]]) -> Row:
+    """Return the diagnostics of several runs together, which are in the order of their realisations."""
+    return {
+        name: next(filter(None, columns[name]), declared.missing)
+        if declared.merge == "first"
+        else getattr(np, declared.merge).reduce(columns[name])
+        for name, declared in RUN_DIAGNOSTICS.items()
+    }
+
+
+def merge_rows(rows: Sequence[Row]) -> Row:
+    """Merge rows as ``merge`` does columns."""
+    return merge({name: [row[name] for row in rows] for name in RUN_DIAGNOSTICS})

@@ -1,19 +1,20 @@
-"""Tasks: which runs are computed together, and how a worker computes them."""
+"""Tasks: which runs are computed together, what is compiled for them, and how a worker computes them."""
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import LoadSeparation
+from roughmdr import errors
+from roughmdr.aggregate import LoadingPath, LoadSeparation, prepare
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.diagnostics import Row, merge_rows, row_of
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan, simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
@@ -24,8 +25,7 @@ _MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # of a task
 _MANY = 4000  # of so many tasks each may take longer than usual
 _TASKS_PER_WORKER = 8  # at least, so that all workers finish together
 _MAX_BYTES = 2**24  # of curves in a task, if it has more than one
-BLOCK_SIZE = 256
-"""Curves in memory at a time, where moments are kept."""
+BLOCK_SIZE = 256  # curves in memory at a time, where moments are kept
 
 
 class RunRange(NamedTuple):
@@ -43,14 +43,12 @@ class Task(NamedTuple):
 
     ranges: tuple[RunRange, ...]
     variables: tuple[str, ...]
-    keep_moments: bool
-    """Whether moments are kept, not curves."""
+    keep_moments: bool  # whether moments are kept, not curves
     versions: str
 
-    @property
-    def steps(self) -> int:
-        """Number of steps of the paths."""
-        return self.ranges[0].cell.steps
+    def result_of(self, rows: Sequence[tuple[int, int, Moments, Row]]) -> TaskResult:
+        """Make the result of rows: index of the range, first realisation, moments and diagnostics."""
+        return TaskResult.of([runs.key for runs in self.ranges], self.variables, rows, self.ranges[0].cell.steps)
 
 
 def split_into_tasks(
@@ -82,6 +80,27 @@ def split_into_tasks(
     return [Task(tuple(group), tuple(variables), plan.keeps_statistics, versions()) for group in groups if group]
 
 
+def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
+    """Compile what these runs of a plan need, before several threads or a clock need it, and nothing else."""
+    prepared: set[tuple[object, ...]] = set()
+    for (scene, path), estimator in ((runs.cell, runs.estimator) for runs in ranges):
+        adhesion, asperities = scene.adhesion_model, scene.asperities
+        shape, draws = asperities.shape_name, estimator != "expected"
+        kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, draws
+        if kind in prepared:
+            continue
+        prepared.add(kind)
+        if draws:
+            prepare(shape, adhesion)
+            continue
+        from roughmdr import expected
+
+        one = LoadingPath.along(path.separation[:1], unload=False, adhesive=scene.work > 0.0)
+        modulus, variables = scene.effective_modulus, plan.scene.output.variables
+        with suppress(RoughmdrError):  # the run itself will report it
+            expected.prepare(asperities, one, effective_modulus=modulus, adhesion=adhesion, variables=variables)
+
+
 def compute(task: Task) -> TaskResult:
     """Compute a task; a run that cannot be computed is marked as failed, and its remark says why."""
     check_versions(task.versions)
@@ -89,7 +108,7 @@ def compute(task: Task) -> TaskResult:
     for number, runs in enumerate(task.ranges):
         results = _moments(runs, task.variables) if task.keep_moments else _curves(runs, task.variables)
         rows += [(number, *result) for result in results]
-    return TaskResult.of([runs.key for runs in task.ranges], task.variables, rows, task.steps)
+    return task.result_of(rows)
 
 
 def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
@@ -145,22 +164,14 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
 
 def failed(task: Task, remark: str) -> TaskResult:
     """Return the result of a task that could not be computed at all."""
-    moments = Moments.of(np.full((len(task.variables), task.steps), math.nan))
+    moments = Moments.of(np.full((len(task.variables), task.ranges[0].cell.steps), math.nan))
     diagnostics = row_of(run_time=0.0, status=FAILED, remark=remark)
-    rows = [
-        (number, realization, moments, diagnostics)
-        for number, runs in enumerate(task.ranges)
-        for realization in range(runs.first, runs.last)
-    ]
-    return TaskResult.of([runs.key for runs in task.ranges], task.variables, rows, task.steps)
+    runs = [(number, each) for number, runs in enumerate(task.ranges) for each in range(runs.first, runs.last)]
+    return task.result_of([(number, realization, moments, diagnostics) for number, realization in runs])
 
 
 def first_error(remark: str) -> Exception:
     """Return the error that the remark of a failed run tells, to be raised again."""
-    import roughmdr.errors
-
     name, _, message = remark.partition(": ")
-    kind = getattr(roughmdr.errors, name, None)
-    if isinstance(kind, type) and issubclass(kind, RoughmdrError):
-        return kind(message)
-    return RuntimeError(remark)
+    kind = getattr(errors, name, None)
+    return kind(message) if isinstance(kind, type) and issubclass(kind, RoughmdrError) else RuntimeError(remark)

@@ -34,9 +34,7 @@ class RareAsperities:
             self._squares = []  # a run that meets such an asperity fails, and says so
 
     def spread(self, realizations: int) -> Floats:
-        """Return the spread of the force of a realisation [N], [step], that asperities add which so many realisations
-        may not have met.
-        """
+        """Return the spread of the force [N], [step], from asperities that so many realisations may not have met."""
         from scipy.special import ndtri
 
         level = min(_EXPECTED_IF_MET / (realizations * self._count), 0.5)

@@ -15,7 +15,7 @@ from pydantic import AfterValidator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.storage.file_checks import check_regular_file
+from roughmdr.storage.files import check_regular_file
 
 if TYPE_CHECKING:
     import xarray as xr

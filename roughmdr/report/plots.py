@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
-from roughmdr.result.statistics import mean_and_error
 from roughmdr.schema.wording import escape_controls
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CURVE_VARIABLES
 

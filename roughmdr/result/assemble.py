@@ -12,7 +12,7 @@ from roughmdr.batch.collect import CollectedResults
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
-from roughmdr.result.statistics import summarise
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
@@ -31,6 +31,8 @@ _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
+_STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
+_INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
 _MOSTLY_DRAWN = 0.9  # fraction of the error that the draws alone show, above which rare asperities are not warned of
 
 
@@ -38,27 +40,22 @@ def assemble(
     plan: Plan, methods: Sequence[CellMethod], collected: CollectedResults, variables: Sequence[str], command: str
 ) -> Labelled:
     """Return the result, from what was collected in ``variables``; ``methods`` tell how each cell was computed."""
-    scene, statistics, diagnostics = plan.scene, plan.keeps_statistics, collected.diagnostics
-    swept, cells = tuple(plan.sizes), tuple(plan.sizes.values())
-    dims = swept if statistics else (*swept, "realization")
-    shape = cells if statistics else (*cells, collected.values.shape[1])
-    data = _curves(plan, collected, variables, dims, shape)
+    scene, diagnostics = plan.scene, collected.diagnostics
+    swept, sizes = tuple(plan.sizes), tuple(plan.sizes.values())
+    runs = swept if plan.keeps_statistics else (*swept, "realization")
+    data, coordinates = _curves(plan, collected.values, variables, runs), plan.coordinates()
 
-    def of_cells(name: str, values: NDArray[Any]) -> Array:
-        return _array(RUN_VARIABLES[name], swept, values.reshape(cells))
-
-    if statistics or scene.accuracy is not None:
-        data["realization_count"] = of_cells(
-            "realization_count", np.array([float(each.realizations) for each in methods])
+    def of_cells(name: str, values: list[Any]) -> Array:
+        return _array(
+            RUN_VARIABLES[name], swept, np.array(values, dtype=object if name == "cell_key" else None).reshape(sizes)
         )
-    # Texts are coordinates, so that one can calculate with the variables.
-    coordinates = {
-        **plan.coordinates(),
-        "cell_key": of_cells("cell_key", np.array([each.key for each in methods], dtype=object)),
-    }
+
+    if plan.keeps_statistics or scene.accuracy is not None:
+        data["realization_count"] = of_cells("realization_count", [float(each.realizations) for each in methods])
+    coordinates["cell_key"] = of_cells("cell_key", [each.key for each in methods])
     for name, declared in RUN_DIAGNOSTICS.items():
-        array = _array(declared, dims, diagnostics[name].reshape(shape))
-        if declared.dtype is str:
+        array = _array(declared, runs, diagnostics[name].reshape((*sizes, *diagnostics[name].shape[1:])))
+        if declared.dtype is str:  # texts are coordinates, so that one can calculate with the variables
             coordinates |= {name: array} if (array.values != "").any() else {}
         elif any(declared.in_result(cell.scene) for cell in plan.cells):
             data[name] = array
@@ -71,9 +68,8 @@ def assemble(
         "versions": versions(),
     }
     if scene.accuracy is not None:
-        data["accuracy_reached"] = of_cells("accuracy_reached", np.array([each.error for each in methods]))
-        codes = np.array([ESTIMATORS.index(each.estimator) for each in methods])
-        data["accuracy_method"] = of_cells("accuracy_method", codes)
+        data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])
+        data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
         attrs["accuracy"] = _describe_accuracy(scene.accuracy, methods)
         failed = (diagnostics["status"].reshape(len(methods), -1) == FAILED).any(axis=1)
         warnings += _accuracy_warnings(scene.accuracy, methods, failed)
@@ -84,33 +80,36 @@ def assemble(
 
 
 def _curves(
-    plan: Plan,
-    collected: CollectedResults,
-    variables: Sequence[str],
-    dims: tuple[str, ...],
-    shape: tuple[int, ...],
+    plan: Plan, collected: dict[str, Floats], variables: Sequence[str], runs: tuple[str, ...]
 ) -> dict[str, Array]:
-    """Return the variables that were asked for: curves, or statistics of them."""
+    """Return the variables that were asked for: ``NAME`` over runs and steps, or ``NAME_mean`` and so on over cells.
+
+    NaN stands for a standard error that is not computed: that of a single realisation, and of the stiffness where
+    contacts may be at the point of detachment, since its variance is infinite.
+    """
     at_detachment = np.array([cell.path.at_detachment() for cell in plan.cells])
     data: dict[str, Array] = {}
     for name in plan.scene.output.variables:
-        number = list(variables).index(name)
-        if plan.keeps_statistics:
-            moments, sem = collected.moments.select(np.s_[:, number]), collected.sem[:, number]
-            arrays = summarise(name, (*dims, "step"), moments, sem, at_detachment)
-        else:
-            arrays = {name: Array((*dims, "step"), collected.values[:, :, number], CURVE_VARIABLES[name].attrs)}
-        data |= {key: each._replace(values=each.values.reshape(*shape, -1)) for key, each in arrays.items()}
+        variable, number = CURVE_VARIABLES[name], list(variables).index(name)
+        for statistic, array in collected.items():
+            values, attrs = array[..., number, :], variable.attrs
+            if statistic in _STATISTICS:
+                attrs["long_name"] = f"{_STATISTICS[statistic]} of {variable.long_name}"
+            if statistic == "mean":
+                attrs["ancillary_variables"] = f"{name}_sem"
+            if (name, statistic) == ("stiffness", "sem") and at_detachment.any():
+                values[at_detachment] = math.nan
+                attrs["comment"] = _INFINITE_VARIANCE
+            key = f"{name}_{statistic}" if statistic in _STATISTICS else name
+            data[key] = Array((*runs, "step"), values.reshape((*plan.sizes.values(), *values.shape[1:])), attrs)
     return data
 
 
 def _array(variable: Variable, dims: tuple[str, ...], values: NDArray[Any]) -> Array:
     """Return values with the attributes of a variable: texts have no units, and codes have flags in place of them."""
     if variable.codes:
-        flags = {
-            "flag_values": np.arange(len(variable.codes), dtype=np.int8),
-            "flag_meanings": " ".join(variable.codes),
-        }
+        meanings = " ".join(variable.codes)
+        flags = {"flag_values": np.arange(len(variable.codes), dtype=np.int8), "flag_meanings": meanings}
         return Array(dims, values.astype(np.int8), {"long_name": variable.long_name, **flags})
     return Array(dims, values, variable.attrs if variable.units else {"long_name": variable.long_name})
 
@@ -146,29 +145,26 @@ def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str
 
 def _accuracy_warnings(accuracy: Accuracy, methods: Sequence[CellMethod], failed: NDArray[np.bool_]) -> list[str]:
     """Return warnings of cells that did not reach the error asked for; those that failed have their own."""
-    warnings = []
-    missed = [each for each in methods if each.error > accuracy.relative]
-    if missed:
-        reason = (
-            "the expected law is not accurate enough; with accuracy.method 'auto' or 'sampled' asperities are drawn "
-            "instead"
-            if accuracy.method == "expected"
-            else f"accuracy.max_realizations, {accuracy.max_realizations}, is too low"
-        )
+    warnings, cells = [], len(methods)
+    if missed := [each for each in methods if each.error > accuracy.relative]:
+        if accuracy.method == "expected":
+            other = "with accuracy.method 'auto' or 'sampled' asperities are drawn instead"
+            reason = f"the expected law is not accurate enough; {other}"
+        else:
+            reason = f"accuracy.max_realizations, {accuracy.max_realizations}, is too low"
         warnings.append(
-            f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {len(methods)} cells "
+            f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {cells} cells "
             f"(up to {max(each.error for each in missed):.2g}): {reason}"
         )
-    rare = [each for each in missed if each.drawn_error < _MOSTLY_DRAWN * each.error]
-    if rare:
+    if rare := [each.drawn_error for each in missed if each.drawn_error < _MOSTLY_DRAWN * each.error]:
         warnings.append(
-            f"in {len(rare)} of {len(methods)} cells asperities too rare to be met by so many draws may bear much of "
-            f"the force: without them the error would seem to be {max(each.drawn_error for each in rare):.2g}"
+            f"in {len(rare)} of {cells} cells asperities too rare to be met by so many draws may bear much of "
+            f"the force: without them the error would seem to be {max(rare):.2g}"
         )
     unknown = [each for each, fails in zip(methods, failed, strict=True) if math.isnan(each.error) and not fails]
     if unknown:
         warnings.append(
-            f"in {len(unknown)} of {len(methods)} cells none of {unknown[0].realizations} realisations had any force: "
+            f"in {len(unknown)} of {cells} cells none of {unknown[0].realizations} realisations had any force: "
             "the error of the mean is not known"
         )
     return warnings

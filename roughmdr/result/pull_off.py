@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.statistics import mean_and_error
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE
 
@@ -18,16 +18,11 @@ if TYPE_CHECKING:
 class PullOff(NamedTuple):
     """The pull-off force [N] of each cell of a result: the largest tension while the flat retracts, 0 where none is."""
 
-    mean: Floats
-    """Over the realisations; of the mean curve, where the realisations were not kept."""
-    standard_error: Floats
-    """NaN for a single realisation, which has none."""
-    change: Floats
-    """Mean change of the force there from step to step of the path: how well the path resolves it."""
-    tensile: NDArray[np.int64]
-    """Number of curves that are tensile at all."""
-    curves: NDArray[np.int64]
-    """Number of curves: the realisations that were computed, or one."""
+    mean: Floats  # over the realisations; of the mean curve, where the realisations were not kept
+    standard_error: Floats  # NaN for a single realisation, which has none
+    change: Floats  # mean change of the force there from step to step of the path: how well the path resolves it
+    tensile: NDArray[np.int64]  # number of curves that are tensile at all
+    curves: NDArray[np.int64]  # number of curves: the realisations that were computed, or one
 
 
 def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:

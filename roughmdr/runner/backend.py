@@ -18,12 +18,10 @@ _ADDRESSES = ("tcp://", "tls://")
 class Backend(NamedTuple):
     """A scheduler, its number of workers, and how large their tasks are."""
 
-    scheduler: "str | Client" = "threads"
-    """"threads", "processes", the address of a dask cluster, or a Client of one."""
+    scheduler: "str | Client" = "threads"  # "threads", "processes", the address of a dask cluster, or a Client of one
     workers: int = 2
     tls: Tls | None = None
-    runs_per_task: int | None = None
-    """None for as many as make a task worth its overhead."""
+    runs_per_task: int | None = None  # None for as many as make a task worth its overhead
 
     def check(self) -> None:
         """RoughmdrError where the scheduler or the number of workers cannot be."""

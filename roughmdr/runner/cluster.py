@@ -89,15 +89,6 @@ class Cluster:
             sink(future.result())
 
 
-def _check_security(address: str, *, encrypted: bool, certified: bool) -> None:
-    """RoughmdrError where address and certificates do not match."""
-    secure = address.startswith("tls://")
-    if encrypted and not secure:
-        raise RoughmdrError(f"scheduler is {address!r}: with certificates it must be tls://HOST:PORT")
-    if secure and not certified:
-        raise RoughmdrError(f"scheduler is {address!r}: it needs --tls-ca, --tls-cert and --tls-key")
-
-
 def _check_listening(address: str, context: "ssl.SSLContext | None") -> None:
     """OSError where nobody listens, or one without a valid certificate; a client would try on and on."""
     url = urlsplit(address)
@@ -122,7 +113,11 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
                 tls_ca_file=tls.ca, tls_client_cert=tls.cert, tls_client_key=tls.key, require_encryption=True
             )
         context = security.get_connection_args("client").get("ssl_context")
-        _check_security(address, encrypted=security.require_encryption, certified=context is not None)
+        secure = address.startswith("tls://")
+        if security.require_encryption and not secure:
+            raise RoughmdrError(f"scheduler is {address!r}: with certificates it must be tls://HOST:PORT")
+        if secure and context is None:
+            raise RoughmdrError(f"scheduler is {address!r}: it needs --tls-ca, --tls-cert and --tls-key")
         _check_listening(address, context)
         client = Client(address, security=security, timeout=_TIMEOUT, set_as_default=False)
     except RoughmdrError:

@@ -4,7 +4,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -18,8 +18,7 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import Task, compute, failed
 from roughmdr.errors import RoughmdrError
 
-Sink = Callable[[TaskResult], None]
-"""Receives a finished task result, in the thread that called."""
+Sink = Callable[[TaskResult], None]  # receives a finished task result, in the thread that called
 
 _BATCH = 64  # tasks a worker that dask is given at a time: it finishes a batch before it begins the next one
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -85,17 +84,29 @@ class Processes:
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
         """As in ``Pool``; a task whose process dies again and again has failed."""
+        from dask.multiprocessing import get
+
         context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang
         halt = context.Event()
         group = _ProcessGroup(self.workers, context, halt)
+        waiting: dict[int, Task] = {}
+
+        def done(number: int, result: TaskResult) -> None:
+            del waiting[number]
+            if stop.is_set():
+                halt.set()
+            sink(result)
+
         try:
             for waiting in _batches(tasks, _BATCH * self.workers):
                 losses = 0
                 while waiting and not stop.is_set():
                     first = next(iter(waiting))
                     alone = losses > _MAX_LOSSES
+                    selected = [first] if alone else list(waiting)
+                    functions = {number: partial(_compute_unless_halted, waiting[number]) for number in selected}
                     try:
-                        _over_processes(group.pool, [first] if alone else list(waiting), waiting, stop, halt, sink)
+                        _over_dask(get, functions, done, pool=group.pool, chunksize=1, optimize_graph=False)
                     except BrokenProcessPool:
                         losses += 1
                         group.end()
@@ -148,27 +159,6 @@ def _signals_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _over_processes(
-    pool: ProcessPoolExecutor,
-    selected: Sequence[int],
-    waiting: dict[int, Task],
-    stop: threading.Event,
-    halt: Event,
-    sink: Sink,
-) -> None:
-    """Compute selected tasks of those that are waiting; those that are done are removed there."""
-    from dask.multiprocessing import get
-
-    def done(number: int, result: TaskResult) -> None:
-        del waiting[number]
-        if stop.is_set():
-            halt.set()
-        sink(result)
-
-    functions = {number: partial(_compute_unless_halted, waiting[number]) for number in selected}
-    _over_dask(get, functions, done, pool=pool, chunksize=1, optimize_graph=False)
-
-
 def _over_dask(
     get: Callable[..., Any],
     functions: Mapping[int, Callable[[], TaskResult | None]],
@@ -196,12 +186,11 @@ def _batches(tasks: Iterable[Task], size: int) -> Iterator[dict[int, Task]]:
         yield batch
 
 
-def _compute_unless(stop: threading.Event | Event | None, task: Task) -> TaskResult | None:
-    return None if stop is not None and stop.is_set() else compute(task)
+def _compute_unless(stop: threading.Event | Event, task: Task) -> TaskResult | None:
+    return None if stop.is_set() else compute(task)
 
 
-_halt: Event | None = None
-"""Set when the batch that a worker process works for is to stop."""
+_halt: Event | None = None  # set when the batch that a worker process works for is to stop
 
 
 def _start_worker(halt: Event) -> None:
@@ -221,4 +210,4 @@ def _end_with_parent() -> None:
 
 
 def _compute_unless_halted(task: Task) -> TaskResult | None:
-    return _compute_unless(_halt, task)
+    return None if _halt is not None and _halt.is_set() else compute(task)

@@ -14,19 +14,9 @@ class Progress:
     def __init__(self, title: str) -> None:
         self.title, self.total, self.done, self.reused = title, 0, 0, 0
 
-    def expect(self, count: int) -> None:
-        """Add runs that are still to be done."""
-        self.total += count
-        self.update()
-
-    def advance(self, count: int) -> None:
-        """Add runs that are done."""
-        self.done += count
-        self.update()
-
-    def reuse(self, count: int) -> None:
-        """Add runs that are reused."""
-        self.reused += count
+    def add(self, *, total: int = 0, done: int = 0, reused: int = 0) -> None:
+        """Add runs that are to be done, are done, or are reused."""
+        self.total, self.done, self.reused = self.total + total, self.done + done, self.reused + reused
         self.update()
 
     def update(self) -> None:

@@ -2,21 +2,22 @@
 
 import threading
 import warnings
+from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roughmdr.batch.collect import Collector
-from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import result_bytes
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
 from roughmdr.batch.resume.reusable import ReusableRows
-from roughmdr.batch.resume.writer import CheckpointWriter, checkpointing
+from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
-from roughmdr.batch.tasks import RunRange, first_error, split_into_tasks
+from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
@@ -25,7 +26,7 @@ from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
-from roughmdr.storage.file_checks import check_writable, destination
+from roughmdr.storage.files import check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED
@@ -120,60 +121,60 @@ def execute(
         check_writable(target, plan.scene.inputs)
         target = destination(target)
     rounds = Rounds(plan)
-    with checkpointing(target) as writer:
-        reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
+    with ExitStack() as stack:
+        writer = CheckpointWriter(target, stack)
+        reusable = ReusableRows(rounds.keys, _computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
-        if writer is not None and resume:
-            old = None if writer.may_replace(plan.scene.toml) else find_previous(writer.target)
+        if target is not None and resume:
+            old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
             if old is not None and is_finished(old, plan, rounds.keys):
                 if writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
                     writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
-            reuse(writer.target, old, writer.store, plan, reusable)
+            reuse(target, old, writer.store, plan, reusable)
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
         remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
         check_memory(result_bytes(plan, runs), "the run", remedy)
         try:
             with backend.pool() as pool:
-                if writer is not None and not resume:
+                if not resume:
                     writer.clear()
                 batch = _Batch(plan, rounds, writer, reusable, pool, backend.runs_per_task)
                 return batch.run(old, command, quiet=quiet)
         except (StoreError, MemoryError) as error:
             message = str(error) or f"out of memory, with {describe_available_memory()}"
-            if writer is not None and writer.saved_message:
+            if writer.saved_message:
                 raise Unfinished(f"{message}; {writer.saved_message}") from None
             if isinstance(error, MemoryError):
                 raise Unfinished(message) from None
             raise
 
 
-def computed_variables(plan: Plan) -> tuple[str, ...]:
+def _computed_variables(plan: Plan) -> tuple[str, ...]:
     """Return the variables that are computed: those asked for and, where an error is asked for, the force."""
     asked = plan.scene.output.variables
     return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
 
 
+@dataclass
 class _Batch:
     """A plan while it is carried out."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        rounds: Rounds,
-        writer: CheckpointWriter | None,
-        reusable: ReusableRows,
-        pool: Pool,
-        runs_per_task: int | None,
-    ) -> None:
-        self._plan, self._rounds, self._writer, self._reusable, self._pool = plan, rounds, writer, reusable, pool
-        self._runs_per_task, self._variables = runs_per_task, computed_variables(plan)
-        watched = None if plan.scene.accuracy is None else _FORCE
+    _plan: Plan
+    _rounds: Rounds
+    _writer: CheckpointWriter
+    _reusable: ReusableRows
+    _pool: Pool
+    _runs_per_task: int | None
+
+    def __post_init__(self) -> None:
+        plan, watched = self._plan, None if self._plan.scene.accuracy is None else _FORCE
+        self._variables = _computed_variables(plan)
         self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
 
     def run(self, old: Labelled | None, command: str, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
-        with interruptible(self._is_kept, self._saved_message) as stop:
+        with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
             with progress(self._plan.scene.title, quiet=quiet) as display:
                 ranges = self._rounds.begin()
                 while ranges:
@@ -188,26 +189,18 @@ class _Batch:
         collected = self._collector.collected(cells)
         failed = collected.diagnostics["status"] == FAILED
         if none_done:
-            cell = int(np.argwhere(failed)[0, 0])
             error = first_error(str(collected.diagnostics["remark"][failed][0]))
-            name = self._plan.name_of(cell, 0)
+            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
         result = assemble(self._plan, methods, collected, self._variables, command)
         if old is not None:
             result.attrs["history"] += f"\n{old.attrs['history']}"
-        if self._writer is not None:
-            if old is not None:
-                check_no_less(self._writer.target, old, result, self._rounds.keys)
-            complete = not (failed.any() or self._reusable.has_unused(cells))
-            self._writer.finish(result, complete=complete)
+            check_no_less(self._writer.target, old, result, self._rounds.keys)
+        self._writer.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
         return result
 
     def _saved_message(self) -> str:
-        return (self._writer and self._writer.saved_message) or "nothing was written"
-
-    def _is_kept(self) -> bool:
-        """Return whether what is finished is kept."""
-        return self._writer is not None and self._writer.begun
+        return self._writer.saved_message or "nothing was written"
 
     def _round(self, ranges: list[RunRange], display: Progress, stop: threading.Event) -> None:
         """Reuse what there is, compute what is missing."""
@@ -219,25 +212,23 @@ class _Batch:
         ]
         for result in self._reusable.read(selected):
             self._collector.add(result)
-            display.reuse(result.realizations)
+            display.add(reused=result.realizations)
         tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
         if not tasks:
             return
-        display.expect(sum(runs.last - runs.first for runs in missing))
+        display.add(total=sum(runs.last - runs.first for runs in missing))
         if not isinstance(self._pool, Cluster):
             prepare_all(self._plan, missing)
-        if len(tasks) > 1 and self._writer is not None:
+        if len(tasks) > 1:
             self._writer.begin(self._plan.scene.toml)
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:
-            if self._writer is not None:
-                self._writer.put(result)
+            self._writer.put(result)
             self._collector.add(result)
-            display.advance(result.realizations)
+            display.add(done=result.realizations)
 
         pool.compute(tasks, stop, sink)
         if stop.is_set():
-            if self._writer is not None:
-                self._writer.flush()
+            self._writer.flush()
             raise Interrupted(f"interrupted; {self._saved_message()}")

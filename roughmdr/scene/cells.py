@@ -15,10 +15,8 @@ from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
 from roughmdr.schema.quantities import Reader
 
-_Values = tuple[tuple[str, object], ...]
-"""Swept keys of one section, each with its value."""
-_SectionCache = dict[tuple[str, _Values], tuple[dict[str, Any], Any]]
-"""Sections by their name and swept values, each as a table and validated."""
+_SectionCache = dict[tuple[str, tuple[tuple[str, object], ...]], tuple[dict[str, Any], Any]]
+"""Sections by their name and their swept keys with values, each as a table and validated."""
 
 
 def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, list[Fault]]:
@@ -47,7 +45,11 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
         if cell is not None:
             cells.append(cell)
     if fault_counts:
-        return None, [_name_cells(fault, count, first_cells[fault]) for fault, count in fault_counts.items()]
+        faults = []
+        for fault, count in fault_counts.items():
+            where = f"{'' if count == 1 else f'in {count} cells, first '}where {first_cells[fault]}"
+            faults.append(fault._replace(message=f"{fault.message} ({where})"))
+        return None, faults
     given = {name: sections[name] for name in base.model_fields_set}
     return Scene.of(table, path, {"sweep": sweep, **given}, tuple(cells)), []
 
@@ -104,16 +106,14 @@ def _validate_cell(
 
     A swept section is taken from ``cache`` if it was validated with the same values before, and is added to it.
     """
-    swept: dict[str, _Values] = {}
+    swept: dict[str, tuple[tuple[str, object], ...]] = {}
     for key, value in values.items():
         name = key.split(".")[0]
         swept[name] = (*swept.get(name, ()), (key, value))
-    already_read = {name: cache[name, own_values] for name, own_values in swept.items() if (name, own_values) in cache}
-    validated = {name: section for name, section in sections.items() if name not in swept}
-    validated |= {name: section for name, (_, section) in already_read.items()}
-    table = {name: already_read[name][0] if name in already_read else part for name, part in base_table.items()}
+    table, validated = dict(base_table), {name: section for name, section in sections.items() if name not in swept}
     for name, own_values in swept.items():
-        if name in already_read:
+        if (name, own_values) in cache:
+            table[name], validated[name] = cache[name, own_values]
             continue
         table[name] = _copy_tables(table.get(name, {}))
         for key, value in own_values:
@@ -123,21 +123,13 @@ def _validate_cell(
                 return None, [Fault(f"sweep.{key}", "", str(error))]
     cell, faults = _validate_one(table, path, validated)
     if cell is not None:
-        for name, own_values in swept.items():
-            cache[name, own_values] = table[name], getattr(cell, name)
-    return cell, [_at_swept_key(fault, values) for fault in faults]
+        cache |= {(name, own_values): (table[name], getattr(cell, name)) for name, own_values in swept.items()}
+    for number, fault in enumerate(faults):
+        if inner := [key for key in values if key == fault.key or key.startswith(f"{fault.key}.")]:
+            faults[number] = fault._replace(key=f"sweep.{inner[0]}")
+    return cell, faults
 
 
 def _copy_tables(value: Any) -> Any:
     """Copy tables within tables, but not the values in them."""
     return {key: _copy_tables(inner) for key, inner in value.items()} if isinstance(value, dict) else value
-
-
-def _at_swept_key(fault: Fault, values: dict[str, object]) -> Fault:
-    swept = [key for key in values if key == fault.key or key.startswith(f"{fault.key}.")]
-    return fault._replace(key=f"sweep.{swept[0]}") if swept else fault
-
-
-def _name_cells(fault: Fault, count: int, first: str) -> Fault:
-    where = f"where {first}" if count == 1 else f"in {count} cells, first where {first}"
-    return fault._replace(message=f"{fault.message} ({where})")

@@ -29,7 +29,7 @@ def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -
     ``table`` is the scene so far, which decides between sections that exclude each other.
     """
     data = table if isinstance(table, dict) else {}
-    for section in _matching(sections, data):
+    for section in [each for each in sections if _allows(each, data)] or sections:
         for name, field in section.model_fields.items():
             key, value = f"{prefix}{name}", data.get(name)
             yield from key_readers(sections_of(field.annotation), value, f"{key}.")
@@ -51,14 +51,10 @@ def set_key(table: dict[str, Any], key: str, value: object) -> None:
     table[last] = value
 
 
-def _matching(sections: list[type[BaseModel]], data: dict[str, Any]) -> list[type[BaseModel]]:
-    """Return the sections whose Literal fields allow the names in ``data``; all sections if none does."""
-
-    def matches(section: type[BaseModel]) -> bool:
-        declared = {name: field.annotation for name, field in section.model_fields.items() if name in data}
-        return all(data[name] in get_args(kind) for name, kind in declared.items() if get_origin(kind) is Literal)
-
-    return [section for section in sections if matches(section)] or sections
+def _allows(section: type[BaseModel], data: dict[str, Any]) -> bool:
+    """Return whether the Literal fields of a section allow the names in ``data``."""
+    declared = {name: field.annotation for name, field in section.model_fields.items() if name in data}
+    return all(data[name] in get_args(kind) for name, kind in declared.items() if get_origin(kind) is Literal)
 
 
 def _reader(declared: tuple[Any, ...]) -> Reader | None:

@@ -1,5 +1,6 @@
 """[path]: the separations of the rigid flat."""
 
+import math
 import re
 from typing import Annotated, NamedTuple
 
@@ -19,10 +20,6 @@ class Separation(NamedTuple):
 
     value: float
     in_sigma: bool
-
-    def metres(self, sigma: float) -> float:
-        """Return the separation [m], sigma [m] being the standard deviation of the heights."""
-        return self.value * sigma if self.in_sigma else self.value
 
 
 class SeparationReader:
@@ -65,10 +62,14 @@ class FlatPath(Section):
     unload: StrictBool = False
 
     @property
+    def _given(self) -> list[Separation]:
+        path = self.separation
+        return [path.start, path.stop] if isinstance(path, Range) else path
+
+    @property
     def uses_sigma(self) -> bool:
         """Whether a separation is given in standard deviations of the heights."""
-        ends = [self.separation.start, self.separation.stop] if isinstance(self.separation, Range) else self.separation
-        return any(end.in_sigma for end in ends)
+        return any(separation.in_sigma for separation in self._given)
 
     def sigma_fault(self, sigma: float) -> str:
         """Return why separations cannot be given in sigma [m]; empty if they can, or are not."""
@@ -83,11 +84,11 @@ class FlatPath(Section):
         """
         if fault := self.sigma_fault(sigma):
             raise SceneError(f"path.separation: {fault}")
+        path = np.array([each.value * sigma if each.in_sigma else each.value for each in self._given])
         if isinstance(self.separation, Range):
-            start, stop = self.separation.start.metres(sigma), self.separation.stop.metres(sigma)
-            path = np.linspace(start, stop, self.separation.steps) if np.isfinite(stop - start) else np.array([np.inf])
-        else:
-            path = np.array([separation.metres(sigma) for separation in self.separation])
+            start, stop = path.tolist()
+            finite = math.isfinite(stop - start)
+            path = np.linspace(start, stop, self.separation.steps) if finite else np.array([np.inf])
         if not np.isfinite(path).all():
             raise SceneError("path.separation: reaches beyond the largest float")
         return path

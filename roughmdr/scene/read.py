@@ -17,11 +17,9 @@ from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
 from roughmdr.schema.wording import printable, short_repr
-from roughmdr.storage.file_checks import check_regular_file, is_open_pipe
+from roughmdr.storage.files import check_regular_file, is_open_pipe
 from roughmdr.storage.netcdf_reading import read_attribute
 
-_FILE_KEYS = (("asperities", "file"),)
-"""Keys of file names: in a scene relative to its folder, in --set to the current folder."""
 _NETCDF_MAGIC = (b"\x89HDF", b"CDF")
 _MAX_BYTES = 2**24
 
@@ -69,7 +67,14 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
 def _read_text(path: Path) -> str:
     """Return the TOML in a file, a pipe or a result."""
     try:
-        content = _read_bytes(path)
+        if not is_open_pipe(path):
+            check_regular_file(path)
+        with path.open("rb") as file:
+            content = file.read(max(map(len, _NETCDF_MAGIC)))
+            if not content.startswith(_NETCDF_MAGIC):
+                content += file.read(_MAX_BYTES)
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
     except RoughmdrError as error:
         raise SceneError(f"{path}: {error}") from None
     if content.startswith(_NETCDF_MAGIC):
@@ -83,18 +88,6 @@ def _read_text(path: Path) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text file; a scene is TOML in UTF-8") from None
-
-
-def _read_bytes(path: Path) -> bytes:
-    """Return the bytes of a file or a pipe, up to a few more than a scene may have; of a netCDF file the first few."""
-    if not is_open_pipe(path):
-        check_regular_file(path)
-    try:
-        with path.open("rb") as file:
-            first = file.read(max(map(len, _NETCDF_MAGIC)))
-            return first if first.startswith(_NETCDF_MAGIC) else first + file.read(_MAX_BYTES)
-    except OSError as error:
-        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
 
 
 def _unquoted_unit_hint(message: str, text: str) -> str:
@@ -173,20 +166,18 @@ def _to_plain(value: Any) -> Any:
 
 
 def _normalise(table: dict[str, Any], folder: Path) -> None:
-    """Dot the keys of the sweep, and make file names, which are relative to ``folder``, absolute."""
+    """Dot the keys of the sweep, and make names of files of asperities, which are relative to ``folder``, absolute."""
 
     def absolute(name: Any) -> Any:
         return str((folder / name).absolute()) if isinstance(name, str) else name
 
     if "sweep" in table:
         table["sweep"] = flatten(table["sweep"])
-    for section, key in _FILE_KEYS:
-        inner, sweep = table.get(section), table.get("sweep")
-        if isinstance(inner, dict) and key in inner:
-            inner[key] = absolute(inner[key])
-        swept = f"{section}.{key}"
-        if isinstance(sweep, dict) and isinstance(sweep.get(swept), list):
-            sweep[swept] = [absolute(name) for name in sweep[swept]]
+    asperities, sweep = table.get("asperities"), table.get("sweep")
+    if isinstance(asperities, dict) and "file" in asperities:
+        asperities["file"] = absolute(asperities["file"])
+    if isinstance(sweep, dict) and isinstance(sweep.get("asperities.file"), list):
+        sweep["asperities.file"] = [absolute(name) for name in sweep["asperities.file"]]
 
 
 def _add_location(fault: Fault, label: str, lines: dict[str, int], changed: set[str]) -> Fault:

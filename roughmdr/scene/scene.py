@@ -73,39 +73,36 @@ class Scene(Section):
             _ = self.effective_modulus
         except OutOfRange as error:
             raise mismatch("material.modulus", str(error)) from None
-        self._check_batch()
-        self._check_accuracy()
-        if self.batch.estimator == "expected" and self.batch.realizations > 1:
+        asperities, estimator, realizations = self.asperities, self.batch.estimator, self.batch.realizations
+        if not asperities.is_random and realizations > 1:
+            message = f"must be 1 with source {asperities.source!r}: nothing in it is random"
+            raise mismatch("batch.realizations", message)
+        if estimator != "sampled" and (reason := asperities.reason_against(estimator)):
+            raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
+        if self.accuracy is not None:
+            self._check_accuracy(self.accuracy)
+        if estimator == "expected" and realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
-        if not self.asperities.is_random:
+        if not asperities.is_random:
             return self
-        if fault := self.path.sigma_fault(self.asperities.sigma):
+        if fault := self.path.sigma_fault(asperities.sigma):
             raise mismatch("path.separation", fault)
-        exponent = self.asperities.min_exponent
+        exponent = asperities.min_exponent
         if self.work > 0.0 and not exponent > 0.5:
-            key = "terms" if self.asperities.shared_profile is not None else "exponent"
+            key = "exponent" if asperities.shared_profile is None else "terms"
             raise mismatch(f"asperities.{key}", f"can be as low as {exponent:g}; with adhesion it must be above 0.5")
         return self
 
-    def _check_batch(self) -> None:
-        estimator, source = self.batch.estimator, self.asperities.source
-        if not self.asperities.is_random and self.batch.realizations > 1:
-            raise mismatch("batch.realizations", f"must be 1 with source {source!r}: nothing in it is random")
-        if estimator != "sampled" and (reason := self.asperities.reason_against(estimator)):
-            raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
-
-    def _check_accuracy(self) -> None:
-        if self.accuracy is None:
-            return
+    def _check_accuracy(self, accuracy: Accuracy) -> None:
         if not self.asperities.is_random:
             raise mismatch("accuracy", f"does not go with source {self.asperities.source!r}: nothing in it is random")
         if "estimator" in self.batch.model_fields_set:
             raise mismatch("batch.estimator", "is chosen by accuracy.method if there is an [accuracy]")
-        maximum, method = self.accuracy.max_realizations, self.accuracy.method
-        if self.batch.realizations > maximum:
-            raise mismatch("batch.realizations", f"must be at most accuracy.max_realizations, {maximum}")
-        if method != "auto" and (reason := self.asperities.reason_against(method)):
-            raise mismatch("accuracy.method", f"cannot be {method!r}: {reason}")
+        if self.batch.realizations > accuracy.max_realizations:
+            message = f"must be at most accuracy.max_realizations, {accuracy.max_realizations}"
+            raise mismatch("batch.realizations", message)
+        if accuracy.method != "auto" and (reason := self.asperities.reason_against(accuracy.method)):
+            raise mismatch("accuracy.method", f"cannot be {accuracy.method!r}: {reason}")
 
     @property
     def estimators(self) -> tuple[str, ...]:
@@ -128,11 +125,10 @@ class Scene(Section):
         material = self.material
         if material.effective_modulus is not None:
             return material.effective_modulus
-        if material.modulus is None or material.poisson is None:
-            raise AssertionError("validated above")
-        if self.counter is None:
-            return effective_modulus(material.modulus, material.poisson)
-        return effective_modulus(material.modulus, material.poisson, self.counter.modulus, self.counter.poisson)
+        assert material.modulus is not None  # as ``Material`` validates
+        assert material.poisson is not None
+        counter = () if self.counter is None else (self.counter.modulus, self.counter.poisson)
+        return effective_modulus(material.modulus, material.poisson, *counter)
 
     @property
     def work(self) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.path import Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS, udunits
+from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 
@@ -28,23 +28,15 @@ class Axis(NamedTuple):
     """One swept key."""
 
     key: str
-    entries: tuple[object, ...]
-    """As they would stand in the scene."""
-    values: NDArray[Any]
-    """In SI; names as they are."""
-    unit: str
-    """Of the values; empty for names."""
+    entries: tuple[object, ...]  # as they would stand in the scene
+    values: NDArray[Any]  # in SI; names as they are
+    unit: str  # of the values; empty for names
     long_name: str
 
     @property
     def name(self) -> str:
         """Name of the coordinate."""
         return self.key.replace(".", "_")
-
-    @property
-    def numeric(self) -> bool:
-        """Whether the values are numbers, not names."""
-        return self.values.dtype.kind != "U"
 
 
 @dataclass(frozen=True)
@@ -75,7 +67,7 @@ class Sweep:
         """Return the swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
-            unit = {"units": udunits(axis.unit)} if axis.numeric else {}
+            unit = {"units": axis.unit.replace("/m^2", " m-2")} if axis.values.dtype.kind != "U" else {}
             dimension = "cell" if self.mode == "zip" else axis.name
             coordinates[axis.name] = Array((dimension,), axis.values, {**unit, "long_name": axis.long_name})
         return coordinates
@@ -113,9 +105,8 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
     mode = table.get("mode", "product")
     faults = []
     if mode not in ("product", "zip"):
-        faults.append(
-            Fault("sweep.mode", short_repr(mode), f"not available{suggestion(str(mode), ['product', 'zip'])}")
-        )
+        hint = suggestion(str(mode), ["product", "zip"])
+        faults.append(Fault("sweep.mode", short_repr(mode), f"not available{hint}"))
     readers = {
         key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in _SECTIONS or key in _PATH_KEYS
     }
@@ -128,7 +119,7 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
         except EntryError as error:
             entry = "" if error.value is None else short_repr(error.value)
             faults.append(Fault(f"sweep.{printable(error.key)}", entry, str(error)))
-    faults += _conflicts(mode, axes) if axes else []
+    faults += _conflicts(mode, axes)
     if not axes and not faults:
         faults.append(Fault("sweep", "", 'names no key to sweep, like "adhesion.work" = ["10 mJ/m^2", "50 mJ/m^2"]'))
     return (None, faults) if faults else (Sweep(mode, tuple(axes)), [])
@@ -146,13 +137,12 @@ def _axis(key: str, value: object, readers: dict[str, Reader], *, ordered: bool)
     unit, long_name = reader.dimension, f"swept {key}"
     if in_sigma:
         unit, long_name = DIMENSIONLESS, f"swept {key}, in standard deviations of the heights"
-    if not ordered:
-        return Axis(key, tuple(entries), np.array(numbers), unit, long_name)
-    if len(set(numbers)) < len(numbers):
-        raise EntryError(key, value, "holds a value twice; a dimension needs each once")
     order = list(range(len(numbers)))
-    if not isinstance(numbers[0], str) and numbers != sorted(numbers, reverse=True):
-        order.sort(key=numbers.__getitem__)  # a coordinate rises or falls (CF-1.11, section 1.3)
+    if ordered:
+        if len(set(numbers)) < len(numbers):
+            raise EntryError(key, value, "holds a value twice; a dimension needs each once")
+        if not isinstance(numbers[0], str) and numbers != sorted(numbers, reverse=True):
+            order.sort(key=numbers.__getitem__)  # a coordinate rises or falls (CF-1.11, section 1.3)
     return Axis(key, tuple(entries[i] for i in order), np.array([numbers[i] for i in order]), unit, long_name)
 
 
@@ -205,17 +195,14 @@ def _spaced_entries(key: str, table: dict[str, Any], reader: Reader) -> list[obj
     return [ends[0], *inner, ends[1]]
 
 
-def _conflicts(mode: str, axes: list[Axis]) -> list[Fault]:
-    faults = []
-    for axis in axes:
+def _conflicts(mode: str, axes: list[Axis]) -> Iterator[Fault]:
+    counts = [len(axis.entries) for axis in axes]
+    for axis, count in zip(axes, counts, strict=True):
         for other in axes:
             if axis.key.startswith(f"{other.key}."):
-                faults.append(Fault(f"sweep.{axis.key}", "", f"is a part of {other.key}, which is swept too"))
-        if mode == "zip" and len(axis.entries) != len(axes[0].entries):
-            count, first = len(axis.entries), len(axes[0].entries)
-            message = f"has {count} values, {axes[0].key} has {first}; mode = 'zip' takes equally many"
-            faults.append(Fault(f"sweep.{axis.key}", "", message))
-    cells = math.prod(len(axis.entries) for axis in axes)
-    if mode == "product" and cells > _MAX_CELLS:
-        faults.append(Fault("sweep", "", f"has {cells} cells; at most {_MAX_CELLS} are allowed"))
-    return faults
+                yield Fault(f"sweep.{axis.key}", "", f"is a part of {other.key}, which is swept too")
+        if mode == "zip" and count != counts[0]:
+            message = f"has {count} values, {axes[0].key} has {counts[0]}; mode = 'zip' takes equally many"
+            yield Fault(f"sweep.{axis.key}", "", message)
+    if mode == "product" and math.prod(counts) > _MAX_CELLS:
+        yield Fault("sweep", "", f"has {math.prod(counts)} cells; at most {_MAX_CELLS} are allowed")

@@ -69,7 +69,10 @@ def _to_fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
         case "missing":
             return Fault(key, "", "is missing")
         case "union_tag_not_found":
-            return _missing_tag(keys, context["discriminator"].strip("'"), choices, fault["input"])
+            name = context["discriminator"].strip("'")
+            if misspelt := close_matches(name, fault["input"]):
+                return Fault(".".join([*keys, printable(misspelt[0])]), "", f"unknown key; did you mean {name!r}?")
+            return Fault(".".join([*keys, name]), "", f"is missing; it can be {', '.join(_tags(choices, name))}")
         case "union_tag_invalid":
             tags = [tag.strip("'") for tag in context["expected_tags"].split(", ")]
             tag_key = ".".join([*keys, context["discriminator"].strip("'")])
@@ -86,12 +89,6 @@ def _to_fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
             return Fault(key, value, "must be a table")
         case _:
             return Fault(key, value, fault["msg"][0].lower() + fault["msg"][1:])
-
-
-def _missing_tag(keys: list[str], name: str, choices: _Sections, table: dict[str, Any]) -> Fault:
-    if misspelt := close_matches(name, table):
-        return Fault(".".join([*keys, printable(misspelt[0])]), "", f"unknown key; did you mean {name!r}?")
-    return Fault(".".join([*keys, name]), "", f"is missing; it can be {', '.join(_tags(choices, name))}")
 
 
 def _locate(loc: tuple[int | str, ...], data: Any, declared: Any) -> tuple[list[str], _Sections, _Sections]:

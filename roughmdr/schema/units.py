@@ -4,21 +4,18 @@ import math
 import re
 from decimal import Decimal
 from functools import cache
+from typing import Any
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.wording import short_repr
 
 _PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
 _LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
+_ENDINGS = ("er", "re", "ers", "res")
+_METRES = {f"{prefix}met{end}": Decimal(10) ** power for prefix, power in _LENGTHS.items() for end in _ENDINGS}
+_MICRON, _ANGSTROM = Decimal("1e-6"), Decimal("1e-10")
 _ALONE = {
-    "m": {
-        **{
-            f"{prefix}met{end}": Decimal(10) ** power
-            for prefix, power in _LENGTHS.items()
-            for end in ("er", "re", "ers", "res")
-        },
-        **{"micron": Decimal("1e-6"), "microns": Decimal("1e-6"), "angstrom": Decimal("1e-10"), "Å": Decimal("1e-10")},
-    },
+    "m": {**_METRES, "micron": _MICRON, "microns": _MICRON, "angstrom": _ANGSTROM, "Å": _ANGSTROM},
     "J/m^2": {"erg/cm^2": Decimal("1e-3")},
 }
 
@@ -46,43 +43,28 @@ def _table(dimension: str) -> dict[str, Decimal]:
     return table
 
 
-def example(dimension: str) -> str:
-    """Some units of a dimension, for messages."""
-    examples = {
-        "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
-        "m-2": '"1e9 /m^2"', "N": '"3 mN"',
-    }  # fmt: skip
-    return examples.get(dimension, "a plain number")
-
-
+_EXAMPLES = {
+    "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
+    "m-2": '"1e9 /m^2"', "N": '"3 mN"',
+}  # fmt: skip
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
 def quantity(value: object, dimension: str) -> float:
     """A number in SI, or a string with a unit of the dimension, as a float in SI; RoughmdrError where it is neither."""
-    wanted = (
-        "a plain number"
-        if dimension == DIMENSIONLESS
-        else f"a number in {dimension} or a string like {example(dimension)}"
-    )
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise RoughmdrError(f"expected {wanted}")
-    if isinstance(value, str):
-        match = _QUANTITY.fullmatch(value)
-        if match is None:
-            raise RoughmdrError(f"expected {wanted}")
-        try:
-            exact = Decimal(match[1]) * unit_factor(match[2], dimension)
-            number = float(exact)
-        except ArithmeticError:
-            raise RoughmdrError("expected a number that a float can hold") from None
-        if number == 0.0 and exact != 0:
-            raise RoughmdrError("expected a number that a float can hold; this is too near to 0")
-    else:
-        try:
-            number = float(value)
-        except OverflowError:
-            raise RoughmdrError(f"expected {wanted}; this is too large for a float") from None
+    wanted = f"expected a number in {dimension} or a string like {_EXAMPLES.get(dimension, 'a plain number')}"
+    wanted = "expected a plain number" if dimension == DIMENSIONLESS else wanted
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None and (isinstance(value, bool) or not isinstance(value, int | float)):
+        raise RoughmdrError(wanted)
+    try:
+        exact: Any = Decimal(match[1]) * unit_factor(match[2], dimension) if match else value
+        number = float(exact)
+    except ArithmeticError:
+        reason = "expected a number that a float can hold" if match else f"{wanted}; this is too large for a float"
+        raise RoughmdrError(reason) from None
+    if number == 0.0 and exact != 0:
+        raise RoughmdrError("expected a number that a float can hold; this is too near to 0")
     if not math.isfinite(number):
         raise RoughmdrError("expected a finite number")
     return number
@@ -100,14 +82,6 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     table = _table(dimension) if dimension in _BASES else {}
     if spelled in table:
         return table[spelled]
-    for other in _BASES:
-        if spelled in _table(other):
-            raise RoughmdrError(
-                f"{unit!r} is a unit of {other}; expected a unit of {dimension}, like {example(dimension)}"
-            )
-    raise RoughmdrError(f"unknown unit {short_repr(unit)}; expected a unit of {dimension}, like {example(dimension)}")
-
-
-def udunits(dimension: str) -> str:
-    """A dimension in the spelling that CF asks for."""
-    return dimension.replace("/m^2", " m-2")
+    others = [f"{unit!r} is a unit of {other}" for other in _BASES if spelled in _table(other)]
+    found = others[0] if others else f"unknown unit {short_repr(unit)}"
+    raise RoughmdrError(f"{found}; expected a unit of {dimension}, like {_EXAMPLES.get(dimension, 'a plain number')}")

@@ -27,12 +27,27 @@ def available_memory() -> tuple[float, str]:
     return min(_limits(), default=(math.inf, ""))
 
 
+def peak_memory() -> float:
+    """Return the most memory that this process has had so far [byte]; 0 if it is not known."""
+    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
+    if peak := _read_sizes("/proc/self/status").get("VmHWM"):
+        return peak
+    with suppress(ImportError):
+        import resource
+
+        return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # bytes, where there is no /proc
+    return 0.0
+
+
 def _limits() -> Iterator[tuple[float, str]]:
     used = _read_sizes("/proc/self/status")
-    for name, key, words in (("AS", "VmSize", "address space (ulimit -v)"), ("DATA", "VmData", "data (ulimit -d)")):
-        limit = _resource_limit(name)
-        if key in used and limit < math.inf:
-            yield limit - used[key], f"the {format_bytes(limit)} of {words}"
+    with suppress(ImportError, AttributeError):
+        import resource
+
+        for name, key, words in (("AS", "VmSize", "address space (ulimit -v)"), ("DATA", "VmData", "data (ulimit -d)")):
+            limit = resource.getrlimit(getattr(resource, f"RLIMIT_{name}"))[0]
+            if key in used and limit != resource.RLIM_INFINITY:
+                yield limit - used[key], f"the {format_bytes(limit)} of {words}"
     machine = _read_sizes("/proc/meminfo")
     if machine and "VmRSS" in used:
         total = machine["MemTotal"] + machine["SwapTotal"]
@@ -48,13 +63,3 @@ def _read_sizes(path: str) -> dict[str, float]:
             if size.endswith(" kB"):
                 sizes[name] = 1024.0 * int(size[:-3])
     return sizes
-
-
-def _resource_limit(name: str) -> float:
-    """Return a limit [byte] that was set for this process, inf if none was."""
-    with suppress(ImportError, AttributeError):
-        import resource
-
-        limit = resource.getrlimit(getattr(resource, f"RLIMIT_{name}"))[0]
-        return math.inf if limit == resource.RLIM_INFINITY else float(limit)
-    return math.inf

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.storage.file_checks import check_regular_file
+from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
 from roughmdr.variables import AUXILIARY_COORDINATES
@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 LOCK = threading.Lock()
 """Held by every call of the library, which crashes when two threads are in it."""
-WORKING_MEMORY = 2**26
-"""Bytes that the library needs at most while it handles a block of an array."""
+WORKING_MEMORY = 2**26  # bytes that the library needs at most while it handles a block of an array
 _BLOCK_SIZE = 2**16  # elements of an array handed to the library at a time
 
 
@@ -35,7 +34,20 @@ def read_netcdf(path: Path) -> Labelled:
     """Return a whole file; RoughmdrError if it cannot be read."""
     with _open(path) as file:
         file.set_auto_mask(False)
-        return _read_arrays(file)
+        arrays, coordinates = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
+        for name, variable in file.variables.items():
+            attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+            named = attrs.pop("coordinates", "")
+            coordinates |= set(named.split()) if isinstance(named, str) else set()
+            attrs.pop("_FillValue", None)
+            arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
+            if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
+                raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
+        return Labelled(
+            {name: array for name, array in arrays.items() if name not in coordinates},
+            {name: array for name, array in arrays.items() if name in coordinates},
+            {key: file.getncattr(key) for key in file.ncattrs()},
+        )
 
 
 def read_attribute(path: Path, name: str) -> str:
@@ -65,23 +77,6 @@ def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
             yield file
     except Exception as error:  # a damaged or foreign file can make the library raise anything
         raise RoughmdrError(f"not a netCDF file that can be read ({error})") from None
-
-
-def _read_arrays(file: "netCDF4.Dataset") -> Labelled:
-    arrays, coordinates = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
-    for name, variable in file.variables.items():
-        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-        named = attrs.pop("coordinates", "")
-        coordinates |= set(named.split()) if isinstance(named, str) else set()
-        attrs.pop("_FillValue", None)
-        arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
-        if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
-            raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
-    return Labelled(
-        {name: array for name, array in arrays.items() if name not in coordinates},
-        {name: array for name, array in arrays.items() if name in coordinates},
-        {key: file.getncattr(key) for key in file.ncattrs()},
-    )
 
 
 def _read_values(variable: "netCDF4.Variable[Any]") -> np.ndarray[Any, Any]:

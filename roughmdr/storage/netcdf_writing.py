@@ -14,7 +14,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.schema.wording import format_bytes
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory
 from roughmdr.storage.netcdf_reading import LOCK, WORKING_MEMORY, blocks
@@ -66,12 +66,8 @@ def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
         file.createDimension(dimension, size)
     for name, array in (data.coordinates | data.variables).items():
         kind = array.values.dtype.kind
-        variable = file.createVariable(
-            name,
-            str if kind in "OU" else array.values.dtype,
-            array.dims,
-            fill_value=np.nan if kind == "f" and name in data.variables else None,
-        )
+        fill = np.nan if kind == "f" and name in data.variables else None
+        variable = file.createVariable(name, str if kind in "OU" else array.values.dtype, array.dims, fill_value=fill)
         variable.setncatts(array.attrs)
         matching = [other for other, dims in auxiliary.items() if dims <= set(array.dims)]
         if name in data.variables and matching:

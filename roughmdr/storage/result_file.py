@@ -1,6 +1,7 @@
 """Result files: their provenance, reading them, and the check that an output is replaced only by its own kind."""
 
 import platform
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
@@ -18,15 +19,9 @@ _SVG_HEAD = 4096  # bytes, within which an SVG has its root element
 
 def provenance(title: str, command: str) -> dict[str, str]:
     """Return the attributes that name the command and the versions that made a file."""
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    history = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}: {command}"
     source, packages = _versions()
-    return {
-        "Conventions": "CF-1.11",
-        "title": title,
-        "source": source,
-        "history": f"{now}: {command}",
-        "packages": packages,
-    }
+    return {"Conventions": "CF-1.11", "title": title, "source": source, "history": history, "packages": packages}
 
 
 @cache
@@ -49,21 +44,18 @@ def read_result(path: Path) -> Labelled:
 
 def check_same_kind(path: Path, kind: str) -> None:
     """Raise StoreError if there is a file at ``path`` that is no ``kind``: "png", "pdf", "svg" or "ensemble"."""
-    if path.exists() and not (_is_ensemble(path) if kind == "ensemble" else _is_picture(path, kind)):
+    if not path.exists():
+        return
+    same = False
+    if kind == "ensemble":
+        with suppress(RoughmdrError):
+            same = read_dimensions(path).get("height") == ("asperity",)
+    else:
+        try:
+            with path.open("rb") as file:
+                head = file.read(_SVG_HEAD)
+        except OSError as error:
+            raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
+        same = b"<svg" in head if kind == "svg" else head.startswith(_MAGIC_BYTES[kind])
+    if not same:
         raise StoreError(f"{path}: exists already and is no {kind}: give another output, or --fresh to replace it")
-
-
-def _is_picture(path: Path, kind: str) -> bool:
-    try:
-        with path.open("rb") as file:
-            head = file.read(_SVG_HEAD)
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
-    return b"<svg" in head if kind == "svg" else head.startswith(_MAGIC_BYTES[kind])
-
-
-def _is_ensemble(path: Path) -> bool:
-    try:
-        return read_dimensions(path).get("height") == ("asperity",)
-    except RoughmdrError:
-        return False

@@ -4,10 +4,8 @@ Anyone may have changed the file. A result may hold more than is listed here; wh
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
@@ -16,18 +14,18 @@ from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAI
 _REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _OPTIONAL_TEXTS = ("accuracy", "warnings", "versions", "checksum")
 _REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
-_CELL_KINDS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i"}
-"""NumPy's kind of each variable over cells: f floating-point, i integer."""
+_KINDS = {"f": "floating-point numbers", "i": "whole numbers", "text": "texts"}
+_KIND_OF = {float: "f", int: "i", str: "text"}
+_CELL_KINDS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i", "cell_key": "text"}
+"""Kind of each variable over cells: NumPy's, or text."""
 _STATISTICS = ("mean", "sem", "min", "max")
 _BRANCHES = ("loading", "unloading")
 
 
 def find_fault(data: Labelled) -> str:
     """Return why these arrays are no result; empty if they are one."""
-    for faults in (_missing, _attributes, _dimensions, _arrays, _pairs, _curves, _numbers):
-        if fault := next(faults(data), ""):
-            return fault
-    return ""
+    checks = (_missing, _attributes, _dimensions, _arrays, _curves, _numbers)
+    return next((fault for check in checks for fault in check(data)), "")
 
 
 def _missing(data: Labelled) -> Iterator[str]:
@@ -71,17 +69,15 @@ def _dimensions(data: Labelled) -> Iterator[str]:
 
 
 def _arrays(data: Labelled) -> Iterator[str]:
-    runs, cells = data.variables["status"].dims, _cells(data)
-    run_kinds = {name: _KIND_OF[declared.dtype] for name, declared in RUN_DIAGNOSTICS.items()}
-    for declared, dims in ((run_kinds, runs), (_CELL_KINDS, cells)):
-        for name in declared.keys() & data.variables.keys():
-            yield from _mismatches(name, data.variables[name], dims, declared[name])
-    texts = {"cell_key": cells, "branch": ("step",)} | {
-        name: runs for name, kind in run_kinds.items() if kind == "text"
-    }
-    for name, dims in texts.items():
-        if name in data.coordinates:
-            yield from _mismatches(name, data.coordinates[name], dims, "text")
+    """Find arrays of the wrong kind or over the wrong dimensions, and those that lack their counterpart."""
+    runs = data.variables["status"].dims
+    cells = tuple(dim for dim in runs if dim != "realization")
+    declared = {name: (runs, _KIND_OF[each.dtype]) for name, each in RUN_DIAGNOSTICS.items()}
+    declared |= {name: (cells, kind) for name, kind in _CELL_KINDS.items()} | {"branch": (("step",), "text")}
+    for name, (dims, kind) in declared.items():
+        holder = data.coordinates if kind == "text" else data.variables
+        if name in holder:
+            yield from _mismatches(name, holder[name], dims, kind)
     separation = data.coordinates["separation"]
     if [dim for dim in cells if dim in separation.dims] != list(separation.dims[:-1]):
         yield f"separation has the dimensions {', '.join(separation.dims)}; it must have swept keys and step"
@@ -89,10 +85,6 @@ def _arrays(data: Labelled) -> Iterator[str]:
     for name, array in data.coordinates.items():
         if name not in AUXILIARY_COORDINATES and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"
-
-
-def _pairs(data: Labelled) -> Iterator[str]:
-    """Find variables that lack their counterpart."""
     if ("tabor_number" in data.variables) != ("adhesion_law" in data.variables):
         yield "it has one of tabor_number and adhesion_law without the other"
     if (data.variables["status"].values == FAILED).any() and "remark" not in data.coordinates:
@@ -125,9 +117,8 @@ def _numbers(data: Labelled) -> Iterator[str]:
     for name, array in data.coordinates.items():
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
-    done = status == DONE
     for name in ("run_time", "numerical_error", *CURVE_VARIABLES, *(f"{name}_mean" for name in CURVE_VARIABLES)):
-        if name in data.variables and not np.isfinite(data.variables[name].values[done]).all():
+        if name in data.variables and not np.isfinite(data.variables[name].values[status == DONE]).all():
             yield f"{name} is not finite, and status says that it was computed"
     if "realization_count" in data.variables:
         count = data.variables["realization_count"].values
@@ -143,24 +134,13 @@ def _numbers(data: Labelled) -> Iterator[str]:
                 yield f"{name} has a value that is none of its flags"
 
 
-def _cells(data: Labelled) -> tuple[str, ...]:
-    return tuple(dim for dim in data.variables["status"].dims if dim != "realization")
-
-
 def _mismatches(name: str, array: Array, dims: tuple[str, ...], kind: str) -> Iterator[str]:
     if array.dims != dims:
         actual, expected = (", ".join(each) or "none" for each in (array.dims, dims))
         yield f"{name} has the dimensions {actual}; it must have {expected}"
-    if not (_is_texts(array.values) if kind == "text" else array.values.dtype.kind == kind):
-        yield f"{name} is of type {array.values.dtype}; it must be {_KIND_NAMES[kind]}"
-
-
-_KIND_OF = {float: "f", int: "i", str: "text"}
-_KIND_NAMES = {"text": "texts", "f": "floating-point numbers", "i": "whole numbers"}
-
-
-def _is_texts(values: NDArray[Any]) -> bool:
-    return values.dtype.kind in "OU" and all(map(_is_text, values.flat))
+    found = array.values.dtype.kind
+    if not (found in "OU" and all(map(_is_text, array.values.flat)) if kind == "text" else found == kind):
+        yield f"{name} is of type {array.values.dtype}; it must be {_KINDS[kind]}"
 
 
 def _is_text(value: object) -> bool:

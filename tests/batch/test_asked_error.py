@@ -16,11 +16,11 @@ from studies.accuracy import SCENES, force_samples, realizations_taken
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
 from roughmdr.batch import task_result, tasks
-from roughmdr.batch.compile import prepare_all
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.stopping_rule import FIRST, bound, next_count
+from roughmdr.batch.tasks import prepare_all
 from roughmdr.cli import main
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node

@@ -12,8 +12,8 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch import tasks
-from roughmdr.batch.diagnostics import merge_rows, row_of
 from roughmdr.batch.resume.store import store_folder
+from roughmdr.batch.task_result import merge_rows, row_of
 from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, NOT_RUN, RUN_DIAGNOSTICS, Diagnostic
 

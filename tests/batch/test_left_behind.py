@@ -16,7 +16,7 @@ from roughmdr.cli import main
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage.file_checks import destination
+from roughmdr.storage.files import destination
 
 FEW = {"source": "random", "shape": "paraboloid", "count": 20, "patch": "1 mm", "radius": "50 um"}
 PATH = {"separation": {"start": "2 sigma", "stop": "0 sigma", "steps": 5}}

@@ -20,7 +20,7 @@ from test_cli import ROUGHMDR, roughmdr
 import roughmdr as rm
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.cli import main
-from roughmdr.storage.file_checks import destination
+from roughmdr.storage.files import destination
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.netcdf_writing import max_file_size, write_arrays
 from roughmdr.storage.result_file import read_result

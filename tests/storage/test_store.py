@@ -18,7 +18,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read as read_scene
-from roughmdr.storage.atomic import replace_atomically
+from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.result_file import read_result
 
 

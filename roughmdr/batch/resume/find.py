@@ -9,7 +9,7 @@ from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
 from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.store import CheckpointStore
-from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.task_result import TaskResult, complete
 from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
@@ -38,11 +38,14 @@ def find_previous(target: Path) -> Labelled | None:
 def is_finished(old: Labelled, plan: Plan, keys: Sequence[set[str]]) -> bool:
     """Return whether a result is just what is asked for; ``keys`` are those that each cell may have."""
     new_scene, old_scene = (parse_toml(text) for text in (plan.scene.toml, old.attrs["scene"]))
-    same = all(new_scene.get(part) == old_scene.get(part) for part in _LAYOUT_PARTS)
-    same = same and list(new_scene.get("sweep", ())) == list(old_scene.get("sweep", ()))  # the order of its dimensions
     old_keys = _keys(old)
-    same = same and len(old_keys) == len(keys) and all(key in each for key, each in zip(old_keys, keys, strict=True))
-    return same and not (old.variables["status"].values == FAILED).any()
+    return (
+        all(new_scene.get(part) == old_scene.get(part) for part in _LAYOUT_PARTS)
+        and list(new_scene.get("sweep", ())) == list(old_scene.get("sweep", ()))  # the order of its dimensions
+        and len(old_keys) == len(keys)
+        and all(key in each for key, each in zip(old_keys, keys, strict=True))
+        and FAILED not in old.variables["status"].values
+    )
 
 
 def _keys(old: Labelled) -> list[str]:
@@ -75,15 +78,13 @@ def reuse(
     if reasons and not matches:
         unique = list(dict.fromkeys(reasons))
         more = f" and {len(unique) - _MAX_CHANGES} more" if len(unique) > _MAX_CHANGES else ""
-        raise StoreError(
-            f"{target}: holds results of another scene: {'; '.join(unique[:_MAX_CHANGES])}{more}: {_REMEDY}"
-        )
+        changed = "; ".join(unique[:_MAX_CHANGES]) + more
+        raise StoreError(f"{target}: holds results of another scene: {changed}: {_REMEDY}")
 
 
 def _what_would_be_lost(old: Labelled, plan: Plan, reusable: ReusableRows) -> str:
     """Name the part of a result that would be lost: cells, variables, curves or realisations; empty for nothing."""
-    others = sum(not reusable.matches([key]) for key in _keys(old))
-    if others:
+    if others := sum(not reusable.matches([key]) for key in _keys(old)):
         return f"{others} cell{'s' * (others > 1)} more"
     output = plan.scene.output
     names = [name for name in CURVE_VARIABLES if name in old.variables or f"{name}_mean" in old.variables]
@@ -97,20 +98,17 @@ def _what_would_be_lost(old: Labelled, plan: Plan, reusable: ReusableRows) -> st
     return f"{count} realisations" if count > plan.scene.batch.realizations else ""
 
 
-def check_no_less(target: Path, old: Labelled, new: Labelled, keys: Sequence[set[str]]) -> None:
+def check_no_less(target: Path | None, old: Labelled, new: Labelled, keys: Sequence[set[str]]) -> None:
     """StoreError where a result has fewer realisations of a cell than the ``old`` one at ``target`` that it replaces.
 
     With [accuracy], or where runs failed, that is known only at the end; ``keys`` as in is_finished.
     """
-    cell_of = {key: cell for cell, each in enumerate(keys) for key in each}
     counts = _counts(new)
-    new_counts = [max(counts.get(key, 0) for key in each) for each in keys]
+    new_counts = {key: max(counts.get(other, 0) for other in each) for each in keys for key in each}
     for key, count in _counts(old).items():
-        if count > new_counts[cell_of[key]]:
-            raise StoreError(
-                f"{target}: holds {count} realisations of a cell, of which there would be {new_counts[cell_of[key]]}: "
-                f"{_REMEDY}"
-            )
+        if count > new_counts[key]:
+            lost = f"holds {count} realisations of a cell, of which there would be {new_counts[key]}"
+            raise StoreError(f"{target}: {lost}: {_REMEDY}")
 
 
 def _counts(result: Labelled) -> dict[str, int]:
@@ -118,7 +116,7 @@ def _counts(result: Labelled) -> dict[str, int]:
     done = result.variables["status"].values == DONE
     if "realization" in result.sizes:
         runs = done.reshape(-1, done.shape[-1])
-        counts = (runs * np.arange(1, runs.shape[1] + 1)).max(axis=1)
+        counts = (runs * np.arange(1, runs.shape[1] + 1)).max(axis=1)  # up to the last that is done
     else:
         counts = np.where(done, result.variables["realization_count"].values, 0).ravel()
     return dict(zip(_keys(result), counts.astype(int).tolist(), strict=True))
@@ -144,21 +142,13 @@ def _task_result_of(old: Labelled) -> TaskResult:
     arrays = old.variables | old.coordinates
     names = [name for name in CURVE_VARIABLES if name in old.variables]
     curves = [arrays[name].values.reshape(-1, *arrays[name].values.shape[-2:])[cell, first] for name in names]
-    empty = np.empty((cell.size, 0, 0))
+    stated = {name: arrays[name].values.reshape(shape)[cell, first] for name in RUN_DIAGNOSTICS if name in arrays}
     return TaskResult(
         keys=tuple(_keys(old)),
         variables=tuple(names),
         cell=cell,
         first=first,
         size=np.ones(cell.size, dtype=np.int64),
-        values=np.stack(curves, axis=1),
-        spread=empty,
-        minimum=empty,
-        maximum=empty,
-        diagnostics={
-            name: arrays[name].values.astype(declared.dtype).reshape(shape)[cell, first]
-            if name in arrays
-            else np.full(cell.size, declared.unstated, dtype=declared.dtype)
-            for name, declared in RUN_DIAGNOSTICS.items()
-        },
+        moments=(np.stack(curves, axis=1),),
+        diagnostics=complete(stated, cell.size),
     )

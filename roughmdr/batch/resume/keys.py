@@ -2,12 +2,11 @@
 
 import hashlib
 from collections.abc import Iterator
-from functools import cache, lru_cache
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
 from roughmdr.batch.plan import Cell, Plan
-from roughmdr.ensemble import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
 from roughmdr.schema.toml_text import parse_toml
@@ -41,28 +40,20 @@ def keys_of(plan: Plan, estimator: str) -> list[str]:
 
 def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
     scene, path = cell
-    if id(scene.asperities) not in sections:
-        sections[id(scene.asperities)] = _asperities(scene.asperities)
+    section = scene.asperities
+    if id(section) not in sections:  # a file counts by its content, not by its name
+        section_by_content = section.model_copy(update={"file": section.content_hash}) if section.inputs else section
+        sections[id(section)] = repr(section_by_content)
     parts = (
         scene.effective_modulus,
         tuple(scene.adhesion_model),
-        sections[id(scene.asperities)],
-        _path(path.separation.tobytes()),
+        sections[id(section)],
+        hashlib.sha256(path.separation.tobytes()).hexdigest(),
         scene.seed,
         estimator,
         versions(),
     )
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
-
-
-def _asperities(section: Source) -> str:
-    """Return the text of a section, with the content of its file in place of its name."""
-    return repr(section.model_copy(update={"file": section.content_hash}) if section.inputs else section)
-
-
-@lru_cache(maxsize=16)
-def _path(separation: bytes) -> str:
-    return hashlib.sha256(separation).hexdigest()
 
 
 def changes(old: str, new: str) -> Iterator[str]:

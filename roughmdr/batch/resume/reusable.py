@@ -7,8 +7,7 @@ import numpy as np
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 
-Reader = Callable[[], TaskResult | None]
-"""Reads a task result; None where it is damaged."""
+Reader = Callable[[], TaskResult | None]  # reads a task result; None where it is damaged
 
 
 class ReusableRows:
@@ -38,11 +37,10 @@ class ReusableRows:
         if not self.matches(result.keys):
             return False
         self._has_more |= not set(self._variables).issuperset(result.variables)
-        usable = self._usable(result)
-        if usable is not None:
-            columns = zip(usable.cell.tolist(), usable.first.tolist(), usable.size.tolist(), strict=True)
+        if self._usable(result) is not None:
+            columns = zip(result.cell.tolist(), result.first.tolist(), result.size.tolist(), strict=True)
             for row, (cell, first, size) in enumerate(columns):
-                if (key := usable.keys[cell]) in self._keys:
+                if (key := result.keys[cell]) in self._keys:
                     self._rows.setdefault(key, []).append((first, -size, len(self._readers), row))
             self._readers.append(read)
         return True
@@ -54,7 +52,8 @@ class ReusableRows:
         )
 
     def _usable(self, result: TaskResult) -> TaskResult | None:
-        return result.with_variables(self._variables) if self._keep_moments or result.single else None
+        single = (result.size == 1).all()
+        return result.with_variables(self._variables) if self._keep_moments or single else None
 
     def select(self, key: str, first: int, last: int, selected: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
         """Append the rows of realisations first ... last - 1 of a cell to ``selected``; yield the ranges without."""

@@ -22,8 +22,7 @@ from typing import Any
 
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
-from roughmdr.storage.atomic import sync_folder
-from roughmdr.storage.file_checks import convert_os_errors
+from roughmdr.storage.files import convert_os_errors, sync_folder
 
 # Errors of disks without locks, such as some that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
@@ -95,15 +94,8 @@ class CheckpointStore:
                 temporary.unlink(missing_ok=True)
                 raise
             sync_folder(self.folder)
-        self._append(
-            {
-                "file": file,
-                "sha256": hashlib.sha256(content).hexdigest(),
-                "rows": len(result.first),
-                "realizations": result.realizations,
-                "run_time": float(result.diagnostics["run_time"].sum()),
-            }
-        )
+        digest = hashlib.sha256(content).hexdigest()
+        self._append({"file": file, "sha256": digest, "realizations": result.realizations})
         self._next += 1
 
     def clear(self) -> None:

@@ -2,9 +2,8 @@
 
 import os
 from collections import deque
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 
 from roughmdr.batch.resume.keys import versions
@@ -20,15 +19,18 @@ _MAX_PENDING = 16  # task results that may wait to be written before the batch w
 
 
 class CheckpointWriter:
-    """Write checkpoints for one output and hold the lock of their folder; no folder if its name would be too long."""
+    """Write checkpoints for one output and hold the lock of their folder until the ``stack`` is closed.
 
-    def __init__(self, target: Path, stack: ExitStack) -> None:
+    Nothing is written without a ``target``; there is no folder if its name would be too long.
+    """
+
+    def __init__(self, target: Path | None, stack: ExitStack) -> None:
         self.target, self._stack = target, stack
         self.store: CheckpointStore | None = None
         self._cleared, self._replaces = False, ""
         self._thread: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
-        if len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
+        if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
             self.store = stack.enter_context(locked_store(target))
 
     def clear(self) -> None:
@@ -39,7 +41,7 @@ class CheckpointWriter:
 
     def begin(self, scene: str) -> None:
         """Write checkpoints of this scene from now on; StoreError where there is no folder for them."""
-        if self._thread is None:
+        if self._thread is None and self.target is not None:
             if self.store is None:
                 raise StoreError(f"{self.target}: the name is too long for a folder of parts; give a shorter one")
             self.store.begin(scene, versions(), self._replaces)
@@ -52,9 +54,8 @@ class CheckpointWriter:
 
     def may_replace(self, scene: str) -> bool:
         """Return whether this resumes a batch of this scene that was allowed to replace the file at the output."""
-        if self.store is None or not self.store.replaces:
-            return False
-        return self.store.scene == scene and self.store.replaces == _stamp(self.target)
+        store = self.store
+        return store is not None and store.scene == scene and store.replaces == _stamp(self.target) != ""
 
     def put(self, result: TaskResult) -> None:
         """Write a task result without its failed runs, if checkpoints are written; StoreError where that fails."""
@@ -72,20 +73,15 @@ class CheckpointWriter:
 
     def finish(self, result: Labelled, *, complete: bool) -> None:
         """Write the result; remove the checkpoints if it is ``complete``: no run failed, and all of them are in it."""
+        if self.target is None:
+            return
         self.flush()
-        write_netcdf(result, self.target, self._temporary_folder())
+        folder = None if self.store is None else self.store.folder  # the next run removes what is left behind there
+        if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
+            folder = None  # a result cannot be renamed from one disk to another
+        write_netcdf(result, self.target, folder)
         if self.store is not None and complete:
             self.store.clear()
-
-    def _temporary_folder(self) -> Path | None:
-        """Return the folder to write the result in: the checkpoints', where the next run removes what is left behind.
-
-        None where the result cannot be renamed from there.
-        """
-        if self.store is None:
-            return None
-        folder = self.store.folder
-        return folder if folder.stat().st_dev == self.target.parent.stat().st_dev else None
 
     @property
     def saved_message(self) -> str:
@@ -96,16 +92,7 @@ class CheckpointWriter:
         return f"what is finished is kept in {self.store.folder}; {again} goes on from there"
 
 
-def _stamp(path: Path) -> str:
+def _stamp(path: Path | None) -> str:
     """Return length [byte] and time [ns] of a file, which tell it from one that replaces it; empty where none is."""
-    if not path.exists():
-        return ""
-    status = path.stat()
-    return f"{status.st_size} {status.st_mtime_ns}"
-
-
-@contextmanager
-def checkpointing(target: Path | None) -> Iterator[CheckpointWriter | None]:
-    """Open the checkpoint writer of an output, None where there is no output."""
-    with ExitStack() as stack:
-        yield None if target is None else CheckpointWriter(target, stack)
+    status = path.stat() if path is not None and path.exists() else None
+    return f"{status.st_size} {status.st_mtime_ns}" if status else ""

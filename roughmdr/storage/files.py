@@ -1,15 +1,15 @@
-"""Checks of files before they are used: an input must be a regular file or an open pipe, an output replaceable."""
+"""Inputs must be regular files or open pipes; an output appears whole or not at all, and nothing is left behind."""
 
-import contextlib
 import os
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError, StoreError
 
-TEMPORARY_PREFIX = ".roughmdr."
+_TEMPORARY_PREFIX = ".roughmdr."
 
 
 def check_regular_file(path: Path) -> None:
@@ -73,7 +73,7 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
             raise StoreError(f"{label}: the folder {target.parent} does not exist")
         if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
             raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
-        descriptor, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, dir=target.parent)
+        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY_PREFIX, dir=target.parent)
     except OSError as error:
         raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
     os.close(descriptor)
@@ -84,10 +84,47 @@ def _is_utf8(path: Path) -> bool:
     return str(path).encode(errors="replace").decode() == str(path)
 
 
-@contextlib.contextmanager
+@contextmanager
 def convert_os_errors(path: Path) -> Iterator[None]:
     """Convert an OSError raised inside to a StoreError that names ``path``."""
     try:
         yield
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+@contextmanager
+def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary file to write to; it replaces ``path`` once everything is written and on disk.
+
+    The temporary file is in ``folder``, which must be on the same disk; by default beside ``path``. If ``path`` is a
+    link, its target is replaced.
+    """
+    check_writable(path)
+    path = destination(path)
+    with convert_os_errors(path):
+        with tempfile.NamedTemporaryFile(
+            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
+        ) as created:
+            temporary = Path(created.name)
+        try:
+            yield temporary
+            with temporary.open("rb") as written:
+                os.fsync(written.fileno())
+            mask = os.umask(0)
+            os.umask(mask)
+            temporary.chmod(0o666 & ~mask)
+            temporary.replace(path)
+            sync_folder(path.parent)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def sync_folder(folder: Path) -> None:
+    """Write a folder's entries to disk, so that a new name survives a power cut; no effect if it cannot be opened."""
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
