@@ -16,9 +16,7 @@ _FAR_SCORE, _NEGLIGIBLE = 8.0, 1e-14  # values beyond this score are checked unl
 _MEAN_ERROR = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
 _DRAW_SCORES = np.arange(-8.0, 9.0)  # normal scores as far as draws reach
 _BROAD = 0.2  # change of log(value) in one normal score up to which a few draws show the spread of forces
-_LONG_TAIL = (
-    15.0  # from the median to score 8, over that to score 2: 4 in a normal distribution, 11 in an exponential one
-)
+_LONG_TAIL = 15.0  # distance of score 8 from the median over that of score 2: 4 where normal, 11 where exponential
 _FAR_FRACTION = 1e-15  # beyond it some inverses of scipy are wrong by orders of magnitude, as that of invgauss
 
 
