@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.process import peak_memory
-from roughmdr.batch.plan import Plan, make_plan, simulate_realization
+from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import prepare_all
 from roughmdr.runner.backend import Backend

@@ -21,7 +21,7 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
@@ -129,7 +129,7 @@ def load_separation(
     strength: float | str | None = None,
     unload: bool = False,
     variables: Iterable[str] = DEFAULT_VARIABLES,
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> xr.Dataset:
     """Compute the load-separation curve of an ensemble pressed by a rigid flat, in this process.
 

@@ -14,7 +14,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.schema.arguments import check_scalar
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 
@@ -25,7 +25,7 @@ _SMALLEST = 1e-150  # of the radius of the first fold: where the search for a sm
 
 
 def equilibria(
-    shape: Shape, *, work: float | str, indentation: float | str, **material: Unpack[Material]
+    shape: Shape, *, work: float | str, indentation: float | str, **material: Unpack[MaterialArguments]
 ) -> xr.Dataset:
     """Find all contact radii in equilibrium at an indentation, from the smallest to the largest.
 

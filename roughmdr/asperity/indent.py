@@ -15,7 +15,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, Model, tabor_number
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, check_values, exactly_one
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from roughmdr.springs import Springs
 
 
-class AdhesiveMaterial(Material, total=False):
+class AdhesiveMaterial(MaterialArguments, total=False):
     """The elastic constants and how the surfaces attract each other, as keyword arguments."""
 
     adhesion: Model
@@ -168,7 +168,7 @@ def pull_off(
     return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
 
 
-def tabor(shape: Shape, *, work: float | str, strength: float | str, **material: Unpack[Material]) -> float:
+def tabor(shape: Shape, *, work: float | str, strength: float | str, **material: Unpack[MaterialArguments]) -> float:
     """Compute the Tabor number dl(a) strength/(pi^(2/3) work), with a where JKR detaches under fixed grips.
 
     Where it is large JKR holds; where it is small the attraction reaches far beyond the contact (DMT). For the

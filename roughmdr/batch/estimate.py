@@ -10,7 +10,8 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.costs import START_UP, file_bytes, result_bytes
-from roughmdr.batch.plan import Cell, Plan, simulate_ensemble, simulate_realization
+from roughmdr.batch.plan import Cell, Plan
+from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError

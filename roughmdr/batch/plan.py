@@ -1,4 +1,4 @@
-"""The plan of a scene: its cells, each with the path of its flat, and what is left out; and how one run is done."""
+"""The plan of a scene: its cells, each with the path of its flat, and what is left out."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
-from roughmdr.ensemble import Ensemble
+from roughmdr.aggregate import LoadingPath
 from roughmdr.errors import SceneError
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
@@ -98,27 +97,6 @@ def make_plan(scene: Scene) -> Plan:
         cells.append(Cell(cell, paths[key]))
     left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
     return Plan(scene, tuple(cells), tuple(left_out))
-
-
-def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
-    """Return the load-separation curve of an ensemble with the material and the adhesion of a scene."""
-    effective_modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
-
-
-def simulate_realization(
-    scene: Scene, path: LoadingPath, realization: int, variables: list[str], estimator: str
-) -> LoadSeparation:
-    """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
-    if estimator == "expected":
-        from roughmdr import expected
-
-        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        return expected.compute(
-            scene.asperities, path, effective_modulus=modulus, adhesion=adhesion, variables=variables
-        )
-    ensemble = scene.asperities.ensemble(scene.seed, realization, stratified=estimator == "stratified")
-    return simulate_ensemble(scene, path, ensemble, variables)
 
 
 def _left_out(scene: Scene) -> Iterator[str]:

@@ -12,7 +12,8 @@ from roughmdr import errors
 from roughmdr.aggregate import LoadingPath, LoadSeparation, prepare
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.moments import Moments, MomentTree
-from roughmdr.batch.plan import Cell, Plan, simulate_realization
+from roughmdr.batch.plan import Cell, Plan
+from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions
 from roughmdr.batch.task_result import Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError

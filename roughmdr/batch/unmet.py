@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from roughmdr.batch.plan import Cell, simulate_ensemble
+from roughmdr.batch.plan import Cell
+from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats

@@ -13,7 +13,7 @@ from roughmdr.fields.half_space import HalfSpace
 from roughmdr.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
@@ -29,7 +29,7 @@ def pressure(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> xr.DataArray:
     """Compute the normal pressure on the surface, compression positive; 0 outside the contact.
 
@@ -90,7 +90,7 @@ def surface_displacement(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> xr.DataArray:
     """Compute the normal displacement of the surface, positive into the half-space.
 
@@ -143,7 +143,7 @@ def axis_stress(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> xr.Dataset:
     """Compute the stress on the axis below the contact, tension positive.
 

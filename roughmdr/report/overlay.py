@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.batch.plan import Cell, Plan, make_plan, simulate_realization
+from roughmdr.batch.plan import Cell, Plan, make_plan
+from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.plots import EXPECTED, OverlayLine, separations

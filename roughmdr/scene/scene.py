@@ -10,7 +10,7 @@ from roughmdr.ensemble import Asperities
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
-from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, Material, Output
+from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, MaterialSection, Output
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import effective_modulus
@@ -30,7 +30,7 @@ class Scene(Section):
 
     title: Annotated[str, BeforeValidator(_check_title)]
     seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
-    material: Material
+    material: MaterialSection
     counter: Body | None = None
     adhesion: AdhesionSection | None = None
     asperities: Asperities
@@ -125,7 +125,7 @@ class Scene(Section):
         material = self.material
         if material.effective_modulus is not None:
             return material.effective_modulus
-        assert material.modulus is not None  # as ``Material`` validates
+        assert material.modulus is not None  # as ``MaterialSection`` validates
         assert material.poisson is not None
         counter = () if self.counter is None else (self.counter.modulus, self.counter.poisson)
         return effective_modulus(material.modulus, material.poisson, *counter)

@@ -25,7 +25,7 @@ class Body(Section):
     poisson: _Poisson
 
 
-class Material(Section):
+class MaterialSection(Section):
     """[material]: effective_modulus alone, or modulus and poisson."""
 
     effective_modulus: _Modulus | None = None
@@ -33,7 +33,7 @@ class Material(Section):
     poisson: _Poisson | None = None
 
     @model_validator(mode="after")
-    def _effective_or_youngs(self) -> "Material":
+    def _effective_or_youngs(self) -> "MaterialSection":
         check_one_body(self.effective_modulus, self.modulus, self.poisson)
         return self
 

@@ -10,7 +10,7 @@ from roughmdr.schema.arguments import check_number, check_poisson
 from roughmdr.schema.wording import close_matches
 
 
-class Material(TypedDict, total=False):
+class MaterialArguments(TypedDict, total=False):
     """Keyword arguments that tell E*: effective_modulus alone, or modulus with poisson.
 
     The latter may be joined by counter_modulus with counter_poisson; without them the counter body is rigid.
@@ -51,7 +51,7 @@ def effective_modulus(
 
     References
     ----------
-    .. [1] K. L. Johnson, Contact Mechanics (1985), eq. (4.22).
+    .. [1] K. L. Johnson, Contact Mechanics (1985), chapter 4.
 
     Examples
     --------
@@ -80,15 +80,15 @@ def check_one_body(effective_modulus: object, modulus: object, poisson: object) 
         raise RoughmdrError("needs effective_modulus, or modulus and poisson")
 
 
-def effective_modulus_of(function: Callable[..., Any], material: Material) -> float:
+def effective_modulus_of(function: Callable[..., Any], material: MaterialArguments) -> float:
     """Return E* [Pa] from the keyword arguments that a public ``function`` was given beside its own.
 
     TypeError for an unknown keyword, RoughmdrError unless they tell E* in exactly one way, OutOfRange for a number.
     """
     given: dict[str, Any] = {name: value for name, value in material.items() if value is not None}
-    if unknown := set(given) - set(Material.__annotations__):
+    if unknown := set(given) - set(MaterialArguments.__annotations__):
         name = min(unknown)
-        meant = close_matches(name, {*inspect.signature(function).parameters, *Material.__annotations__})
+        meant = close_matches(name, {*inspect.signature(function).parameters, *MaterialArguments.__annotations__})
         hint = f"; did you mean {meant[0]!r}?" if meant else ""
         raise TypeError(f"{function.__name__}() got an unexpected keyword argument {name!r}{hint}")
     try:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import Moments
 from roughmdr.theory.equal_summits import Variable, representable
 from roughmdr.theory.gaussian import mean_over_summits
@@ -24,7 +24,7 @@ def bush_gibson_thomas(
     m2: float,
     m4: float | str,
     variable: Variable = "pressure",
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> Floats:
     """Compute pressure, area or number of contacts of the summits of an isotropic Gaussian surface.
 
@@ -74,7 +74,7 @@ def greenwood_elliptic(
     m2: float,
     m4: float | str,
     variable: Variable = "pressure",
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> Floats:
     """Compute pressure, area or number of contacts of a Gaussian surface, with circular contacts for elliptic ones.
 
@@ -113,7 +113,9 @@ def greenwood_elliptic(
     return mean_over_summits(False, separation, modulus, Moments.checked(m0, m2, m4), variable)
 
 
-def bush_gibson_thomas_asymptote(*, pressure: ArrayLike, rms_slope: float, **material: Unpack[Material]) -> Floats:
+def bush_gibson_thomas_asymptote(
+    *, pressure: ArrayLike, rms_slope: float, **material: Unpack[MaterialArguments]
+) -> Floats:
     """Compute the real over nominal area of contact at small pressures: sqrt(2 pi) p/(E* h').
 
     It is the limit of ``bush_gibson_thomas`` at large separations; nothing keeps it below 1.

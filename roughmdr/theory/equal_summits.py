@@ -16,7 +16,7 @@ from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows
 from roughmdr.schema.arguments import check_number, check_scalar, check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights
 
@@ -24,7 +24,7 @@ Variable = Literal["pressure", "contact_fraction", "contact_density"]
 """Force over nominal area [Pa], real over nominal area of contact [1], contacts per nominal area [1/m2]."""
 
 
-class SummitMaterial(Material, total=False):
+class SummitMaterial(MaterialArguments, total=False):
     """The elastic constants, and the heights of the summits by one of two arguments."""
 
     std: float | str | None

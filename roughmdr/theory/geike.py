@@ -13,7 +13,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import gauss
 from roughmdr.schema.arguments import check_number, check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
 
@@ -32,7 +32,7 @@ def rough_line(
     length: float | str,
     points: int,
     seed: int,
-    **material: Unpack[Material],
+    **material: Unpack[MaterialArguments],
 ) -> RoughLine:
     """Compute force and stiffness of a rough line on springs under a rigid flat.
 

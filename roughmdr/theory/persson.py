@@ -14,7 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.chebyshev import PiecewiseChebyshev
 from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
 from roughmdr.schema.arguments import check_number, check_values
-from roughmdr.schema.material import Material, effective_modulus_of
+from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import SelfAffine, Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.bush import check_load
 from roughmdr.theory.equal_summits import representable
@@ -26,7 +26,7 @@ _EXP_ZERO = 30.0  # exp(-x^2) is 0 beyond
 _LOG_MIN, _LOG_MAX = -350.0, math.log(25.0)
 
 
-def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **material: Unpack[Material]) -> Floats:
+def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **material: Unpack[MaterialArguments]) -> Floats:
     """Compute the real over nominal area of contact without adhesion: erf(sqrt(2) p/(E* h')).
 
     The pressure is 0 at the edges of contacts.
@@ -66,7 +66,7 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
 
 
 def persson_separation(
-    *, pressure: ArrayLike, spectrum: Spectrum, gamma: float = 0.45, **material: Unpack[Material]
+    *, pressure: ArrayLike, spectrum: Spectrum, gamma: float = 0.45, **material: Unpack[MaterialArguments]
 ) -> Floats:
     """Compute the mean gap between a rigid rough surface and an elastic half-space without adhesion.
 
@@ -121,7 +121,7 @@ def persson_separation(
 
 
 def persson_pressure(
-    *, separation: ArrayLike, spectrum: SelfAffine, gamma: float = 0.45, **material: Unpack[Material]
+    *, separation: ArrayLike, spectrum: SelfAffine, gamma: float = 0.45, **material: Unpack[MaterialArguments]
 ) -> Floats:
     """Compute the pressure that leaves a mean gap: the inverse of ``persson_separation``.
 

@@ -15,7 +15,8 @@ from studies.work_precision.points import Curve, Method, Point, Points, Referenc
 from roughmdr.aggregate import LoadSeparation
 from roughmdr.aggregate.totals import AREA, FORCE
 from roughmdr.batch import tasks
-from roughmdr.batch.plan import Cell, make_plan, simulate_realization
+from roughmdr.batch.plan import Cell, make_plan
+from roughmdr.batch.realization import simulate_realization
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.node import Problem, set_up, totals_of
 from roughmdr.runner.backend import Backend
