@@ -29,7 +29,7 @@ class Contact(NamedTuple):
     effective_modulus: float
     adhesion: Adhesion
     params: Any
-    depth: tuple[float, float]  # natural indentation [m] as (hi, lo): with adhesion a slow retraction ends at minus it
+    depth: tuple[float, float]  # natural indentation [m] as (hi, lo); with adhesion that of detachment is -depth
     radius: float
     force: float
     stiffness: float
@@ -58,7 +58,9 @@ class Contact(NamedTuple):
         return contact._replace(depth=contact._exact(depth, params))
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
-        """Return the force [N] that force control is reduced by, its radius [m], and params under dead load."""
+        """Return the pull-off force [N] (without adhesion the natural force), its radius [m], and params under dead
+        load.
+        """
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
             params = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
@@ -81,7 +83,7 @@ class Contact(NamedTuple):
                 )
 
     def reduced(self, value: Floats, scale: tuple[float, float]) -> Floats:
-        """Return the distance >= 0 of ``value`` to the onset of contact, the fold at -scale or 0, over ``scale``.
+        """Return (value + scale)/scale >= 0 with adhesion, 0 at the fold, and value/scale without.
 
         The float that is nearest to the fold stands for the fold itself.
         """
@@ -100,11 +102,11 @@ class Contact(NamedTuple):
     def at_indentation(self, delta: Floats) -> Results:
         """Return the contact as on retraction; zeros where there is none."""
         law = self.law
-        onset = -self.depth[0] if law.adhesive else 0.0
-        in_contact = (delta >= onset) if law.adhesive else (delta > 0.0)
+        detachment = -self.depth[0] if law.adhesive else 0.0
+        in_contact = (delta >= detachment) if law.adhesive else (delta > 0.0)
         state = apply(law.state, np.where(in_contact, self.reduced(delta, self.depth), 1.0), self.params)
-        one_step_above = self.reduced(np.nextafter(onset, math.inf) * np.ones(1), self.depth)
-        beside_fold = np.where(delta == onset, apply(law.state, one_step_above, self.params), state)
+        one_step_above = self.reduced(np.nextafter(detachment, math.inf) * np.ones(1), self.depth)
+        beside_fold = np.where(delta == detachment, apply(law.state, one_step_above, self.params), state)
         radius, force, _ = self._radius_force_stiffness(state)
         stiffness = self._radius_force_stiffness(beside_fold)[2]
         return self._results(in_contact, state, force=force, contact_radius=radius, stiffness=stiffness)

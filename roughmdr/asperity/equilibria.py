@@ -74,7 +74,8 @@ def equilibria(
     for name, values in results.items():
         if not np.isfinite(values).all():
             raise OutOfRange(f"{name} at indentation = {delta:g} m is not representable")
-    # k/(2 E* a) is at most 1 where the contact is stable under fixed grips, and at least 3 where it is not.
+    # k/(2 E* a) = (r - 3)/(r - 1) with r = 2 a g'/dl: below 1 where stable under fixed grips (r > 1), above 3
+    # elsewhere.
     stable = stiffness <= 4.0 * effective_modulus * a
     stable_force = stable & (stiffness > 0.0)
     data = {name: ("equilibrium", values, ASPERITY[name].attrs) for name, values in results.items()} | {
@@ -93,7 +94,7 @@ def _stable(contact: Contact, delta: float) -> Iterator[tuple[float, float, floa
     if law.branched and delta > onset:
         x = float(contact.reduced(np.array([delta]), contact.depth)[0])
         for number in range(1, int(contact.params[COUNT]) + 1):
-            # A retraction that begins on a branch stays on it just where the branch extends to delta.
+            # The branch extends to delta if a contact that is put on it stays on it.
             if law.branch(x, float(number), True, contact.params) == number:
                 state = law.state_on_branch(x, float(number), contact.params)
                 yield (

@@ -51,12 +51,12 @@ def indent(
         The profile; with method="springs" also a function f(r) [m] of an array of radii [m].
     indentation, force, contact_radius : array_like, shape () or (n,), optional
         Exactly one of them, in SI or as strings with a unit such as "2 nm". indentation [m]: the contact as on
-        retraction; beyond pull-off force and contact radius are 0. force [N]: the branch that is stable under dead
+        retraction; below its detachment force and contact radius are 0. force [N]: the branch that is stable under dead
         load. contact_radius [m]: the equilibrium with that radius, stable or not.
     work : float or str, optional
         Work of adhesion [J/m^2]; 0 for none.
     method, springs : {"exact", "springs"} and int, optional
-        "springs" solves a row of so many springs (``roughmdr.springs``) in place of the closed forms.
+        "springs" solves a row of so many springs (``roughmdr.springs``) in place of the exact contact.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
         adhesion="dugdale" needs strength [Pa]: the surfaces attract each other with that stress up to a gap of
@@ -65,9 +65,9 @@ def indent(
     Returns
     -------
     xarray.Dataset
-        Over the control, in the order given, without dimension for a number: force [N], indentation [m],
-        contact_radius [m], contact_area [m2], stiffness [N/m] and, with "dugdale", cohesive_radius [m], up to which
-        the surfaces attract each other. At the fold the stiffness is its finite value one rounding step above.
+        Over the control, in the order given, without dimension for a number: force [N], indentation [m], contact_radius
+        [m], contact_area [m2], stiffness [N/m] and, with "dugdale", cohesive_radius [m], up to which the surfaces
+        attract each other. At the fold, where k is infinite, the stiffness is that of the next larger indentation.
 
     Raises
     ------
@@ -169,8 +169,9 @@ def pull_off(
 
 
 def tabor(shape: Shape, *, work: float | str, strength: float | str, **material: Unpack[MaterialArguments]) -> float:
-    """Compute the Tabor number dl(a) strength/(pi^(2/3) work), with a where JKR detaches under fixed grips.
+    """Compute the Tabor number dl(a) strength/(pi^(2/3) work) of a contact.
 
+    dl(a) = sqrt(2 pi a work/E*), and a is the radius at which JKR detaches under fixed grips.
     Where it is large JKR holds; where it is small the attraction reaches far beyond the contact (DMT). For the
     paraboloid it is (R work^2/E*^2)^(1/3) strength/work.
 
@@ -212,7 +213,7 @@ def _contact(
     method: str,
     springs: int | None,
 ) -> Contact | Springs:
-    """Return the contact by its closed forms, or as a row of springs."""
+    """Return the exact contact, or a row of springs."""
     if method not in ("exact", "springs"):
         raise RoughmdrError(f"method is {method!r}; it must be 'exact' or 'springs'")
     if method == "springs":

@@ -41,7 +41,7 @@ class MaterialSection(Section):
 class AdhesionSection(Section):
     """[adhesion]: work of adhesion of the pair, not the surface energy of one side; strength, or range = work/strength.
 
-    "auto" uses JKR if its force is off by at most ``error``.
+    "auto" uses JKR if its force differs from Dugdale's by at most ``error`` of the largest force.
     """
 
     model: Literal["jkr", "dugdale", "auto"]
@@ -104,7 +104,9 @@ class Batch(Section):
 
 
 class Accuracy(Section):
-    """[accuracy]: realisations are added until the standard error of the mean force, over its maximum, is met.
+    """[accuracy]: realisations are added until the mean force is known well enough.
+
+    That is when its standard error, divided by the largest mean force, is at most ``relative``.
 
     ``method`` "auto" uses the cheaper of stratified draws and the expected law, if the latter is accurate enough.
     """

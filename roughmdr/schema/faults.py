@@ -92,7 +92,8 @@ def _to_fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:
 
 
 def _locate(loc: tuple[int | str, ...], data: Any, declared: Any) -> tuple[list[str], _Sections, _Sections]:
-    """Return the keys of ``data`` down to a fault, the sections that may hold the last key, and those it may be.
+    """Return the keys of ``data`` down to a fault, the sections that may hold the last key, and those that may stand
+    under it.
 
     pydantic's location ``loc`` also names the member chosen in each union; those are not keys.
     """

@@ -1,6 +1,6 @@
 """Building blocks of a scene's sections: a section refuses unknown keys, a reader checks and converts one value.
 
-A reader is a callable that converts a value of the scene or raises RoughmdrError; ``dimension`` is its unit.
+A reader is a callable that converts a value of the scene or raises RoughmdrError; ``dimension`` is its SI unit.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Reader(Protocol):
 
     @property
     def dimension(self) -> str:
-        """Dimension as in ``units``; empty for names."""
+        """SI unit, as in ``units``; empty for names."""
         ...
 
     def __call__(self, value: object) -> Any:
@@ -32,7 +32,7 @@ class Reader(Protocol):
 
 
 class EntryError(RoughmdrError):
-    """An entry of a table that a reader was given is wrong."""
+    """Raised by the reader of a table for the one entry that is wrong."""
 
     def __init__(self, key: str, value: object, message: str) -> None:
         super().__init__(message)

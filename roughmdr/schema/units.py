@@ -19,7 +19,7 @@ _ALONE = {
     "J/m^2": {"erg/cm^2": Decimal("1e-3")},
 }
 
-# Each dimension is spelled as in ``variables``; its units are the scalable one and the exponent that the prefix takes.
+# For each SI unit, as in ``variables``, its spellings and the power to which a prefix is raised there (mm^2: 2).
 _BASES: dict[str, tuple[tuple[str, int], ...]] = {
     "m": (("m", 1),),
     "m2": (("m^2", 2), ("m2", 2)),
