@@ -172,7 +172,7 @@ def tabor(shape: Shape, *, work: float | str, strength: float | str, **material:
     """Compute the Tabor number dl(a) strength/(pi^(2/3) work) of a contact.
 
     dl(a) = sqrt(2 pi a work/E*), and a is the radius at which JKR detaches under fixed grips.
-    Where it is large JKR holds; where it is small the attraction reaches far beyond the contact (DMT). For the
+    Where the number is large JKR holds; where it is small the attraction reaches far beyond the contact (DMT). For the
     paraboloid it is (R work^2/E*^2)^(1/3) strength/work.
 
     Parameters

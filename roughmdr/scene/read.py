@@ -125,7 +125,7 @@ def _apply_change(table: dict[str, Any], change: str) -> str:
 
 
 def _merge_range(before: Any, after: Any) -> Any:
-    """Return ``after`` with the ends of a linspace or logspace ``before`` where it sets num alone, else with its num."""
+    """Return ``after``, with the ends of a linspace or logspace ``before`` if it sets num alone, else with its num."""
     if not isinstance(before, dict) or not isinstance(after, dict):
         return after
     kept = before if after.keys() <= {"num"} else {key: entry for key, entry in before.items() if key == "num"}
