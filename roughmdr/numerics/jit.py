@@ -4,6 +4,8 @@ change begins a new one.
 Kernels are compiled with ``njit`` from here. A loop that is to be handed its kernels is compiled with ``specialise``.
 """
 
+import ast
+import inspect
 import os
 import re
 import shutil
@@ -12,7 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
@@ -90,16 +92,39 @@ def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[.
     return njit(copy, small=small)
 
 
+class _Literals(ast.NodeTransformer):
+    """Puts the numbers of a module, ``law.name``, into a syntax tree."""
+
+    def __init__(self, law: ModuleType) -> None:
+        self.law = law
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        if isinstance(node.value, ast.Name) and node.value.id == "law":
+            value = getattr(self.law, node.attr, None)
+            if isinstance(value, bool | int | float):
+                return ast.copy_location(ast.Constant(value), node)
+        return node
+
+
+def _with_literals(function: FunctionType, law: ModuleType) -> CodeType:
+    """Return the code of a function in which the numbers of ``law`` are literals, with its file and lines."""
+    lines, first = inspect.getsourcelines(function)
+    tree = _Literals(law).visit(ast.parse("".join(lines)))
+    module = compile(ast.increment_lineno(tree, first - 1), function.__code__.co_filename, "exec")
+    return next(code for code in module.co_consts if isinstance(code, CodeType) and code.co_name == function.__name__)
+
+
 def specialise(
     loop: Callable[..., Any], law: ModuleType, *, inline: bool = False, small: bool = False
 ) -> Callable[..., Any]:
     """Return a compiled copy of ``loop`` in which the global name ``law`` stands for the given module of kernels.
 
     numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own
-    can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it.
+    can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it. Numbers of
+    the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
     plain = cast(FunctionType, loop)
-    copy = FunctionType(plain.__code__, {**plain.__globals__, "law": law}, loop.__name__)
+    copy = FunctionType(_with_literals(plain, law), {**plain.__globals__, "law": law}, loop.__name__)
     copy.__qualname__ = f"{loop.__qualname__}_{law.__name__}"
     copy.__module__ = loop.__module__
     return njit(copy, inline=inline, small=small)
