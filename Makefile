@@ -1,5 +1,5 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
-# make test-all: the long random searches as well, some 20 minutes more.
+# make test-all: the long random searches as well, some 25 minutes more.
 # make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
 PYTHON ?= python3
 VENV   := .venv
@@ -15,12 +15,13 @@ demo: setup
 
 test: setup lint
 	$(BIN)/python -m pytest -n auto --dist loadfile
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/numerics tests/shapes tests/kernels tests/asperity tests/fields \
-	  tests/aggregate/test_sum.py
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/kernels tests/numerics tests/aggregate/test_sum.py \
+	  --ignore tests/numerics/test_fingerprint.py
 
-# The long forms of the random searches too.
+# The long forms of the random searches, benchmarks, every shape compiled, and more of it uncompiled.
 test-all: test
-	$(BIN)/python -m pytest -n auto -m large
+	$(BIN)/python -m pytest -n auto --dist loadfile -m large
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/shapes tests/asperity tests/fields
 
 studies: setup
 	@$(BIN)/python pipelines/all_studies.py -o results/studies

@@ -133,6 +133,7 @@ def test_a_synthetic_surface_end_to_end(tmp_path: Path) -> None:
         assert float(result.contact_count.max()) > 10.0
 
 
+@pytest.mark.large
 def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
     script = SCENES.parent / "scaling.py"
     done = subprocess.run(
@@ -147,6 +148,7 @@ def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
     assert (tmp_path / "scaling.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_the_study_of_plans_in_its_quick_form(tmp_path: Path) -> None:
     script = SCENES.parent / "foreseen.py"
     done = subprocess.run(

@@ -99,18 +99,34 @@ def asked_for(family: tuple[str, dict[str, float]], by: str, of: str, unit: floa
     return Asked(entry, twin, below, height and by == "own" and abs(middle) > 1e-9 * size, wrong)
 
 
-@settings(deadline=None, max_examples=60, phases=[Phase.generate])  # to shrink takes minutes
-@given(
+_distributions = given(
     families(),
     st.sampled_from(["own", "own and loc", "scale and mean", "std", "std and mean", "std and loc"]),
     st.sampled_from(["height", "height of the second", "radius", "radius cut off"]),
     st.sampled_from([1e-9, 1e-6, 1.0]),
     st.floats(-3.0, 3.0),
 )
+
+
+@settings(deadline=None, max_examples=20, phases=[Phase.generate])  # to shrink takes minutes
+@_distributions
 def test_any_distribution_is_that_of_scipy(
     family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float
 ) -> None:
-    """Its quantiles are equal, and those of draws within their sampling error."""
+    check_distribution(family, by, of, unit, place)
+
+
+@pytest.mark.large
+@settings(deadline=None, max_examples=100, phases=[Phase.generate])
+@_distributions
+def test_many_distributions_are_those_of_scipy(
+    family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float
+) -> None:
+    check_distribution(family, by, of, unit, place)
+
+
+def check_distribution(family: tuple[str, dict[str, float]], by: str, of: str, unit: float, place: float) -> None:
+    """Check that its quantiles are equal, and those of draws within their sampling error."""
     asked, height = asked_for(family, by, of, unit, place), "height" in of
     section = {**ASPERITIES, "height": "1 um", "radius": "50 um", "count": 400}
     if of == "height of the second":

@@ -86,8 +86,14 @@ def shapes() -> list[Case]:
 
 SLOW = ("tabulated", "power_series", "sphere")
 """Shapes that take minutes when they are not compiled."""
+COMPILED = (*SLOW, "maugis", "truncated_cone", "flat_punch")
+"""Shapes that every run of the tests compiles; the others are run uncompiled, and compiled with the large tests."""
 CASES = [
-    pytest.param(case, id=case.name)
+    pytest.param(
+        case,
+        id=case.name,
+        marks=[] if numba.config.DISABLE_JIT or case.name.startswith(COMPILED) else [pytest.mark.large],
+    )
     for case in [*maugis(), *shapes()]
     if not (numba.config.DISABLE_JIT and case.name.startswith(SLOW))
 ]

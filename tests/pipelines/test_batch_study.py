@@ -17,7 +17,7 @@ SCRIPT = Path(__file__).parents[2] / "pipelines" / "batch.py"
 MEGABYTE = 1e6
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_the_batch_study_in_its_quick_form(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, SCRIPT, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
