@@ -159,7 +159,10 @@ def measure(quick: bool) -> xr.Dataset:
 def texts(result: xr.Dataset) -> list[list[str]]:
     """Return part, scene, count with the part left out, count with it forced on, and what is counted."""
     cases = zip(*(result[name].to_numpy().tolist() for name in ("part", "scene", "counted")), strict=True)
-    return [[part, scene, *(f"{number:,.6g}" for number in counts), PARTS[part]] for part, scene, counts in cases]
+    return [
+        [part, scene, *(f"{number:,.0f}" if number >= 100.0 else f"{number:.3g}" for number in counts), PARTS[part]]
+        for part, scene, counts in cases
+    ]
 
 
 def draw(result: xr.Dataset) -> "Figure":

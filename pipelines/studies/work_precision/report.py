@@ -76,5 +76,7 @@ def draw(result: xr.Dataset) -> "Figure":
             panel.grid(color="0.92")
         column[0].set_title(scene)
         column[1].set_xlabel("run time of a curve [ms]")
-    figure.legend(handles.values(), handles, loc="outside lower center", ncols=7, frameon=False)
+    figure.legend(
+        handles.values(), handles, loc="outside lower center", ncols=min(7, 5 * len(scenes) // 3), frameon=False
+    )
     return figure
