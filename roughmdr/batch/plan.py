@@ -89,11 +89,11 @@ def make_plan(scene: Scene) -> Plan:
         loading = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = loading.tobytes(), cell.work > 0.0
         if key not in paths:
-            paths[key] = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            first = next(iter(paths.values()))
-            if not np.array_equal(paths[key].branch().values, first.branch().values):
+            path = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
+            if cells and not np.array_equal(path.branch().values, cells[0].path.branch().values):
                 others = "the flat loads and unloads at other steps than in the first cell"
                 raise SceneError(f"sweep: with {describe_cell(values)} {others}")
+            paths[key] = path
         cells.append(Cell(cell, paths[key]))
     left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
     return Plan(scene, tuple(cells), tuple(left_out))

@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from functools import cache
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
@@ -155,6 +156,16 @@ class Shape(ABC):
                 raise ShapeError(f"{cls.name}: {name} is {values[below][0]:g}{where}; {limit}")
 
 
+@cache
+def _of_mpmath(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of a profile for numbers of mpmath, without the series that floats need."""
+    from mpmath import mp
+
+    if function.__module__ == vector_math.__name__ and hasattr(mp, function.__name__):
+        return cast(Callable[..., Any], getattr(mp, function.__name__))
+    return rebuilt(function, {"math": mp, "SERIES_UP_TO": -1.0}, _of_mpmath)
+
+
 class ProfileShape(Shape):
     """A shape given by the functions of its ``Profile``, compiled when they are first used."""
 
@@ -178,17 +189,12 @@ class ProfileShape(Shape):
         """Return a [m], g [m] and a g - G [m2] at t with 40 digits."""
         from mpmath import mp
 
-        def remake(function: Callable[..., Any]) -> Callable[..., Any]:
-            if function.__module__ == vector_math.__name__ and hasattr(mp, function.__name__):
-                return cast(Callable[..., Any], getattr(mp, function.__name__))
-            return rebuilt(function, {"math": mp, "SERIES_UP_TO": -1.0}, remake)
-
         lost = max(0.0, -math.log10(t)) if t > 0.0 else 0.0  # of the digits, in each power of t that cancels
         with mp.workdps(40 + int(4.0 * lost)):
             exact = {name: np.array([mp.mpf(value)]) for name, value in self.parameters.items()}
             width, rise, params = (column[0] for column in self.nondimensionalise(exact))
-            a, _, g, _ = remake(self.profile.mdr_profile)(mp.mpf(t), [params])
-            return width * a, rise * g, width * rise * remake(self.profile.reduced_load)(mp.mpf(t), [params])
+            a, _, g, _ = _of_mpmath(self.profile.mdr_profile)(mp.mpf(t), [params])
+            return width * a, rise * g, width * rise * _of_mpmath(self.profile.reduced_load)(mp.mpf(t), [params])
 
     def f(self, r: ArrayLike) -> Floats:
         from roughmdr.shapes import evaluate  # it alone needs the compiler
