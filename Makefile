@@ -1,5 +1,5 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
-# make test-all: the long random searches as well, some 25 minutes more.
+# make test-all: the long random searches as well, some 10 minutes more.
 # make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
 PYTHON ?= python3
 VENV   := .venv
