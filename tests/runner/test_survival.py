@@ -71,14 +71,8 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 # Killed
 
 
-@pytest.mark.parametrize(
-    ("keep", "kills"),
-    [
-        ("curves", 6),
-        ("statistics", 4),
-        *(pytest.param(*long, marks=pytest.mark.large) for long in [("curves", 14), ("statistics", 8)]),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("keep", "kills"), [("curves", 14), ("statistics", 6)])
 def test_killed_again_and_again_it_comes_to_the_same_bits(
     tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
 ) -> None:
