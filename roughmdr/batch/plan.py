@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.errors import SceneError
@@ -85,12 +86,15 @@ def make_plan(scene: Scene) -> Plan:
     """
     paths: dict[tuple[bytes, bool], LoadingPath] = {}
     cells: list[Cell] = []
+    first: NDArray[Any] | None = None
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         loading = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
         key = loading.tobytes(), cell.work > 0.0
         if key not in paths:
             path = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            if cells and not np.array_equal(path.branch().values, cells[0].path.branch().values):
+            branch = path.branch().values
+            first = branch if first is None else first
+            if not np.array_equal(branch, first):
                 others = "the flat loads and unloads at other steps than in the first cell"
                 raise SceneError(f"sweep: with {describe_cell(values)} {others}")
             paths[key] = path
