@@ -146,11 +146,7 @@ def _overlap(ensemble: Ensemble, radius: Floats) -> float:
         return overlap_share(x, y, contact_radius)
     if ensemble.nominal_area is None:
         return math.nan
-    scale = float(contact_radius.max())
-    square = float(np.mean(np.square(contact_radius / scale)))
-    mean_square = float(np.mean(contact_radius / scale)) ** 2 / square
-    fraction = math.pi * square * contact_radius.size * (scale / ensemble.nominal_area * scale)
-    return poisson_overlap(fraction, mean_square)
+    return poisson_overlap(contact_radius, ensemble.nominal_area)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:

@@ -73,7 +73,8 @@ def compute(
     model = problem.adhesion.model
     nominal_area = math.nan if area is None else area
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
-    overlap = poisson_overlap(float(total[AREA].max()) / nominal_area)
+    equal_radii = np.sqrt(total[AREA].max(keepdims=True) / math.pi)  # one contact in place of all alike
+    overlap = poisson_overlap(equal_radii, nominal_area)
     assumptions = Assumptions(limits, validity.jkr_error if model == "jkr" else 0.0, overlap=overlap)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=_warnings(law.numerical_error, error_of_others))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.model_error.interaction import ESTIMATE, HIGH, LOW
+from roughmdr.model_error.interaction import LOW, TYPICAL, interaction_error
 from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -65,14 +65,15 @@ def _trust(known: dict[str, Floats], error: float) -> str:
     if not beyond.size:
         return f"force within about {_percent(error)} along the whole path"
     constant = error - float(known["interaction_error"].max())
-    within = constant + ESTIMATE * math.sqrt(TRUSTED_FRACTION)
+    within = constant + float(interaction_error(np.array(TRUSTED_FRACTION)))
     place = f"h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
     return f"force within about {_percent(within)} down to {place}; below, asperities interact, which is left out"
 
 
 def _interaction(fraction: float) -> str:
-    """Return the error by interaction at a contact fraction with its range."""
-    low, middle, high = (100.0 * min(factor * math.sqrt(fraction), 1.0) for factor in (LOW, ESTIMATE, HIGH))
+    """Return the error by interaction at a contact fraction: of many random contacts, and its range."""
+    most = float(interaction_error(np.array(fraction)))
+    low, middle, high = (100.0 * min(part, 1.0) for part in (*np.array([LOW, TYPICAL]) * math.sqrt(fraction), most))
     return f"about {middle:.2g} % ({low:.2g} to {high:.2g})"
 
 
