@@ -49,9 +49,8 @@ def overlap_share(x: Floats, y: Floats, radius: Floats) -> float:
     for each in np.unique(size):
         members = np.flatnonzero(size == each)
         nearest = min(_NEIGHBOURS, members.size)
-        distance, neighbour = (
-            part.reshape(-1, nearest) for part in cKDTree(centres[members]).query(centres, k=nearest)
-        )
+        found = cKDTree(centres[members]).query(centres, k=nearest)
+        distance, neighbour = (np.reshape(part, (-1, nearest)) for part in found)
         itself = members[neighbour] == np.arange(radius.size)[:, None]
         overlapping |= (~itself & (distance < radius[:, None] + radius[members][neighbour])).any(axis=1)
     return float(overlapping.mean())

@@ -72,7 +72,7 @@ class ModelError(NamedTuple):
     ) -> "ModelError":
         """Return the error along a path: separation [m], force [N] and contact fraction at each step.
 
-        The parts add up; each is at most 1, the whole force. Where the force is 0 there is no error.
+        The parts add up, each and all to at most 1, the whole force. Where the force is 0 there is no error.
         """
         limits = assumptions.limits
         constant = {
@@ -85,7 +85,7 @@ class ModelError(NamedTuple):
             curve = np.where(force != 0.0, math.nan, 0.0)
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
         interaction = interaction_error(contact_fraction)
-        curve = np.where(force != 0.0, interaction + sum(constant.values()), 0.0)
+        curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
         beyond = separation[contact_fraction > TRUSTED_FRACTION]
         lowest = int(np.argmin(force))
         return cls(

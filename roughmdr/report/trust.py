@@ -13,6 +13,7 @@ from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 
 _TOLD = 0.01  # parts of the model error below this are not told
+_TINY = 1e-6
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _NAMES = {
@@ -26,7 +27,7 @@ Numbers = Mapping[str, Any]
 def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several."""
     known = {name: _known(numbers[name]) for name in numbers}
-    largest, error = known["largest_contact_fraction"], known["model_error"]
+    largest = known["largest_contact_fraction"]
     others = [
         f"{reason}: about {_percent(known[name].max())}"
         for name, reason in PARTS.items()
@@ -46,7 +47,7 @@ def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
     yield "contact", f"summed contact area {', '.join(shares)}"
     yield "model error", f"asperities are independent: force at given separation off by {', '.join(errors)}"
     yield from _several("", others)
-    yield "trust", _trust(known, float(error.max()))
+    yield "trust", _trust(known)
 
 
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
@@ -57,17 +58,20 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 
 
-def _trust(known: dict[str, Floats], error: float) -> str:
+def _trust(known: dict[str, Floats]) -> str:
     """Return within which error the force holds, and up to where."""
-    if not (known["largest_contact_fraction"] > 0.0).any():
-        return "no contact on the whole path"
-    beyond = known["trusted_separation"]
-    if not beyond.size:
-        return f"force within about {_percent(error)} along the whole path"
-    constant = error - float(known["interaction_error"].max())
-    within = constant + float(interaction_error(np.array(TRUSTED_FRACTION)))
-    place = f"h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
-    return f"force within about {_percent(within)} down to {place}; below, asperities interact, which is left out"
+    if not (known["model_error"] > 0.0).any():
+        return "no contact along the whole path"
+    parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
+    place, rest, beyond = "along the whole path", "", known["trusted_separation"]
+    if beyond.size:
+        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION)))
+        place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
+        rest = "; below, asperities interact, which is left out"
+    error = sum(parts.values())
+    if error < 1.0:
+        return f"force within about {_percent(error)} {place}{rest}"
+    return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
 
 
 def _interaction(fraction: float) -> str:
@@ -83,7 +87,9 @@ def _known(values: Any) -> Floats:
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %" if share < 1.0 else f"{100.0 * share:.0f} %"
+    if 0.0 < share < _TINY:
+        return f"below {100.0 * _TINY:g} %"
+    return f"{100.0 * share:.2g} %" if share < 0.995 else "100 %"
 
 
 def _range(shares: Floats) -> str:
