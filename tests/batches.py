@@ -1,6 +1,7 @@
 """Batches as processes of their own, to be disturbed, and what they leave behind."""
 
 import json
+import math
 import os
 import re
 import shutil
@@ -40,8 +41,9 @@ PATIENCE = 120.0
 
 
 def slow_scene(runs: int = 96, count: int = 10_000, **changes: Any) -> dict[str, Any]:
-    """A scene whose runs take some milliseconds each."""
-    return scene(asperities=ASPERITIES | {"count": count}, batch={"realizations": runs}, **changes)
+    """A scene whose runs take some milliseconds each, with as many asperities per area as the small one."""
+    asperities = ASPERITIES | {"count": count, "patch": 1e-3 * math.sqrt(count / ASPERITIES["count"])}
+    return scene(asperities=asperities, batch={"realizations": runs}, **changes)
 
 
 RUNS = 96
