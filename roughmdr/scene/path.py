@@ -52,7 +52,7 @@ class FlatPath(Section):
 
     @property
     def target(self) -> Target | None:
-        """What is reached where it stops; None where it stops at a separation."""
+        """The target that is reached where it stops; None where it stops at a separation."""
         stop = self._ends[-1]
         return stop if isinstance(stop, Target) else None
 
