@@ -26,11 +26,6 @@ def _check_title(value: object) -> str:
     return value
 
 
-def _nowhere(fault: Fault) -> Fault:
-    """Return the fault of a scene whose text is not known."""
-    return fault
-
-
 class Scene(Section):
     """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
 
@@ -49,7 +44,7 @@ class Scene(Section):
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
     _file: Path | None = PrivateAttr(default=None)
     _cells: "tuple[Scene, ...]" = PrivateAttr(default=())
-    _locate: Callable[[Fault], Fault] = PrivateAttr(default=_nowhere)
+    _locate: Callable[[Fault], Fault] | None = PrivateAttr(default=None)
 
     @classmethod
     def of(
@@ -71,7 +66,7 @@ class Scene(Section):
         """Return an error that was found after validation with the places of its faults, and the swept values."""
         where = f" (where {cell})" if cell else ""
         faults = [fault._replace(message=f"{fault.message}{where}") for fault in error.faults]
-        return SceneError.of([self._locate(fault) for fault in faults]) if faults else error
+        return SceneError.of([self._locate(fault) if self._locate else fault for fault in faults]) if faults else error
 
     @property
     def cells(self) -> "tuple[Scene, ...]":
