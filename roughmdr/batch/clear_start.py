@@ -24,13 +24,14 @@ def clear_start(scene: Scene) -> float:
     most = scene.batch.realizations if scene.accuracy is None else scene.accuracy.max_realizations
     count = max(scene.asperities.expected_count, 1.0)
     start = _exceeded(scene, -math.expm1(math.log1p(-_CHANCE) / (count * max(_REALIZATIONS, most))))
-    usual = _exceeded(scene, min(_USUAL_CHANCE, 1.0 / count))
-    middle = float(scene.asperities.extremes(0.5).height.max())
     if not math.isfinite(start):
-        raise _fault(f"of these asperities would be {start:g} m")
-    if scene.asperities.is_random and start - middle > _FAR * (usual - middle):
-        far = "some may be very high, or detach very late"
-        raise _fault(f"would be {start:.3g} m, where most realisations need {usual:.3g} m: {far}")
+        raise _fault("cannot be found: no float holds the contact of asperities as extreme as there may be")
+    if scene.asperities.is_random:
+        usual = _exceeded(scene, min(_USUAL_CHANCE, 1.0 / count))
+        middle = float(scene.asperities.extremes(0.5).height.max())
+        if start - middle > _FAR * (usual - middle):
+            far = "some may be very high, or detach very late"
+            raise _fault(f"would be {start:.3g} m, where most realisations need {usual:.3g} m: {far}")
     return start
 
 
