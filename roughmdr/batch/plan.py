@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
+from roughmdr.batch.path_ends import PathFinder
 from roughmdr.errors import SceneError
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
@@ -34,6 +35,7 @@ class Plan(NamedTuple):
     scene: Scene
     cells: tuple[Cell, ...]
     left_out: tuple[str, ...]  # lines "part: reason"
+    path_notes: tuple[str, ...] = ()  # which separations "clear" and targets came to
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -87,8 +89,12 @@ def make_plan(scene: Scene) -> Plan:
     paths: dict[tuple[bytes, bool], LoadingPath] = {}
     cells: list[Cell] = []
     first: NDArray[Any] | None = None
+    finder = PathFinder()
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
-        loading = cell.path.separations(cell.asperities.sigma if cell.path.uses_sigma else 0.0)
+        try:
+            loading = finder.separations(cell)
+        except SceneError as error:
+            raise scene.located(error, describe_cell(values)) from None
         key = loading.tobytes(), cell.work > 0.0
         if key not in paths:
             path = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
@@ -100,7 +106,7 @@ def make_plan(scene: Scene) -> Plan:
             paths[key] = path
         cells.append(Cell(cell, paths[key]))
     left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
-    return Plan(scene, tuple(cells), tuple(left_out))
+    return Plan(scene, tuple(cells), tuple(left_out), tuple(finder.notes))
 
 
 def _left_out(scene: Scene) -> Iterator[str]:

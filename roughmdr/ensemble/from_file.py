@@ -96,6 +96,9 @@ class FromFile(Source):
     def sigma(self) -> float:
         return float(np.std(self.asperities.height))
 
+    def extremes(self, chance: float) -> Ensemble:
+        return self.asperities
+
     def ensemble(
         self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
     ) -> Ensemble:

@@ -80,6 +80,12 @@ class Source(Section):
         """Return the asperities of one realisation; ``stratified`` ones cover their distributions evenly."""
         raise NotImplementedError
 
+    def extremes(self, chance: float) -> Ensemble:
+        """Return asperities as high as an asperity is with this chance, with shape parameters that cover all but tails
+        of this chance; all asperities themselves where nothing is drawn.
+        """
+        raise NotImplementedError
+
     def limited_to(self, count: int) -> "Source":
         """Return a source like this one with about ``count`` asperities at most, or itself where that cannot be."""
         return self

@@ -30,6 +30,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
     lines = [
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
+        *_indent("path", plan.path_notes),
         *_required_accuracy(plan),
         ("output", f"{', '.join(output.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
@@ -69,6 +70,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(layout.stored_variables(result))),
+        *_indent("path", attrs.get("path", "").splitlines()),
         *_pull_off(result),
         *_contacts_at_ends(result),
         *trust_of_result(result),

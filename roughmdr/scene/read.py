@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Iterable
-from functools import reduce
+from functools import partial, reduce
 from operator import getitem
 from pathlib import Path
 from typing import Any
@@ -57,10 +57,11 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
         scene, faults = validate(table, path)
     except RecursionError:
         raise SceneError(f"{label}: its tables are nested too deeply") from None
+    lines = key_lines(text)
     if faults or scene is None:
-        lines = key_lines(text)
         faults = sorted(faults, key=lambda fault: line_of(fault.key, lines) or 0)
         raise SceneError.of([_add_location(fault, label, lines, changed) for fault in faults])
+    scene._locate = partial(_add_location, label=label, lines=lines, changed=changed)
     return scene
 
 

@@ -1,5 +1,6 @@
 """The scene: its sections together, what must agree between them, and what follows from them."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -7,7 +8,7 @@ import tomli_w
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 
 from roughmdr.ensemble import Asperities
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, MaterialSection, Output
@@ -43,6 +44,7 @@ class Scene(Section):
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
     _file: Path | None = PrivateAttr(default=None)
     _cells: "tuple[Scene, ...]" = PrivateAttr(default=())
+    _locate: Callable[[Fault], Fault] | None = PrivateAttr(default=None)
 
     @classmethod
     def of(
@@ -59,6 +61,12 @@ class Scene(Section):
         scene = cls.model_validate(table | (validated or {}))
         scene._table, scene._file, scene._cells = table, file, cells
         return scene
+
+    def located(self, error: SceneError, cell: str = "") -> SceneError:
+        """Return an error that was found after validation with the places of its faults, and the swept values."""
+        where = f" (where {cell})" if cell else ""
+        faults = [fault._replace(message=f"{fault.message}{where}") for fault in error.faults]
+        return SceneError.of([self._locate(fault) if self._locate else fault for fault in faults]) if faults else error
 
     @property
     def cells(self) -> "tuple[Scene, ...]":

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
-from roughmdr.scene.path import Separation
+from roughmdr.scene.separation import CLEAR, Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities")
-_PATH_KEYS = ("path.separation.start", "path.separation.stop")
+_STOP = "path.separation.stop"
+_PATH_KEYS = ("path.separation.start", _STOP, f"{_STOP}.contact_fraction", f"{_STOP}.pressure")
 _ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
 _NUM = WholeNumber(2, 100_000)
 _MAX_CELLS = 100_000
@@ -153,6 +154,8 @@ def _read_entries(key: str, entries: list[object], reader: Reader) -> tuple[list
         try:
             if isinstance(entry, dict | list):
                 raise RoughmdrError("expected a number or a name")
+            if entry == CLEAR and key in _PATH_KEYS:
+                raise RoughmdrError("is no number to be swept; without start, every cell starts clear")
             number = reader(entry)
         except RoughmdrError as error:
             raise EntryError(f"{key}[{i}]", entry, str(error)) from None

@@ -97,6 +97,13 @@ BASES: dict[str, dict[str, Any]] = {
         },
         "batch": {},
     },
+    **{
+        f"until {target}": {
+            **SCENE,
+            "path": {"separation": {"start": "clear", "stop": {target: value}, "steps": 9}, "unload": True},
+        }
+        for target, value in (("contact_fraction", 0.02), ("pressure", "1 kPa"))
+    },
 }
 MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
 NONSENSE: dict[str, object] = {
@@ -170,7 +177,8 @@ def mutations() -> Iterator[Mutation]:
                     yield mutated(base, key, "unknown name", "nonsens")
                 continue
             for what, wrong in NONSENSE.items():
-                yield mutated(base, key, what, wrong)
+                if (key, what) != ("path.separation.stop", "table"):  # which may be one
+                    yield mutated(base, key, what, wrong)
             yield mutated(base, key, "wrong dimension", "3 MPa" if reader.dimension != "Pa" else "3 um")
             negative = key.rpartition(".")[2] in MAY_BE_NEGATIVE or key.startswith("asperities.correlation.")
             if not negative or key == "asperities.radius.mean":

@@ -28,7 +28,10 @@ def test_the_scene_of_the_demo() -> None:
     assert demo.effective_modulus == rm.effective_modulus(3e6, 0.49)
     assert demo.work == 0.05
     assert demo.batch.realizations == 32
-    np.testing.assert_allclose(demo.path.separations(1e-6), np.linspace(4e-6, -0.5e-6, 200), rtol=1e-15)
+    assert demo.path.starts_clear
+    assert demo.path.target is not None
+    assert demo.path.target.contact_fraction == 0.04
+    np.testing.assert_allclose(demo.path.separations(0.0, 7e-6, 1e-6), np.linspace(7e-6, 1e-6, 200), rtol=1e-15)
 
 
 def test_defaults(tmp_path: Path) -> None:

@@ -4,11 +4,13 @@ import math
 from functools import cached_property, partial
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_of_score
 from roughmdr.ensemble.nodes import HEIGHT_END, Heights, Nodes, Rule, UpperTail
+from roughmdr.ensemble.random.distribution_families import ndtri
 from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams
 from roughmdr.errors import RoughmdrError
@@ -19,6 +21,7 @@ _MOMENTS = ("m0", "m2", "m4")
 _WAVES = ("hurst", "long_wave", "short_wave")
 _AMPLITUDES = ("rms_height", "rms_slope")
 _EITHER = "takes m0, m2 and m4, or hurst, long_wave, short_wave and one of rms_height and rms_slope"
+_RADII, _MAX_SCORE = 33, 9.0  # radii between their tails, and the score up to which ``product_of_score`` is right
 _STREAMS = (HEIGHT, PARAMETER, PARAMETER + 1)  # of the heights, the mean curvatures and the products of the curvatures
 
 
@@ -129,6 +132,12 @@ class NayakAsperities(PatchSource):
         edges = self.summits.height_range(v, HEIGHT_END)
         tail = UpperTail(0.0, 0.0)  # lighter than the normal one
         return Heights(partial(self.summits.height_density, v=v), None, edges, self.summits.height_spread, tail, 0.0)
+
+    def extremes(self, chance: float) -> Ensemble:
+        far = float(ndtri(np.array([chance]))[0])
+        v = product_of_score(np.linspace(far, -far, _RADII).clip(-_MAX_SCORE, _MAX_SCORE))
+        highest = np.full(_RADII, self.summits.height_exceeded(chance))
+        return Ensemble(self.shape, highest, {"radius": self.summits.radius(v)}, self.nominal_area)
 
     def ensemble(
         self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False

@@ -12,6 +12,7 @@ follows from that by integration.
 """
 
 import math
+import sys
 from functools import cache
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
 from roughmdr.ensemble.random.distribution import Distribution
+from roughmdr.ensemble.random.distribution_families import ndtr
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.spectrum import MIN_ALPHA, Moments
@@ -33,6 +35,7 @@ _EXCESS = [(-1.0) ** k / math.factorial(k) for k in range(2, 17)]
 _BELOW = [(-0.5) ** k * (3**k - 1 - 2 * k) / (math.factorial(k) * (2 * k + 1)) for k in range(2, 23)]
 _MAX_S = 10.0  # no uniform number leads beyond
 _TABLE_SIZE = 2049
+_PANELS = np.linspace(-10.0, 10.0, 41)  # ends of the panels of integrals over S
 
 
 class Summits(NamedTuple):
@@ -80,6 +83,26 @@ class SummitDistribution(NamedTuple):
         """Return bounds [m] on the heights of summits with v: S is at least sqrt(v), and seldom much more."""
         per_S, spread = math.sqrt(self._parts[0] * self.moments.m0), deviations * self.height_spread
         return per_S * math.sqrt(v) - spread, per_S * (math.sqrt(v) + deviations) + spread
+
+    def height_exceeded(self, chance: float) -> float:
+        """Return the height [m] that a summit exceeds with this chance, which is at least 1e-20 and below 1.
+
+        The fraction above z is the mean, over the mean curvatures S, of that of the normal heights given S.
+        """
+        from scipy.optimize import brentq
+
+        (c, t), (nodes, weights) = map(math.sqrt, self._parts), unit_gauss(16)
+
+        def log_excess(zeta: float) -> float:
+            turn = (zeta + t * _PANELS) / c  # S at which the fraction above zeta changes
+            edges = np.unique(np.concatenate([_PANELS, turn]).clip(0.0, _MAX_S))
+            width = np.diff(edges)
+            S = edges[:-1, None] + width[:, None] * nodes
+            density = _NORM * _excess(S * S) * np.exp(-0.5 * S * S)
+            fraction = float(width @ (density * ndtr((c * S - zeta) / t) @ weights))
+            return math.log(max(fraction, sys.float_info.min) / chance)
+
+        return math.sqrt(self.moments.m0) * float(brentq(log_excess, -_MAX_S, _MAX_S, xtol=1e-13, rtol=1e-14))
 
     def draw(self, height: Floats, mean: Floats, product: Floats) -> Summits:
         """Return summits at uniform numbers from 2^-53 to 1 - 2^-53 for height and the curvatures' mean and product."""

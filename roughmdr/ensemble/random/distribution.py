@@ -96,6 +96,20 @@ class Distribution:
         """Return the values below which the given fractions lie."""
         return self._at_fractions(fraction, 1.0 - fraction) if self.family else np.full_like(fraction, self.loc)
 
+    def between_tails(self, chance: float, count: int) -> Floats:
+        """Return ``count`` values, evenly spaced in normal scores, between tails of this chance each.
+
+        No draw lies beyond them if the chance is that of the smallest uniform number, or less.
+        """
+        if not self.family:
+            return np.full(count, self.loc)
+        tail = max(chance, SMALLEST_UNIFORM)
+        far = ndtri(np.array([tail]))[0]
+        below = ndtr(np.linspace(far, -far, count))
+        above = below[::-1].copy()
+        below[0] = above[-1] = tail
+        return self._at_fractions(below, above)
+
     def from_scores(self, scores: Floats) -> Floats:
         """Return the values at the quantiles of normal scores; NaN so far out that the family's inverse is wrong."""
         if not self.family:

@@ -10,6 +10,8 @@ from roughmdr.ensemble.random.distribution_families import ndtr, ndtri
 from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Streams
 from roughmdr.numerics.arguments import Floats
 
+_COMBINATIONS = 729  # of shape parameters between their tails: 3^6, so that up to three are at odd numbers of values
+
 
 @dataclass(frozen=True)
 class Population:
@@ -23,6 +25,15 @@ class Population:
     def random_parameters(self) -> list[str]:
         """The shape parameters that are not constant."""
         return [name for name, entry in self.parameters.items() if entry.constant is None]
+
+    def between_tails(self, chance: float) -> dict[str, Floats]:
+        """Return shape parameters [SI] in all combinations, each between its tails of this chance."""
+        names = self.random_parameters
+        count = round(_COMBINATIONS ** (1.0 / len(names))) if names else 1
+        axes = np.meshgrid(*(self.parameters[name].between_tails(chance, count) for name in names))
+        values = dict(zip(names, (axis.ravel() for axis in axes), strict=True))
+        constant = np.ones(count ** len(names))
+        return {name: values.get(name, constant * entry.loc) for name, entry in self.parameters.items()}
 
 
 @dataclass(frozen=True)
@@ -59,6 +70,18 @@ class Populations:
         random = {name for each in self.members for name in each.random_parameters}
         streams = (stream for name, stream in self.parameter_streams.items() if name in random)
         return (HEIGHT, *((POPULATION,) if len(self.members) > 1 else ()), *streams)
+
+    def extremes(self, chance: float) -> tuple[float, dict[str, Floats]]:
+        """Return the height [m] that an asperity exceeds with this chance, and shape parameters [SI] that cover all but
+        its tails of this chance, in all combinations; two populations share the chance.
+        """
+        highest, parts = -math.inf, list[dict[str, Floats]]()
+        for each in self.members:
+            own = chance / (len(self.members) * each.fraction) if each.fraction > 0.0 else 1.0
+            if own < 1.0:
+                highest = max(highest, float(each.height.between_tails(own, 2)[-1]))
+                parts.append(each.between_tails(own))
+        return highest, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def draw(self, streams: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
         """Draw heights [m] and shape parameters [SI] of ``count`` asperities."""

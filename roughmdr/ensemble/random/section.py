@@ -176,6 +176,12 @@ class RandomAsperities(PatchSource):
     def nodes(self, rule: Rule) -> Nodes:
         return nodes_of(self.populations, rule)
 
+    def extremes(self, chance: float) -> Ensemble:
+        highest, parameters = self.populations.extremes(chance)
+        count = next((column.size for column in parameters.values()), 1)
+        heights = np.full(count, highest)
+        return Ensemble(self.shape, heights, parameters, self.nominal_area, shared_profile=self.shared_profile)
+
     def ensemble(
         self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
     ) -> Ensemble:

@@ -1,0 +1,63 @@
+"""The separations of a scene's path, with the ends that follow from its asperities and its material."""
+
+from typing import NamedTuple
+
+from roughmdr.errors import Fault, SceneError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+from roughmdr.scene.separation import CLEAR
+
+
+class PathEnds(NamedTuple):
+    """Ends of a path [m]; None where the scene gives them as separations."""
+
+    clear: float | None = None
+    reached: float | None = None
+
+
+class PathFinder:
+    """Finds the separations of cells; ends that follow from equal asperities and materials are found once."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[object, ...], PathEnds] = {}
+
+    def separations(self, cell: Scene) -> Floats:
+        """Return the separations [m] without the appended unloading; SceneError where the path cannot be laid out."""
+        path, sigma = cell.path, cell.asperities.sigma if cell.path.uses_sigma else 0.0
+        if not path.starts_clear and path.target is None:
+            return path.separations(sigma)
+        # Sections that cells of a sweep have in common are the same objects.
+        key = (cell.effective_modulus, cell.adhesion_model, id(cell.asperities), id(path))
+        if key not in self._found:
+            self._found[key] = _find(cell, *path.given(sigma))
+        return path.separations(sigma, *self._found[key])
+
+    @property
+    def notes(self) -> list[str]:
+        """Lines that say which separations the ends came to, the range of these in a sweep."""
+        names = {"clear": f"start {CLEAR!r}", "reached": "stop where the target is reached"}
+        found = {name: [getattr(ends, name) for ends in self._found.values()] for name in names}
+        known = {name: [value for value in values if value is not None] for name, values in found.items()}
+        return [f"{names[name]}: {_range(values)}" for name, values in known.items() if values]
+
+
+def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
+    """Return the ends that are not given as separations [m]."""
+    from roughmdr.batch.clear_start import clear_start
+    from roughmdr.batch.target_stop import target_stop
+
+    clear = clear_start(cell) if start is None else None
+    begin = clear if start is None else start
+    assert begin is not None
+    if stop is not None:
+        if not stop < begin:
+            message = f"must be below {begin:.6g} m, where a path that starts {CLEAR} begins"
+            raise SceneError.of([Fault("path.separation.stop", f"{stop:g} m", message)])
+        return PathEnds(clear)
+    assert cell.path.target is not None
+    return PathEnds(clear, target_stop(cell, cell.path.target, begin))
+
+
+def _range(values: list[float]) -> str:
+    lowest, highest = min(values), max(values)
+    return f"{lowest:.6g} m" if lowest == highest else f"{lowest:.6g} to {highest:.6g} m"

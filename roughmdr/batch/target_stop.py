@@ -1,0 +1,86 @@
+"""stop = { contact_fraction = ... } or { pressure = ... }: the largest separation at which loading reaches it.
+
+It is sought in the expected law where the asperities have one, else in a stratified realisation; where nothing is
+drawn, in the asperities themselves.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath
+from roughmdr.batch.realization import simulate_ensemble, simulate_realization
+from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+from roughmdr.scene.separation import Target
+
+_POINTS = 16  # separations that the law is computed at together
+_RTOL = 1e-14  # of the distance from the start
+_MAX_DOUBLINGS = 60
+_FIRST = 1e-6  # of the width of an asperity: the first distance where all summits are at the start
+
+_Law = Callable[[Floats], Floats]
+
+
+def target_stop(scene: Scene, target: Target, start: float) -> float:
+    """Return the stop [m] of a scene without a sweep, whose path begins at ``start`` [m].
+
+    SceneError where the target cannot be reached.
+    """
+    if scene.asperities.nominal_area is None:
+        raise _fault(target, "needs a nominal area, which these asperities do not have")
+    middle = scene.asperities.extremes(0.5)
+    distances = (start - float(np.median(middle.height)), _FIRST * float(middle.nondimensional().width.max()))
+    try:
+        return _first_reached(_law(scene, target.variable, start), target, start, max(distances))
+    except SceneError:
+        raise
+    except RoughmdrError as error:
+        raise _fault(target, f"cannot be looked for: {error}") from error
+
+
+def _law(scene: Scene, variable: str, start: float) -> _Law:
+    """Return the function: falling separations [m] -> the variable there, in loading from ``start`` [m]."""
+    source, names = scene.asperities, [variable]
+
+    def path(separations: Floats) -> LoadingPath:
+        return LoadingPath.along(np.append(start, separations), unload=False, adhesive=scene.work > 0.0)
+
+    if source.is_random and not source.reason_against("expected"):
+        return lambda h: simulate_realization(scene, path(h), 0, names, "expected").variables[variable][1:]
+    stratified = source.is_random and not source.reason_against("stratified")
+    ensemble = source.ensemble(scene.seed, 0, stratified=stratified)
+    return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
+
+
+def _first_reached(law: _Law, target: Target, start: float, distance: float) -> float:
+    """Return the largest separation [m] with the target, by search in ever longer and then ever shorter intervals."""
+    if law(np.array([start]))[0] >= target.value:
+        raise _fault(target, f"is reached above the start, {start:.4g} m; start must be higher")
+    above, below, most = start, start - distance, 0.0
+    for _ in range(_MAX_DOUBLINGS):
+        h, values = _between(law, above, below)
+        if (values >= target.value).any():
+            break
+        most = max(most, float(values.max()))
+        above, below, distance = below, below - 2.0 * distance, 2.0 * distance
+    else:
+        raise _fault(target, f"is out of reach: the largest {target.variable} of these asperities is {most:.4g}")
+    while True:
+        first = int(np.argmax(values >= target.value))
+        above, below = float(h[first - 1]) if first else above, float(h[first])
+        resolution = max(_RTOL * (start - below), float(np.spacing(max(abs(above), abs(below)))))
+        if above - below <= resolution:
+            return below
+        h, values = _between(law, above, below)
+
+
+def _between(law: _Law, above: float, below: float) -> tuple[Floats, Floats]:
+    """Return separations [m] from next to ``above`` to ``below``, and the law there."""
+    h = np.linspace(above, below, _POINTS + 1)[1:]
+    return h, law(h)
+
+
+def _fault(target: Target, message: str) -> SceneError:
+    return SceneError.of([Fault(f"path.separation.stop.{target.variable}", f"{target.value:g}", message)])

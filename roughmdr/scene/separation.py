@@ -1,0 +1,72 @@
+"""One separation of a path: a length, standard deviations of the heights, "clear", or what is to be reached there."""
+
+import re
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, NamedTuple
+
+from pydantic import BeforeValidator, model_validator
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.schema.quantities import Quantity, Section
+from roughmdr.schema.units import DIMENSIONLESS, quantity
+
+_SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
+
+
+class Separation(NamedTuple):
+    """A separation in metres, or in standard deviations of the heights."""
+
+    value: float
+    in_sigma: bool
+
+    def metres(self, sigma: float) -> float:
+        """Return it in metres, where the heights' standard deviation is sigma [m]."""
+        return self.value * sigma if self.in_sigma else self.value
+
+
+CLEAR = "clear"
+"""The start of a path where no asperity touches, or attracts: the default."""
+
+
+@dataclass(frozen=True)
+class SeparationReader:
+    """Reads a separation; where ``clear`` is allowed, that is None."""
+
+    clear: bool = False
+    other: str = ""  # in messages: other entries that are allowed
+    dimension: ClassVar[str] = "m"
+
+    def __call__(self, value: object) -> Separation | None:
+        """Return the separation, in metres or in sigma."""
+        if self.clear and value == CLEAR:
+            return None
+        if isinstance(value, str) and (match := _SIGMA.fullmatch(value)):
+            return Separation(quantity(match[1], DIMENSIONLESS), in_sigma=True)
+        try:
+            return Separation(quantity(value, self.dimension), in_sigma=False)
+        except RoughmdrError as error:
+            sigma = 'in standard deviations of the heights, like "4 sigma"'
+            raise RoughmdrError(f"{error}, or {sigma}{self.other}") from None
+
+
+class Target(Section):
+    """The largest separation at which loading reaches a contact fraction [1] or a pressure [Pa]."""
+
+    contact_fraction: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))] | None = None
+    pressure: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> "Target":
+        if (self.contact_fraction is None) == (self.pressure is None):
+            raise RoughmdrError("takes either contact_fraction or pressure")
+        return self
+
+    @property
+    def variable(self) -> str:
+        """The variable that is to be reached."""
+        return "pressure" if self.contact_fraction is None else "contact_fraction"
+
+    @property
+    def value(self) -> float:
+        """The value that is to be reached, in SI."""
+        return self.pressure or self.contact_fraction or 0.0
