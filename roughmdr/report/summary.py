@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.result import layout
 from roughmdr.result.pull_off import PullOff, pull_off_force
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
@@ -33,7 +34,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
     ]
-    lines += [*_indent("warning", plan.warnings), *_indent("cannot run", estimate.failures)]
+    lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", estimate.failures)]
     return _format_table([*lines, *_indent("left out", plan.left_out)])
 
 
@@ -65,6 +66,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(layout.stored_variables(result))),
+        *_indent("map", attrs.get("map", "").splitlines()),
         *_pull_off(result),
         *_contacts_at_ends(result),
         *_adhesion(result),
@@ -81,16 +83,9 @@ def describe_ensemble(ensemble: Labelled) -> str:
     """Return the number of asperities and, if they are from a height map, how well it resolves them."""
     attrs = ensemble.attrs
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
-    if "points_per_summit" in attrs:
-        cut = f", without waves below {attrs['cutoff']:.4g} m" if "cutoff" in attrs else ""
-        lines += [
-            ("map", f"{attrs['patch_x']:.4g} m x {attrs['patch_y']:.4g} m, {attrs['undefined_share']:.2%} undefined"),
-            ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
-            ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
-            ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
-            ("", "each is a paraboloid through a point above its eight neighbours, fitted to these"),
-            ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
-        ]
+    if "radius_uncertainty" in attrs:
+        lines += _indent("map", describe_map(attrs))
+        lines += [("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")]
     return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 

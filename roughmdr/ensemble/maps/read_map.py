@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
 _DELIMITERS = (";", ",", "\t")
+_SIZE_ARRAY = "size"  # in a .npz file
 _MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
 
 
@@ -130,6 +131,11 @@ def _spacings(raw: RawMap, size: Size | None) -> tuple[float, float]:
         return raw.spacing
     if size is None:
         raise RoughmdrError('the file does not say how large the map is; give size, as size = "100 um"')
+    return _spacings_of_sides(size, nx, ny)
+
+
+def _spacings_of_sides(size: Size, nx: int, ny: int) -> tuple[float, float]:
+    """Return the spacings along x and y [m] of a map of this size; RoughmdrError where one side is not both."""
     if not isinstance(size, tuple) and nx != ny:
         raise RoughmdrError(
             f"the map has {nx} x {ny} points, and one size is that of a square; "
@@ -140,7 +146,10 @@ def _spacings(raw: RawMap, size: Size | None) -> tuple[float, float]:
 
 
 def _read_numpy(path: Path, channel: str | None) -> RawMap:
-    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run."""
+    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run.
+
+    An array ``size`` of a .npz file is the size of the map [m].
+    """
     try:
         loaded = np.load(path, allow_pickle=False)
     except Exception as error:
@@ -154,13 +163,27 @@ def _read_numpy(path: Path, channel: str | None) -> RawMap:
         return RawMap(loaded)
     with loaded:
         names = list(loaded.files)
-        name = channel or ("height" if "height" in names or len(names) != 1 else names[0])
+        maps = [name for name in names if name != _SIZE_ARRAY] or names
+        name = channel or ("height" if "height" in maps or len(maps) != 1 else maps[0])
         if name not in names:
             raise RoughmdrError(f"has no array {name!r}, but {names}; name one as channel")
+        height = _array_of(loaded, name)
+        if _SIZE_ARRAY not in names or name == _SIZE_ARRAY:
+            return RawMap(height)
+        _check_points(height.shape)
         try:
-            return RawMap(np.asarray(loaded[name]))
-        except Exception as error:
-            raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
+            size = SizeReader()(_array_of(loaded, _SIZE_ARRAY).squeeze().tolist())
+        except RoughmdrError as error:
+            raise RoughmdrError(f"its array {_SIZE_ARRAY!r}, the size of the map: {error}") from None
+        return RawMap(height, spacing=_spacings_of_sides(size, *height.shape))
+
+
+def _array_of(loaded: Any, name: str) -> NDArray[Any]:
+    """Return an array of an open .npz file."""
+    try:
+        return np.asarray(loaded[name])
+    except Exception as error:
+        raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
 
 
 def _read_text(path: Path, channel: str | None) -> RawMap:
