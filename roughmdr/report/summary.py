@@ -34,7 +34,11 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
     ]
-    lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", estimate.failures)]
+    lines += [
+        *_indent("map", plan.map_lines),
+        *_indent("warning", plan.warnings),
+        *_indent("cannot run", estimate.failures),
+    ]
     return _format_table([*lines, *_indent("left out", plan.left_out)])
 
 

@@ -121,7 +121,11 @@ def persson_separation(
 
 
 def persson_pressure(
-    *, separation: ArrayLike, spectrum: SelfAffine | MapSpectrum, gamma: float = 0.45, **material: Unpack[MaterialArguments]
+    *,
+    separation: ArrayLike,
+    spectrum: SelfAffine | MapSpectrum,
+    gamma: float = 0.45,
+    **material: Unpack[MaterialArguments],
 ) -> Floats:
     """Compute the pressure that leaves a mean gap: the inverse of ``persson_separation``.
 

@@ -12,7 +12,8 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, mean_and_rms
-from roughmdr.ensemble.maps.read_map import Size, SizeReader, read_map
+from roughmdr.ensemble.maps.raw_map import Size, SizeReader
+from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import MapWaves

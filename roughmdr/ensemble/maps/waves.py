@@ -73,6 +73,8 @@ def _binned(q: Floats, variance: Floats) -> MapSpectrum:
     """Return waves in bins; the slope of each bin is that of its waves."""
     log_q = np.log(q / q.min())
     numbers = np.minimum((log_q * (_BINS / log_q.max())).astype(np.int64), _BINS - 1)
-    of_heights, of_slopes = (np.bincount(numbers, values, _BINS) for values in (variance, q * q * variance))
+    of_heights, of_slopes = (
+        np.bincount(numbers, values, _BINS).astype(np.float64) for values in (variance, q * q * variance)
+    )
     filled = of_slopes > 0.0
     return MapSpectrum(np.sqrt(of_slopes[filled] / of_heights[filled]), of_heights[filled])

@@ -36,7 +36,7 @@ def describe_moments(waves: MapWaves) -> str:
     """Return the moments that a theory takes from a map, and what decides them."""
     m0, m2, m4 = waves.moments
     return (
-        f"moments of the map: m0 = {m0:.3g} m2, m2 = {m2:.3g}, m4 = {m4:.3g} m-2, by differences of neighbouring points; "
+        f"moments of the map: m0 = {m0:.3g} m2, m2 = {m2:.3g}, m4 = {m4:.3g} m-2, by differences of neighbours; "
         f"m4, and so radii and number of summits, is that of its shortest waves, {_shortest(waves)}, and of noise"
     )
 
