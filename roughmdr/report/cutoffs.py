@@ -30,8 +30,8 @@ _HEADINGS = (
 )
 _NOTES = (
     "A cutoff takes away roughness that may be real, and pressures at a given contact area fall with the rms slope:",
-    "give one only against noise that was measured. Pressures are those at which contacts of independent asperities add",
-    "up to 1, 2 and 5 % of the nominal area on loading; mean radius is 1/<1/R>.",
+    "give one only against noise that was measured. Pressures are those at which contacts of independent asperities",
+    "add up to 1, 2 and 5 % of the nominal area on loading; mean radius is 1/<1/R>.",
 )
 _RTOL = 1e-10  # of the separation, over the spread of the heights
 

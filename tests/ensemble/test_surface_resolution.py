@@ -25,16 +25,21 @@ def judged(height: np.ndarray) -> tuple[float, dict[str, float | int | str]]:
 @pytest.mark.parametrize(("longest", "hurst"), [(FINE * 1.1, 0.8), (FINE * 8.0, 0.8), (FINE * 8.0, 0.3)])
 @pytest.mark.parametrize("coarser", [1, 2, 4, 8])
 def test_the_estimate_is_near_the_error_of_the_curvature(longest: float, hurst: float, coarser: int) -> None:
-    """At 32 to 4 points a shortest wave, with noise from none to a tenth of the height."""
+    """At 32 to 4 points a shortest wave, with noise from none to a tenth of the height.
+
+    Noise makes summits too sharp and a coarse grid too blunt; where both errors cancel, the estimate is of the larger.
+    Beyond a factor of 4 the misfit no longer tells how much is noise.
+    """
     height = waves(1024, FINE, longest, hurst)
-    right = judged(height)[0] * coarser**2
+    right, part = judged(height)[0] * coarser**2, height[::coarser, ::coarser]
+    without_noise = abs(judged(part)[0] / right - 1.0)
     for noise in (0.0, 1e-3, 1e-2, 1e-1):
-        part = height[::coarser, ::coarser]
         found, attrs = judged(part + noise * np.random.default_rng(2).normal(size=part.shape))
         error, estimate = abs(found / right - 1.0), radius_uncertainty(attrs)
-        assert estimate > MAX_UNCERTAINTY or error < MAX_UNCERTAINTY
-        if error > 0.05 and estimate < 8.0:
-            assert 0.4 < estimate / error < 3.0, (noise, attrs)
+        assert estimate > MAX_UNCERTAINTY or error < 0.2
+        if 0.05 < error < 3.0:
+            assert 0.5 * error < estimate < 4.0 * max(error, without_noise), (noise, attrs)
+        assert error < 3.0 or estimate > 1.5
 
 
 @pytest.mark.parametrize("step", [1e-2, 3e-2])

@@ -3,7 +3,7 @@
 Measured on Gaussian maps whose summits are known (waves of one length, and self-affine ones of Hurst exponent 0.3 and
 0.8 over a factor of 4 to 16), sampled at 2 to 40 points a shortest wave, with white noise of 0 to 0.1 of the r.m.s.
 height: where the mean curvature is off by more than 5 %, the estimate is 0.84 to 1.9 times that in 90 % of 728 maps;
-none that is off by more than 15 % is taken for resolved. Heights in steps are noise of that kind; noise that neighbours
+none that is off by more than 20 % is taken for resolved. Heights in steps are noise of that kind; noise that neighbours
 share, as of a map that was smoothed, is not seen: of a mean over 2 x 2 points a misfit of 0.3 goes with 20 %, 0.6 with
 factors of 2 and more.
 """
