@@ -49,9 +49,9 @@ def noise_error(points_per_summit: float, misfit: float) -> float:
     return 1.0 / math.sqrt(1.0 - min(max(share, 0.0), _MAX_NOISE)) - 1.0
 
 
-def cutoff_error(radius: float, uncut_radius: float, uncut_noise_error: float) -> float:
-    """Return by how much a cutoff changes the radii, but for the white noise that it takes away."""
-    return abs(1.0 - uncut_radius * (1.0 + uncut_noise_error) / radius)
+def cutoff_error(radius: float, uncut_radius: float) -> float:
+    """Return by how much the radii are too large if all that a cutoff takes away was real, relative to themselves."""
+    return max(1.0 - uncut_radius / radius, 0.0)
 
 
 def radius_errors(attrs: Mapping[str, float | int | str]) -> dict[str, float]:
@@ -63,8 +63,7 @@ def radius_errors(attrs: Mapping[str, float | int | str]) -> dict[str, float]:
     points, misfit = of("points_per_summit"), of("misfit")
     errors = {"sampling": sampling_error(points, misfit), "noise": noise_error(points, misfit)}
     if "cutoff" in attrs:
-        noise = noise_error(of("uncut_points_per_summit"), of("uncut_misfit"))
-        errors["cutoff"] = cutoff_error(of("mean_curvature_radius"), of("uncut_mean_curvature_radius"), noise)
+        errors["cutoff"] = cutoff_error(of("mean_curvature_radius"), of("uncut_mean_curvature_radius"))
     return errors
 
 

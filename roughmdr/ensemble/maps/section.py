@@ -23,7 +23,7 @@ from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
-_UNCUT = ("rms_height", "rms_slope", "points_per_summit", "misfit", "mean_curvature_radius")
+_UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 """Attributes of an ensemble that tell of its map as it was before the cutoff, too."""
 
 
