@@ -144,10 +144,11 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
 
     validated = read(scene, changes)
     from roughmdr.batch.estimate import estimate
+    from roughmdr.batch.foresee import foresee_cells
     from roughmdr.batch.plan import make_plan
 
     planned = make_plan(validated)
-    print_text(describe_plan(planned, estimate(planned, workers), workers))
+    print_text(describe_plan(planned, estimate(planned, workers), foresee_cells(planned), workers))
 
 
 @main.command()

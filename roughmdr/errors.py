@@ -48,6 +48,10 @@ class OutOfRange(RoughmdrError):  # noqa: N818 - the name is part of the contrac
     """A number lies outside the range in which there is a right answer, or the answer is not representable."""
 
 
+class TooMuchContact(OutOfRange):
+    """The summed contact area is larger than the nominal area: independent asperities have no such contact."""
+
+
 def warn_limits(texts: Iterable[str], stacklevel: int = 3) -> dict[str, str]:
     """Issue each text as a LimitWarning to the caller of the caller; return them as an attribute of a result."""
     texts = list(texts)

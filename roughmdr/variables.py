@@ -51,6 +51,7 @@ CURVE_VARIABLES = _declare(
     ("contact_radius_sum", "m", "sum of the contact radii"),
     ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
     ("dissipated_energy", "J", "energy lost in the jumps of contacts since the start of the path"),
+    ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
 )
 """Variables of a load-separation law that [output] can name."""
 
@@ -113,6 +114,16 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic(
         "numerical_error", "1", "estimated numerical error of the force over its largest magnitude", unstated=0.0
     ),
+    Diagnostic("model_error", "1", "estimated relative error of the force by the assumptions of the model, at most"),
+    Diagnostic("interaction_error", "1", "part of the model error: asperities that do not feel each other"),
+    Diagnostic("slope_error", "1", "part of the model error: slopes that are not small"),
+    Diagnostic("profile_end_error", "1", "part of the model error: contacts beyond the end of their profile"),
+    Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
+    Diagnostic("resolution_error", "1", "part of the model error: radii of summits that the map does not resolve"),
+    Diagnostic("overlap_fraction", "1", "share of the contacts that reach into a neighbour's, at closest approach"),
+    Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
+    Diagnostic("tension_contact_fraction", "1", "contact area over the nominal area at the largest tension"),
+    Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
     ),

@@ -29,6 +29,7 @@ LINES = (
     ("fields",),
     ("ensemble",),
     ("scene",),
+    ("model_error",),
     ("aggregate",),
     ("expected",),
     ("theory",),

@@ -19,6 +19,8 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
+from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction, fraction_warnings
+from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
@@ -29,7 +31,7 @@ from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, 
 if TYPE_CHECKING:
     import xarray as xr
 
-_PER_AREA = {"pressure", "contact_fraction"}
+_PER_AREA = {"pressure", "contact_fraction", "model_error_curve"}
 
 
 class LoadSeparation(NamedTuple):
@@ -39,6 +41,8 @@ class LoadSeparation(NamedTuple):
     """Each over the steps, in SI."""
     numerical_error: float
     """Bound on the error of the force along the path, over the largest magnitude of the force."""
+    model_error: ModelError
+    """The error that the assumptions of the model cause."""
     extremes: ValidityLimits
     """The extremes of all contacts."""
     visits: int
@@ -55,23 +59,39 @@ class LoadSeparation(NamedTuple):
         cls,
         total: Floats,
         names: list[str],
-        nominal_area: float | None,
-        extremes: ValidityLimits,
+        separation: Floats,
+        givens: Givens,
+        assumptions: Assumptions,
         visits: int,
         tabor: float,
         model: str,
     ) -> LoadSeparation:
-        """Return the law from ``total`` [row, step]; OutOfRange where a variable is not representable."""
-        results = {name: total[totals.TOTAL_INDEX[name]] for name in names}
-        for name in _PER_AREA.intersection(names):
-            with np.errstate(over="ignore"):  # refused below
-                results[name] = results[name] / nominal_area
-            if not np.isfinite(results[name]).all():
-                raise OutOfRange(f"{name} is not representable on a nominal area of {nominal_area:g} m2")
-        largest, error = float(np.max(np.abs(total[totals.FORCE]))), float(np.max(total[totals.ERROR]))
+        """Return the law from ``total`` [row, step].
+
+        OutOfRange where a variable is not representable, or where the contacts have more area than the patch.
+        """
+        area, force = givens.nominal_area, total[totals.FORCE]
+        fraction = None if math.isnan(area) else _over_area("contact_fraction", total[totals.AREA], area)
+        if fraction is not None:
+            check_contact_fraction(fraction, separation, givens)
+        model_error = ModelError.of(assumptions, separation, force, fraction)
+        results = {name: total[totals.TOTAL_INDEX[name]] for name in names if name not in _PER_AREA}
+        if fraction is not None and not _PER_AREA.isdisjoint(names):
+            pressure = _over_area("pressure", force, area)
+            derived = {"contact_fraction": fraction, "pressure": pressure, "model_error_curve": model_error.curve}
+            results |= {name: derived[name] for name in names if name in derived}
+        largest, error = float(np.max(np.abs(force))), float(np.max(total[totals.ERROR]))
         relative = error / largest if largest > 0.0 else 0.0
-        extremes = extremes._replace(tabor=tabor if model == "jkr" else math.inf)
-        return cls(results, relative, extremes, visits, tabor, model)
+        extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
+        return cls(results, relative, model_error, extremes, visits, tabor, model)
+
+
+def _over_area(name: str, total: Floats, area: float) -> Floats:
+    with np.errstate(over="ignore"):  # refused below
+        values = np.asarray(total / area)
+    if not np.isfinite(values).all():
+        raise OutOfRange(f"{name} is not representable on a nominal area of {area:g} m2")
+    return values
 
 
 def compute(
@@ -80,18 +100,18 @@ def compute(
     """Return the law of ``ensemble`` along a path; E* [Pa].
 
     SceneError where a variable needs a nominal area and there is none, OutOfRange where the contact of an asperity is
-    not representable.
+    not representable, or where the contacts have more area than the patch.
     """
     names = list(variables)
     if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
-        raise SceneError("ensemble: attribute nominal_area is missing; pressure and contact_fraction need it")
+        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(_PER_AREA))} need it")
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
-    total, max_radius, visits = loop.sum_over_asperities(
+    total, radius, visits = loop.sum_over_asperities(
         law,
         ensemble.height,
         columns,
@@ -99,11 +119,34 @@ def compute(
         adhesion,
         path.separation,
         path.memory,
-        {totals.ERROR, totals.FORCE, *(totals.TOTAL_INDEX[name] for name in names)},
+        {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)},
     )
-    extremes = ensemble.validity_limits(max_radius)
-    result = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, validity.tabor, adhesion.model)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
+    assumptions = Assumptions(
+        ensemble.validity_limits(radius),
+        validity.jkr_error if adhesion.model == "jkr" else 0.0,
+        float(ensemble.attrs.get("radius_uncertainty", 0.0)),
+        _overlap(ensemble, radius),
+    )
+    result = LoadSeparation.of(
+        total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
+    )
     return result._replace(warnings=ensemble.warnings)
+
+
+def _overlap(ensemble: Ensemble, radius: Floats) -> float:
+    """Return the share of contacts that reach into a neighbour's, from their radii [m]; NaN where it is not known."""
+    touching = radius > 0.0
+    contact_radius = radius[touching]
+    if not contact_radius.size:
+        return 0.0
+    if {"x", "y"} <= ensemble.positions.keys():
+        x, y = (ensemble.positions[name][touching] for name in ("x", "y"))
+        return overlap_share(x, y, contact_radius)
+    if ensemble.nominal_area is None:
+        return math.nan
+    return poisson_overlap(contact_radius, ensemble.nominal_area)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -149,21 +192,23 @@ def load_separation(
         Whether the same separations follow in reversed order, the turning point repeated.
     variables : str or iterable of str, optional
         Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum, energy,
-        dissipated_energy.
+        dissipated_energy, model_error_curve.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
 
     Returns
     -------
     xarray.Dataset
-        The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1].
+        The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1];
+        model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
+        where there is no nominal area).
 
     Raises
     ------
     SceneError
         Where the ensemble or a name is wrong.
     OutOfRange
-        Where a number is out of its range.
+        Where a number is out of its range, or where the contacts have more area than the patch.
     RoughmdrError
         Unless E* is given in exactly one way.
 
@@ -202,7 +247,8 @@ def load_separation(
         Ensemble.from_dataset(ensemble), path, effective_modulus=effective_modulus, adhesion=asked, variables=names
     )
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
-    data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
+    errors = {"numerical_error": result.numerical_error, **result.model_error.named}
+    data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
-    warnings = [*result.warnings, *result.extremes.warnings]
+    warnings = [*result.warnings, *result.extremes.warnings, *fraction_warnings(result.model_error.largest_fraction)]
     return Labelled(data, {"separation": distance, "branch": path.branch()}, warn_limits(warnings)).to_xarray()

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
+import numpy as np
+
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material, law
@@ -19,13 +21,19 @@ with paraboloids of normal heights, |delta_c|/std from 0.1 to 10, Tabor numbers 
 -1 std (``pipelines/adhesion_range.py``): there at most 4.3."""
 
 
+ASSUMED_RANGE = 0.4e-9
+"""Range of the adhesion [m] where it is not given: of van der Waals forces between solids, on the long side, which is
+the safe one.
+"""
+
+
 class JkrValidity(NamedTuple):
     """How well JKR holds for an ensemble."""
 
     tabor: float = math.inf
     """The least Tabor number [1]; inf where the strength of the adhesion is not given."""
     jkr_error: float = 0.0
-    """About the error of the force of JKR, over the largest force."""
+    """About the error of the force of JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
 
 
 def _smallest_fold(columns: Columns, material: Material) -> tuple[float, float]:
@@ -60,7 +68,11 @@ def jkr_validity(
     ``spread`` is the standard deviation of the heights [m].
     """
     if not adhesion.tabor_known:
-        return JkrValidity()
+        if adhesion.work == 0.0:
+            return JkrValidity()
+        assumed = adhesion._replace(strength=adhesion.work / ASSUMED_RANGE)
+        usual = Columns(*(np.median(column, axis=0)[None] for column in columns))
+        return jkr_validity(shape, spread, usual, effective_modulus, assumed)._replace(tabor=math.inf)
     kernels = choose(shape, Adhesion(adhesion.work), columns.params)
     radius, depth = _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, math.inf))
     if not 0.0 < radius < math.inf:

@@ -13,6 +13,7 @@ TOTAL_INDEX = {
     "pressure": FORCE,
     "contact_area": AREA,
     "contact_fraction": AREA,
+    "model_error_curve": AREA,
     "contact_count": COUNT,
     "contact_radius_sum": RADIUS,
     "stiffness": STIFFNESS,

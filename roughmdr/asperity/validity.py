@@ -17,6 +17,8 @@ Johnson, Contact Mechanics, 1985). At a/R = 0.3 a sphere and its paraboloid diff
 TABOR = 3.0
 """The Tabor number below which there is a warning: there the pull-off force of a paraboloid is 1 % off that of JKR."""
 
+_SLOPE_DIVISOR = 3.0  # g of a sphere is that of its paraboloid times 1 + (x/R)^2/3 + ...
+_VERTICAL = 10.0  # a slope from which on a flank is as good as vertical
 _UPRIGHT = float(np.finfo(np.float64).max)  # slope of a vertical flank
 
 
@@ -26,21 +28,29 @@ class ValidityLimits(NamedTuple):
     slope: float = 0.0  # largest f'(a) [1]
     extent: float = 0.0  # largest a over the radius where the profile ends
     tabor: float = math.inf  # least Tabor number of contacts that are computed with JKR
+    slope_error: float = 0.0  # relative error of the force by slopes that are not small
+    end_error: float = 0.0  # share of the force that contacts beyond the end of their profile bear
 
     @classmethod
     def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "ValidityLimits":
-        """Return the limits of contact radii [m], with the slopes there and the ends [m] of their profiles."""
+        """Return the limits of contact radii [m], with the slopes there and the ends [m] of their profiles.
+
+        A contact bears a share of the force as a^2 f'(a), which is about proportional to its force.
+        """
         if not (radius > 0.0).any():
             return cls()
         with np.errstate(all="ignore"):
             steepest = np.where((radius > 0.0) & ~np.isnan(slopes), slopes, 0.0)
             farthest = np.where(np.isfinite(radius), radius / ends, 0.0)
-        return cls(min(float(np.max(steepest)), _UPRIGHT), min(float(np.max(farthest)), _UPRIGHT))
-
-    def joined(self, other: "ValidityLimits") -> "ValidityLimits":
-        """Return the more extreme of both."""
-        slope, extent = max(self.slope, other.slope), max(self.extent, other.extent)
-        return ValidityLimits(slope, extent, min(self.tabor, other.tabor))
+            relative = radius / np.max(radius)
+            loads = relative * relative * np.minimum(steepest, _VERTICAL)
+            errors = np.minimum(steepest * steepest / _SLOPE_DIVISOR, 1.0)
+            total = float(np.sum(loads))
+            shares = loads / total if total > 0.0 else np.zeros_like(loads)
+        slope, extent = min(float(np.max(steepest)), _UPRIGHT), min(float(np.max(farthest)), _UPRIGHT)
+        return cls(
+            slope, extent, slope_error=float(np.sum(shares * errors)), end_error=float(np.sum(shares[farthest > 1.0]))
+        )
 
     @property
     def warnings(self) -> list[str]:

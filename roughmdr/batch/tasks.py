@@ -155,6 +155,7 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
     """Return the diagnostics of a realisation that its result tells, by their names in ``RUN_DIAGNOSTICS``."""
     return {
         "numerical_error": result.numerical_error,
+        **result.model_error.named,
         "edge_slope": result.extremes.slope,
         "profile_extent": result.extremes.extent,
         "tabor_number": result.tabor if result.tabor < math.inf else math.nan,

@@ -11,7 +11,7 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import COUNT, DISSIPATED, ERROR, FORCE, TOTAL_INDEX
+from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, TOTAL_INDEX
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -19,6 +19,8 @@ from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error.interaction import poisson_overlap
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
@@ -36,10 +38,11 @@ def compute(
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
     """
     names, steps = list(variables), path.separation.size
-    rows, dissipating = _rows(names), any(TOTAL_INDEX[name] == DISSIPATED for name in names)
+    rows, unjudged = _rows(names)
+    dissipating = any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = _as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     validity = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
-    problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows)
+    problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
     split = KinkSplit.of(problem)
     rule, nodes, error, error_of_others = converge(problem, split, dissipating=dissipating)
     total, products = totals_of(nodes, path.separation, rows, list(range(steps)))
@@ -65,9 +68,15 @@ def compute(
             f"the contact of an asperity is not representable: {problem.law.name} with effective modulus "
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
-    extremes = _as_ensemble(source, source.nodes(rule)).validity_limits(_largest_radii(nodes, closest, count))
+    radii, area = _largest_radii(nodes, closest, count), source.nominal_area
+    limits = _as_ensemble(source, source.nodes(rule)).validity_limits(radii)
     model = problem.adhesion.model
-    law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, validity.tabor, model)
+    nominal_area = math.nan if area is None else area
+    givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
+    equal_radii = np.sqrt(total[AREA].max(keepdims=True) / math.pi)  # one contact in place of all alike
+    overlap = poisson_overlap(equal_radii, nominal_area)
+    assumptions = Assumptions(limits, validity.jkr_error if model == "jkr" else 0.0, overlap=overlap)
+    law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=_warnings(law.numerical_error, error_of_others))
 
 
@@ -76,15 +85,19 @@ def prepare(
     source: Source, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
 ) -> None:
     """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
-    rows = _rows(variables)
+    rows, _ = _rows(variables)
     for model in adhesion.candidates:
         problem = Problem(source, path, effective_modulus, adhesion._replace(model=model), rows)
         totals_of(set_up(problem, Rule.smooth(1)), path.separation, rows, [0])
 
 
-def _rows(variables: Iterable[str]) -> tuple[int, ...]:
-    """Return the totals that are integrated over the heights: the force and all others but the energy lost in jumps."""
-    return tuple(dict.fromkeys([FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]))
+def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the totals that are integrated over the heights, and those of them that only the model error needs.
+
+    They are the force, the area and all others that are asked for but the energy lost in jumps.
+    """
+    asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]
+    return tuple(dict.fromkeys([*asked, AREA])), () if AREA in asked else (AREA,)
 
 
 def _warnings(error: float, error_of_others: float) -> tuple[str, ...]:

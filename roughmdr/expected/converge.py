@@ -58,7 +58,7 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
     if not problem.hysteretic:
         steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
         steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
-    rows = tuple(row for row in problem.rows if row != STIFFNESS)
+    rows = tuple(row for row in problem.rows if row not in (STIFFNESS, *problem.unjudged))
 
     def curves(nodes: list[QuadratureNode]) -> Floats:
         """Return the force and all others: [curve, step]."""

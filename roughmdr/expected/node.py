@@ -28,6 +28,8 @@ class Problem(NamedTuple):
     adhesion: Adhesion
     rows: tuple[int, ...]
     """Rows of the totals; the first is FORCE."""
+    unjudged: tuple[int, ...] = ()
+    """Of these, rows whose error does not count: the model error alone needs them."""
 
     @property
     def law(self) -> Kernels:

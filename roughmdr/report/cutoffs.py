@@ -76,7 +76,7 @@ def _row(scene: Scene, section: SurfaceAsperities, cutoff: float | None) -> tupl
         format_quantity(float(np.std(summits.height)), "m"),
         f"{attrs['points_per_summit']:.3g}",
         f"{attrs['misfit']:.2g}",
-        f"{100.0 * float(attrs['radius_uncertainty']):.2g} %",
+        f"{100.0 * float(attrs['radius_uncertainty']):.0f} %",
         *(format_quantity(pressure_at(scene, summits, fraction), "Pa") for fraction in _FRACTIONS),
     )
 

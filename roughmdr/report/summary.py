@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.ensemble.maps.words import describe_map
+from roughmdr.report.prospect import prospect_lines
+from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
 from roughmdr.result.pull_off import PullOff, pull_off_force
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
@@ -15,6 +17,7 @@ from roughmdr.variables import DONE, FAILED
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
+    from roughmdr.batch.foresee import Prospect
     from roughmdr.batch.plan import Plan
 
 _MAX_CELLS = 30
@@ -22,7 +25,7 @@ _NOT_KNOWN = "not known: no run was computed"
 _HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 
 
-def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
+def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", workers: int) -> str:
     """Return what a run will do, how long it will take and how much memory."""
     steps, output = plan.cells[0].path.separation.size, plan.scene.output
     lines = [
@@ -33,12 +36,10 @@ def describe_plan(plan: "Plan", estimate: "Estimate", workers: int) -> str:
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
+        *prospect_lines(prospect),
     ]
-    lines += [
-        *_indent("map", plan.map_lines),
-        *_indent("warning", plan.warnings),
-        *_indent("cannot run", estimate.failures),
-    ]
+    failures = dict.fromkeys([*estimate.failures, *prospect.failures])
+    lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
     return _format_table([*lines, *_indent("left out", plan.left_out)])
 
 
@@ -66,28 +67,37 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
     time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
     if elapsed is not None:
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
-    errors = _values(result, "numerical_error")[layout.done_of(result)]
     lines = [
         ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(layout.stored_variables(result))),
         *_indent("map", attrs.get("map", "").splitlines()),
         *_pull_off(result),
         *_contacts_at_ends(result),
+        *trust_of_result(result),
         *_adhesion(result),
         *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
         *_indent("failed", describe_failed(result).splitlines()),
         *_indent("warning", attrs.get("warnings", "").splitlines()),
+        _numerical_error(result),
         ("run time", time),
-        ("error", f"numerical error at most {errors.max():.1e} of the largest force" if errors.size else _NOT_KNOWN),
     ]
     return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines())])
+
+
+def _numerical_error(result: Labelled) -> tuple[str, str]:
+    """Return the line of the numerical error: of sums their rounding, of expected laws that of their integrals."""
+    name = "integration" if layout.estimator_of(result) == "expected" else "rounding"
+    errors = _values(result, "numerical_error")[layout.done_of(result)]
+    if not errors.size:
+        return name, _NOT_KNOWN
+    return name, f"at most {errors.max():.1e} of the largest force (not the error of the model)"
 
 
 def describe_ensemble(ensemble: Labelled) -> str:
     """Return the number of asperities and, if they are from a height map, how well it resolves them."""
     attrs = ensemble.attrs
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
-    if "radius_uncertainty" in attrs:
+    if "points_per_summit" in attrs:
         lines += _indent("map", describe_map(attrs))
         lines += [("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")]
     return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])

@@ -12,6 +12,7 @@ from roughmdr.batch.collect import CollectedResults
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
+from roughmdr.model_error import fraction_warnings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
@@ -127,7 +128,8 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     jkr = diagnostics["adhesion_law"] == ADHESION_CODES.index("jkr")
     tabor = float(np.fmin.reduce(diagnostics["tabor_number"][jkr], initial=math.inf))
     slope, extent = (float(diagnostics[name].max()) for name in ("edge_slope", "profile_extent"))
-    return [*warnings, *ValidityLimits(slope, extent, tabor).warnings]
+    largest_fraction = float(np.fmax.reduce(diagnostics["largest_contact_fraction"]))
+    return [*warnings, *ValidityLimits(slope, extent, tabor).warnings, *fraction_warnings(largest_fraction)]
 
 
 def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import result_bytes
+from roughmdr.batch.foresee import check_foreseen
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
 from roughmdr.batch.resume.reusable import ReusableRows
@@ -132,6 +133,7 @@ def execute(
                     writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
             reuse(target, old, writer.store, plan, reusable)
+        check_foreseen(plan)
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
         remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
         check_memory(result_bytes(plan, runs), "the run", remedy)

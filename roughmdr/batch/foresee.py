@@ -1,0 +1,89 @@
+"""Foresees the physics of a cell from a few evenly drawn asperities: contact fraction, model error, Tabor number."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath, LoadSeparation
+from roughmdr.batch.plan import Cell, Plan
+from roughmdr.batch.realization import simulate_ensemble
+from roughmdr.errors import RoughmdrError, TooMuchContact
+from roughmdr.scene import Scene
+
+_MAX_ASPERITIES = 1000
+_MAX_STEPS = 60
+_MAX_CELLS = 12
+
+
+class Foreseen(NamedTuple):
+    """The law of a cell as a few asperities tell it."""
+
+    path: LoadingPath
+    """Some steps of the path of the cell."""
+    law: LoadSeparation
+    """Its contact fraction and pressure are those of all asperities."""
+
+
+class Prospect(NamedTuple):
+    """Cells of a plan before they are run."""
+
+    foreseen: tuple[Foreseen, ...]
+    failures: tuple[str, ...]
+    """Which of the cells that were tried cannot be computed, and why."""
+
+
+def foresee_cells(plan: Plan) -> Prospect:
+    """Foresee some cells of a plan, evenly chosen, the first and the last among them."""
+    foreseen, failures = [], []
+    for number in np.unique(np.linspace(0, len(plan.cells) - 1, _MAX_CELLS).astype(int)).tolist():
+        cell = plan.cells[number]
+        separation = cell.path.separation
+        if separation.size > _MAX_STEPS:
+            some = np.linspace(0, separation.size - 1, _MAX_STEPS).astype(int)
+            separation = separation[np.unique(np.append(some, np.argmin(separation)))]
+        path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
+        try:
+            foreseen.append(Foreseen(path, _law(cell.scene, path)))
+        except RoughmdrError as error:
+            failures.append(f"{plan.name_of(number, 0)}: {error}")
+    return Prospect(tuple(foreseen), tuple(failures))
+
+
+def check_foreseen(plan: Plan) -> None:
+    """Raise TooMuchContact where a run of some cell would have more contact area than its patch.
+
+    Cells without random asperities, and expected laws, have one run, which tells it itself.
+    """
+    refused = [
+        (number, reason)
+        for number, cell in enumerate(plan.cells)
+        if cell.scene.asperities.is_random and cell.scene.estimators != ("expected",) and (reason := _reason(cell))
+    ]
+    if refused:
+        number, reason = refused[0]
+        others = f" ({len(refused)} of {len(plan.cells)} cells are refused)" if len(plan.cells) > 1 else ""
+        raise TooMuchContact(f"{plan.name_of(number, 0)}: {reason}{others}")
+
+
+def _reason(cell: Cell) -> str:
+    """Return why the run at the closest approach would have too much contact; empty where it would not."""
+    closest = np.array([cell.path.separation.min()])
+    path = LoadingPath.along(closest, unload=False, adhesive=cell.scene.work > 0.0)
+    try:
+        _law(cell.scene, path)
+    except TooMuchContact as error:
+        return str(error)
+    return ""
+
+
+def _law(scene: Scene, path: LoadingPath) -> LoadSeparation:
+    """Return the law of a part of the asperities on a part of the patch."""
+    source = scene.asperities
+    section = source.limited_to(_MAX_ASPERITIES)
+    ensemble = section.ensemble(scene.seed, 0, stratified=not source.reason_against("stratified"))
+    if source.nominal_area is not None:
+        share = section.expected_count / source.expected_count
+        ensemble = replace(ensemble, nominal_area=source.nominal_area * share)
+    variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
+    return simulate_ensemble(scene, path, ensemble, variables)

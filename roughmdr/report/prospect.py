@@ -1,0 +1,49 @@
+"""Says of a plan what is physical: its path, the contacts and pressures to expect, and how far they can be trusted."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.report.trust import trust_lines
+from roughmdr.schema.units import format_quantity
+
+if TYPE_CHECKING:
+    from roughmdr.batch.foresee import Foreseen, Prospect
+
+
+def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
+    """Yield the lines of the cells that were foreseen; only that nothing is known where none could be."""
+    cells = prospect.foreseen
+    if not cells:
+        yield "trust", "not known: no cell that was tried can be computed"
+        return
+
+    def over_cells(unit: str, value: "Callable[[Foreseen], float]") -> str:
+        values = [value(cell) for cell in cells]
+        low, high = min(values), max(values)
+        return format_quantity(low, unit) if low == high else format_quantity(low, unit, to=high)
+
+    start = over_cells("m", lambda cell: float(cell.path.separation[0]))
+    closest = over_cells("m", lambda cell: float(cell.path.separation.min()))
+    returns = any(cell.path.separation[-1] > cell.path.separation.min() for cell in cells)
+    end = over_cells("m", lambda cell: float(cell.path.separation[-1]))
+    yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
+    if all("pressure" in cell.law.variables for cell in cells):
+        yield "pressure", f"{over_cells('Pa', _pressure_at_closest)} at closest approach, as expected"
+        if any(_largest_tension(cell) > 0.0 for cell in cells):
+            yield "", f"{over_cells('Pa', _largest_tension)} is about the largest tension"
+    tabor = min(cell.law.tabor for cell in cells)
+    if tabor < math.inf:
+        yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
+    names = cells[0].law.model_error.named
+    yield from trust_lines({name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names})
+
+
+def _pressure_at_closest(cell: "Foreseen") -> float:
+    return float(cell.law.variables["pressure"][np.argmin(cell.path.separation)])
+
+
+def _largest_tension(cell: "Foreseen") -> float:
+    return max(0.0, -float(cell.law.variables["pressure"].min()))

@@ -1,0 +1,101 @@
+"""Says how far a force can be trusted: contact fraction, model error, its parts, and up to where it holds."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from roughmdr.model_error.interaction import LOW, TYPICAL, interaction_error
+from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import format_quantity
+from roughmdr.storage.labelled import Labelled
+
+_TOLD = 0.01  # parts of the model error below this are not told
+_TINY = 1e-6
+_NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
+
+_NAMES = {
+    "model_error", *PARTS, "largest_contact_fraction", "tension_contact_fraction", "trusted_separation"
+}  # fmt: skip
+
+Numbers = Mapping[str, Any]
+"""``ModelError.named``, numbers or arrays over the runs."""
+
+
+def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
+    """Yield the lines "contact", "model error" and "trust" of one run or several."""
+    known = {name: _known(numbers[name]) for name in numbers}
+    largest = known["largest_contact_fraction"]
+    others = [
+        f"{reason}: about {_percent(known[name].max())}"
+        for name, reason in PARTS.items()
+        if name != "interaction_error" and known[name].max(initial=0.0) >= _TOLD
+    ]
+    if not largest.size:
+        yield "contact", _NO_AREA
+        yield from _several("model error", others)
+        yield "trust", f"the force is right where asperities are far apart, which is {_NO_AREA}"
+        return
+    tension = known["tension_contact_fraction"]
+    places = [(largest, "at closest approach")]
+    if tension.size:
+        places.insert(0, (tension, "at the largest tension"))
+    shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
+    errors = [f"{_interaction(float(fraction.max()))} {place}" for fraction, place in places]
+    yield "contact", f"summed contact area {', '.join(shares)}"
+    yield "model error", f"asperities are independent: force at given separation off by {', '.join(errors)}"
+    yield from _several("", others)
+    yield "trust", _trust(known)
+
+
+def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
+    if set(result.variables) >= _NAMES:
+        yield from trust_lines({name: result.variables[name].values for name in _NAMES})
+    else:
+        yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
+
+
+def _trust(known: dict[str, Floats]) -> str:
+    """Return within which error the force holds, and up to where."""
+    if not (known["model_error"] > 0.0).any():
+        return "no contact along the whole path"
+    parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
+    place, rest, beyond = "along the whole path", "", known["trusted_separation"]
+    if beyond.size:
+        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION)))
+        place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
+        rest = "; below, asperities interact, which is left out"
+    error = sum(parts.values())
+    if error < 1.0:
+        return f"force within about {_percent(error)} {place}{rest}"
+    return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
+
+
+def _interaction(fraction: float) -> str:
+    """Return the error by interaction at a contact fraction: of many random contacts, and its range."""
+    most = float(interaction_error(np.array(fraction)))
+    low, middle, high = (100.0 * min(part, 1.0) for part in (*np.array([LOW, TYPICAL]) * math.sqrt(fraction), most))
+    return f"about {middle:.2g} % ({low:.2g} to {high:.2g})"
+
+
+def _known(values: Any) -> Floats:
+    numbers = np.atleast_1d(np.asarray(values, dtype=np.float64)).ravel()
+    return numbers[np.isfinite(numbers)]
+
+
+def _percent(share: float) -> str:
+    if 0.0 < share < _TINY:
+        return f"below {100.0 * _TINY:g} %"
+    return f"{100.0 * share:.2g} %" if share < 0.995 else "100 %"
+
+
+def _range(shares: Floats) -> str:
+    low, high = (_percent(float(share)) for share in (shares.min(), shares.max()))
+    return high if low == high else f"{low.removesuffix(' %')} to {high}"
+
+
+def _several(name: str, lines: list[str]) -> Iterator[tuple[str, str]]:
+    yield from ((name if i == 0 else "", line) for i, line in enumerate(lines))
