@@ -281,9 +281,12 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
 )
 def test_keys_of_a_map_can_be_swept(folder: Path, key: str, values: list[str]) -> None:
     asperities = {"source": "surface", "file": "coarse.npy", "size": "64 um"}
-    swept = rm.run(scene(asperities=asperities, batch=None, sweep={f"asperities.{key}": values}))
+    path = {"separation": {"start": "3 sigma", "stop": "2 sigma", "steps": 10}}
+    swept = rm.run(
+        scene(asperities=asperities, batch=None, adhesion=None, path=path, sweep={f"asperities.{key}": values})
+    )
     for i, value in enumerate(values):
-        alone = rm.run(scene(asperities={**asperities, key: value}, batch=None))
+        alone = rm.run(scene(asperities={**asperities, key: value}, batch=None, adhesion=None, path=path))
         np.testing.assert_array_equal(swept.force.isel({f"asperities_{key}": i}), alone.force)
     assert not np.array_equal(swept.force[0], swept.force[-1])
 
