@@ -236,13 +236,16 @@ def new(scene: Path) -> None:
 
 @main.command()
 @click.argument("scene", type=_FILE)
-@click.option("-o", "--output", type=_OUTPUT, required=True, help="netCDF file to write.")
+@click.option("-o", "--output", type=_OUTPUT, help="netCDF file to write; not needed with --cutoffs.")
 @click.option(
     "--realization", type=click.IntRange(0, 999_999_999), default=0, show_default=True, help="Which realisation."
 )
+@click.option("--cutoffs", metavar="LENGTHS", help='Of a map: tabulate its summits for cutoffs, as "0.2 um, 0.4 um".')
 @_fresh
 @_changes
-def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: tuple[str, ...]) -> None:
+def generate(
+    scene: Path, output: Path | None, realization: int, cutoffs: str | None, fresh: bool, changes: tuple[str, ...]
+) -> None:
     """Write the asperities of one realisation of SCENE.
 
     An existing file of asperities is replaced.
@@ -258,6 +261,14 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     for axis in validated.sweep.axes:
         if axis.key.startswith("asperities."):
             raise SceneError(f"sweep: changes {axis.key} from cell to cell; choose one with --set {axis.key}=VALUE")
+    if cutoffs is not None:
+        from roughmdr.report.cutoffs import tabulate_cutoffs
+
+        print_text(tabulate_cutoffs(validated, cutoffs))
+    if output is None:
+        if cutoffs is None:
+            raise click.MissingParameter(param_hint="'-o' / '--output'", param_type="option")
+        return
     if realization > 0 and not validated.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
     check_writable(output, validated.inputs)

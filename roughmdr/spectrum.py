@@ -179,3 +179,15 @@ class SelfAffine(NamedTuple):
     def rms_slope(self) -> float:
         """Root of <|grad h|^2> [1]."""
         return math.sqrt(2.0 * self.moments.m2)
+
+
+class MapSpectrum(NamedTuple):
+    """The spectrum of a height map: waves of some wave numbers."""
+
+    q: Floats  # wave numbers [1/m], ascending
+    variance: Floats  # <h^2> of the waves of each [m2]
+
+    @property
+    def rms_slope(self) -> float:
+        """Root of <|grad h|^2> [1]."""
+        return math.sqrt(float(np.sum(self.q * self.q * self.variance)))

@@ -57,6 +57,13 @@ class Plan(NamedTuple):
         """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
 
+    @property
+    def map_lines(self) -> list[str]:
+        """Lines on the maps of the asperities, with the number of cells where not of all."""
+        return count_by_cell(
+            (text for cell in self.cells for text in cell.scene.asperities.description), len(self.cells)
+        )
+
     def name_of(self, cell: int, realization: int) -> str:
         """Describe a run: the swept values of its cell, and its realisation."""
         values = next(islice(self.scene.sweep.cells(), cell, None))

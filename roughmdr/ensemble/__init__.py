@@ -25,7 +25,16 @@ if TYPE_CHECKING:
 _AnySource = AnyRandomAsperities | NayakAsperities | SurfaceAsperities | FileAsperities
 Asperities = Annotated[_AnySource, Field(discriminator="source")]
 
-__all__ = ["Asperities", "Ensemble", "NayakAsperities", "RandomAsperities", "Source", "generate", "make"]
+__all__ = [
+    "Asperities",
+    "Ensemble",
+    "NayakAsperities",
+    "RandomAsperities",
+    "Source",
+    "SurfaceAsperities",
+    "generate",
+    "make",
+]
 
 
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":

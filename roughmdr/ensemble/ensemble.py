@@ -106,7 +106,8 @@ class Ensemble:
         if not isinstance(warnings, str):
             raise SceneError(f"ensemble: attribute warnings is {short_repr(warnings)}; it must be a text")
         area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
-        return cls(shape, height, parameters, area, positions, dict(sides), shared_profile, texts).sorted()
+        attrs = {**sides, **_radius_uncertainty(dataset.attrs)}
+        return cls(shape, height, parameters, area, positions, attrs, shared_profile, texts).sorted()
 
 
 def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | None:
@@ -118,6 +119,19 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
     if "patch_x" in sides and "patch_y" in sides:
         return _size("patch_x times patch_y", sides["patch_x"] * sides["patch_y"])
     return None
+
+
+def _radius_uncertainty(attrs: dict[str, Any]) -> dict[str, float | int | str]:
+    """Return the uncertainty of the radii of summits of a map, where the attributes have it; SceneError if it is no
+    number.
+    """
+    name = "radius_uncertainty"
+    if name not in attrs:
+        return {}
+    try:
+        return {name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)}
+    except OutOfRange as error:
+        raise SceneError(str(error)) from None
 
 
 def _size(name: str, value: Any) -> float:

@@ -60,6 +60,11 @@ class Source(Section):
         return ()
 
     @property
+    def description(self) -> tuple[str, ...]:
+        """Lines on the measurement that the asperities are from; none where they are from none."""
+        return ()
+
+    @property
     def expected_count(self) -> float:
         """The mean number of asperities."""
         raise NotImplementedError

@@ -59,7 +59,7 @@ def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
             raise RoughmdrError(reason)
         return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
 
-    return _evaluate_cells(plan, EXPECTED, "", evaluate)
+    return _evaluate_cells(plan, EXPECTED, lambda cell: "", evaluate)
 
 
 def overlay_theory(plan: Plan, names: list[str]) -> Overlay:
@@ -68,14 +68,16 @@ def overlay_theory(plan: Plan, names: list[str]) -> Overlay:
     Remarks begin with the name of the theory curve.
     """
     found = {
-        label: _evaluate_cells(plan, label, curve.note, partial(_evaluate_curve, curve, names))
+        label: _evaluate_cells(plan, label, curve.remark, partial(_evaluate_curve, curve, names))
         for label, curve in THEORY_CURVES.items()
     }
     lines = [line for overlay in found.values() for line in overlay.lines]
     return Overlay(lines, [f"{label}: {remark}" for label, overlay in found.items() for remark in overlay.remarks])
 
 
-def _evaluate_cells(plan: Plan, label: str, note: str, evaluate: Callable[[Cell], dict[str, Floats]]) -> Overlay:
+def _evaluate_cells(
+    plan: Plan, label: str, remark: Callable[[Cell], str], evaluate: Callable[[Cell], dict[str, Floats]]
+) -> Overlay:
     lines, remarks = [], []
     for number, cell in enumerate(plan.cells):
         try:
@@ -83,7 +85,7 @@ def _evaluate_cells(plan: Plan, label: str, note: str, evaluate: Callable[[Cell]
         except RoughmdrError as error:
             remarks.append(f"not drawn: {error}")
             continue
-        remarks.append(f"drawn{note and f'; {note}'}")
+        remarks.append("; ".join(filter(None, ("drawn", remark(cell)))))
         lines += [OverlayLine(label, name, number, cell.path.separation, values) for name, values in variables.items()]
     return Overlay(lines, count_by_cell(remarks, len(plan.cells)))
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
@@ -39,7 +40,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *prospect_lines(prospect),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
-    lines += [*_indent("warning", plan.warnings), *_indent("cannot run", failures)]
+    lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
     return _format_table([*lines, *_indent("left out", plan.left_out)])
 
 
@@ -71,6 +72,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
         ("variables", ", ".join(layout.stored_variables(result))),
         *_indent("path", attrs.get("path", "").splitlines()),
+        *_indent("map", attrs.get("map", "").splitlines()),
         *_pull_off(result),
         *_contacts_at_ends(result),
         *trust_of_result(result),
@@ -98,15 +100,8 @@ def describe_ensemble(ensemble: Labelled) -> str:
     attrs = ensemble.attrs
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
     if "points_per_summit" in attrs:
-        cut = f", without waves below {attrs['cutoff']:.4g} m" if "cutoff" in attrs else ""
-        lines += [
-            ("map", f"{attrs['patch_x']:.4g} m x {attrs['patch_y']:.4g} m, {attrs['undefined_share']:.2%} undefined"),
-            ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
-            ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
-            ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
-            ("", "each is a paraboloid through a point above its eight neighbours, fitted to these"),
-            ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),
-        ]
+        lines += _indent("map", describe_map(attrs))
+        lines += [("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")]
     return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 

@@ -11,11 +11,15 @@ from numpy.typing import ArrayLike
 from roughmdr import theory
 from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.batch.plan import Cell
-from roughmdr.ensemble import Ensemble, NayakAsperities, RandomAsperities
+from roughmdr.ensemble import Ensemble, NayakAsperities, RandomAsperities, SurfaceAsperities
+from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
+from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.ensemble.maps.words import describe_moments, describe_spectrum
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
+from roughmdr.spectrum import MapSpectrum, Moments, SelfAffine
 from roughmdr.theory.equal_summits import Variable
 
 _DMT_MAX_TABOR = 0.1
@@ -29,6 +33,13 @@ class TheoryCurve(NamedTuple):
     """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
     variables: tuple[Variable, ...] = get_args(Variable)
     note: str = ""  # how the theory differs from the scene
+    on_maps: Callable[[MapWaves], str] = describe_moments  # what it takes from a map
+
+    def remark(self, cell: Cell) -> str:
+        """Return how the theory differs from the scene of a cell, and what it takes from a map; empty if nothing."""
+        section = cell.scene.asperities
+        taken = self.on_maps(section.waves) if isinstance(section, SurfaceAsperities) else ""
+        return "; ".join(filter(None, (self.note, taken)))
 
 
 class _Heights(NamedTuple):
@@ -49,8 +60,10 @@ class _Heights(NamedTuple):
 def _equal_summits(scene: Scene) -> dict[str, Any]:
     """Return the arguments of theories of equal summits; RoughmdrError if the summits are not equal."""
     section = scene.asperities
+    if isinstance(section, SurfaceAsperities):
+        return {"effective_modulus": scene.effective_modulus, **_mean_summits(section.waves)}
     if not isinstance(section, RandomAsperities):
-        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'random'")
+        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'random' or 'surface'")
     if section.shape != "paraboloid":
         raise RoughmdrError(f"asperities.shape is {section.shape!r}, not 'paraboloid'")
     if section.second is not None:
@@ -62,6 +75,16 @@ def _equal_summits(scene: Scene) -> dict[str, Any]:
         raise RoughmdrError("all heights are the same")
     density, heights = section.expected_count / section.nominal_area, _Heights(section.height)
     return {"effective_modulus": scene.effective_modulus, "radius": radius, "density": density, "heights": heights}
+
+
+def _mean_summits(waves: MapWaves) -> dict[str, Any]:
+    """Return equal summits with the mean curvature, the density and the heights of those of a Gaussian surface.
+
+    J. I. McCool, Wear 107 (1986) 37.
+    """
+    law = SummitDistribution(Moments.checked(*waves.moments))
+    heights = _Heights(Distribution("norm", (), waves.mean + law.mean, law.sigma))
+    return {"radius": 0.375 * math.sqrt(math.pi / law.moments.m4), "density": law.density, "heights": heights}
 
 
 def _check_no_adhesion(scene: Scene) -> None:
@@ -107,31 +130,44 @@ def _dmt_maugis(cell: Cell, variable: Variable) -> Floats:
     return theory.dmt_maugis(separation=cell.path.separation, **arguments)
 
 
-def _gaussian_surface(scene: Scene) -> NayakAsperities:
-    """Return the surface of a scene; RoughmdrError unless it is Gaussian and without adhesion."""
-    section = scene.asperities
-    if not isinstance(section, NayakAsperities):
-        raise RoughmdrError(f"asperities.source is {section.source!r}, not 'nayak'")
-    _check_no_adhesion(scene)
-    return section
+class _Surface(NamedTuple):
+    """A Gaussian surface, or a map that is taken for one."""
+
+    moments: Moments
+    spectrum: SelfAffine | MapSpectrum | None
+    mean: float  # height of its mean plane above the datum plane [m]
+
+    @classmethod
+    def of(cls, scene: Scene) -> "_Surface":
+        """Return the surface of a scene; RoughmdrError unless it has one, without adhesion."""
+        section = scene.asperities
+        if not isinstance(section, NayakAsperities | SurfaceAsperities):
+            raise RoughmdrError(f"asperities.source is {section.source!r}, not 'nayak' or 'surface'")
+        _check_no_adhesion(scene)
+        if isinstance(section, NayakAsperities):
+            return cls(section.summits.moments, section.spectrum, 0.0)
+        return cls(Moments.checked(*section.waves.moments), section.waves.spectrum, section.waves.mean)
 
 
 def _gaussian_summits(compute: Callable[..., Floats], cell: Cell, variable: Variable) -> Floats:
     """Evaluate a theory of all summits of a surface, which is given by the moments of its spectrum."""
-    moments = _gaussian_surface(cell.scene).summits.moments._asdict()
-    modulus, h = cell.scene.effective_modulus, cell.path.separation
-    return compute(separation=h, effective_modulus=modulus, variable=variable, **moments)
+    moments, _, mean = _Surface.of(cell.scene)
+    modulus, h = cell.scene.effective_modulus, cell.path.separation - mean
+    return compute(separation=h, effective_modulus=modulus, variable=variable, **moments._asdict())
 
 
 def _asymptote(cell: Cell, _: Variable) -> Floats:
     pressure = _gaussian_summits(theory.bush_gibson_thomas, cell, "pressure")
-    modulus, slope = cell.scene.effective_modulus, math.sqrt(2.0 * _gaussian_surface(cell.scene).summits.moments.m2)
+    modulus, slope = cell.scene.effective_modulus, math.sqrt(2.0 * _Surface.of(cell.scene).moments.m2)
     return theory.bush_gibson_thomas_asymptote(pressure=pressure, effective_modulus=modulus, rms_slope=slope)
 
 
 def _persson(cell: Cell, variable: Variable) -> Floats:
-    spectrum, modulus, h = _gaussian_surface(cell.scene).spectrum, cell.scene.effective_modulus, cell.path.separation
+    _, spectrum, mean = _Surface.of(cell.scene)
+    modulus, h = cell.scene.effective_modulus, cell.path.separation - mean
     if spectrum is None:
+        if isinstance(cell.scene.asperities, SurfaceAsperities):
+            raise RoughmdrError("the map has undefined points, and so no spectrum")
         raise RoughmdrError("it needs a self-affine spectrum, but the scene gives m0, m2 and m4")
     values = np.full_like(h, math.nan)
     open_ = h > 0.0  # at full contact the mean gap is 0
@@ -153,8 +189,8 @@ THEORY_CURVES = {
         _asymptote, ("contact_fraction",), "at the pressure of bush_gibson_thomas"
     ),
     "greenwood_elliptic": TheoryCurve(partial(_gaussian_summits, theory.greenwood_elliptic)),
-    "persson_separation": TheoryCurve(_persson, ("pressure",), _DEFORMED),
+    "persson_separation": TheoryCurve(_persson, ("pressure",), _DEFORMED, describe_spectrum),
     "persson_contact_fraction": TheoryCurve(
-        _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}"
+        _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}", describe_spectrum
     ),
 }

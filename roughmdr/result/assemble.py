@@ -70,6 +70,8 @@ def assemble(
     }
     if plan.path_notes:
         attrs["path"] = "\n".join(plan.path_notes)
+    if plan.map_lines:
+        attrs["map"] = "\n".join(plan.map_lines)
     if scene.accuracy is not None:
         data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])

@@ -15,7 +15,7 @@ from roughmdr.numerics.chebyshev import PiecewiseChebyshev
 from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
 from roughmdr.schema.arguments import check_number, check_values
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
-from roughmdr.spectrum import SelfAffine, Spectrum, spectral_density, wave_number_range
+from roughmdr.spectrum import MapSpectrum, SelfAffine, Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.bush import check_load
 from roughmdr.theory.equal_summits import representable
 
@@ -66,7 +66,7 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
 
 
 def persson_separation(
-    *, pressure: ArrayLike, spectrum: Spectrum, gamma: float = 0.45, **material: Unpack[MaterialArguments]
+    *, pressure: ArrayLike, spectrum: Spectrum | MapSpectrum, gamma: float = 0.45, **material: Unpack[MaterialArguments]
 ) -> Floats:
     """Compute the mean gap between a rigid rough surface and an elastic half-space without adhesion.
 
@@ -121,7 +121,11 @@ def persson_separation(
 
 
 def persson_pressure(
-    *, separation: ArrayLike, spectrum: SelfAffine, gamma: float = 0.45, **material: Unpack[MaterialArguments]
+    *,
+    separation: ArrayLike,
+    spectrum: SelfAffine | MapSpectrum,
+    gamma: float = 0.45,
+    **material: Unpack[MaterialArguments],
 ) -> Floats:
     """Compute the pressure that leaves a mean gap: the inverse of ``persson_separation``.
 
@@ -130,7 +134,7 @@ def persson_pressure(
     separation : array_like, shape () or (n,)
         Mean gaps [m], above 0.
     spectrum, gamma, **material
-        As in ``persson_separation``; the spectrum must be a ``SelfAffine``.
+        As in ``persson_separation``; the spectrum must be a ``SelfAffine``, or that of a height map.
 
     Returns
     -------
@@ -158,7 +162,7 @@ def persson_pressure(
 
     modulus = effective_modulus_of(persson_pressure, material)
     given = check_values("separation", separation, "m")
-    if not isinstance(spectrum, SelfAffine):
+    if not isinstance(spectrum, SelfAffine | MapSpectrum):
         raise RoughmdrError(f"spectrum is {spectrum!r}; it must be a SelfAffine")
     unit = modulus * spectrum.rms_slope
 
@@ -178,8 +182,13 @@ def persson_pressure(
     return np.asarray(unit * np.exp(root.x))
 
 
-def _slopes(spectrum: Spectrum) -> tuple[Floats, Floats, Floats]:
+def _slopes(spectrum: Spectrum | MapSpectrum) -> tuple[Floats, Floats, Floats]:
     """Return wave numbers q, w(q)^-2 = pi ∫_q0^q q'^3 C dq' at each, and its change over the interval of each."""
+    if isinstance(spectrum, MapSpectrum):
+        change = 0.5 * spectrum.q * spectrum.q * spectrum.variance
+        after = np.sqrt(np.cumsum(change))
+        before = np.concatenate([[0.0], after[:-1]])
+        return spectrum.q, 0.25 * (before + after) ** 2, change  # the mean of w over each change is right
     q0, q1 = wave_number_range(spectrum)
     octaves = math.log(q1 / q0)
     near = min(octaves, 1.0)

@@ -15,7 +15,7 @@ from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
-from roughmdr.ensemble.maps.section import FEW_POINTS
+from roughmdr.ensemble.maps.resolution import radius_uncertainty
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import LimitWarning
 
@@ -202,8 +202,9 @@ def test_height_and_slope_of_a_wave() -> None:
 @pytest.mark.parametrize(("longest", "hurst"), [(16.5, 0.8), (128.0, 0.8), (128.0, 0.2)])
 def test_sixteen_points_a_wave_are_enough(longest: float, hurst: float) -> None:
     found = find_summits(HeightMap(waves(256, 16, longest, hurst), 1.0, 1.0, periodic=True))
-    assert found.attrs["points_per_summit"] > 5 * FEW_POINTS
+    assert found.attrs["points_per_summit"] > 200
     assert found.attrs["misfit"] < 0.03
+    assert radius_uncertainty(found.attrs) < 0.03
 
 
 def test_noise_has_few_points_a_summit() -> None:
@@ -218,7 +219,7 @@ def test_the_misfit_shows_noise_that_the_points_do_not() -> None:
     clean = waves(256, 16, 128)
     found = find_summits(HeightMap(clean, 1.0, 1.0, periodic=True))
     noisy = find_summits(HeightMap(clean + 0.01 * waves(256, 0.1, 256, -1.0), 1.0, 1.0, periodic=True))
-    assert noisy.attrs["points_per_summit"] > 5 * FEW_POINTS
+    assert noisy.attrs["points_per_summit"] > 200
     assert np.mean(1.0 / noisy.parameters["radius"]) > 1.3 * np.mean(1.0 / found.parameters["radius"])
     assert noisy.attrs["misfit"] > 0.5
 
@@ -252,7 +253,7 @@ def test_the_warning_of_a_coarse_map_goes_along(folder: Path, recwarn: pytest.Wa
     assert len(warned(recwarn.list)) == 4
     for arguments in (["generate", "s.toml", "-o", "made.nc"], ["run", "s.toml", "-o", "out2.nc"], ["info", "out.nc"]):
         done = CliRunner().invoke(main, arguments, catch_exceptions=False)
-        assert done.stdout.count("points a summit (warned of below") == 1, arguments
+        assert done.stdout.count("the map does not resolve its summits (") == 1, arguments
     with xr.open_dataset("made.nc") as written:
         assert written.attrs["warnings"] == made.attrs["warnings"]
 
@@ -266,7 +267,7 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
     assert (over.attrs["periodic"], over.attrs["detrend"]) == (0, "plane")
     with CliRunner().isolation():
         done = CliRunner().invoke(main, ["generate", "s.toml", "-o", "e.nc", "--set", 'asperities.cutoff="8 um"'])
-    assert "detrended: quadratic, without waves below 8e-06 m" in done.stdout
+    assert "detrended: quadratic, without waves below 8 um" in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -280,9 +281,12 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
 )
 def test_keys_of_a_map_can_be_swept(folder: Path, key: str, values: list[str]) -> None:
     asperities = {"source": "surface", "file": "coarse.npy", "size": "64 um"}
-    swept = rm.run(scene(asperities=asperities, batch=None, sweep={f"asperities.{key}": values}))
+    path = {"separation": {"start": "3 sigma", "stop": "2 sigma", "steps": 10}}
+    swept = rm.run(
+        scene(asperities=asperities, batch=None, adhesion=None, path=path, sweep={f"asperities.{key}": values})
+    )
     for i, value in enumerate(values):
-        alone = rm.run(scene(asperities={**asperities, key: value}, batch=None))
+        alone = rm.run(scene(asperities={**asperities, key: value}, batch=None, adhesion=None, path=path))
         np.testing.assert_array_equal(swept.force.isel({f"asperities_{key}": i}), alone.force)
     assert not np.array_equal(swept.force[0], swept.force[-1])
 

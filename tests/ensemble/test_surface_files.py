@@ -92,6 +92,30 @@ def test_heights_and_sides_in_any_unit(tmp_path: Path) -> None:
     assert generate(tmp_path / "square.npy", size="1 um").attrs["nominal_area"] == approx(1e-12, rel=1e-12)
 
 
+@pytest.mark.parametrize("size", [[1e-5, 3e-5], np.array([[1e-5, 3e-5]])])
+@pytest.mark.parametrize("name", ["height", "z"])
+def test_a_size_beside_the_heights_is_that_of_the_map(tmp_path: Path, size: object, name: str) -> None:
+    np.savez(tmp_path / "with.npz", **{name: bumps()}, size=size)
+    np.savez(tmp_path / "map.npz", **{name: bumps()})
+    found = generate(tmp_path / "with.npz")
+    xr.testing.assert_equal(found, generate(tmp_path / "map.npz", size=[1e-5, 3e-5]))
+    np.savez(tmp_path / "square.npz", height=bumps()[:, :NX], size=1e-5)
+    square = generate(tmp_path / "square.npz")
+    assert square.attrs["patch_x"] == square.attrs["patch_y"] == approx(1e-5, rel=1e-12)
+    assert generate(tmp_path / "with.npz", channel=name).identical(found)
+
+
+def test_the_size_of_a_scene_may_be_a_list_of_numbers(tmp_path: Path) -> None:
+    np.savez(tmp_path / "map.npz", height=bumps())
+    (tmp_path / "s.toml").write_text(
+        'title = "t"\nmaterial.effective_modulus = 1e9\n'
+        'asperities = { source = "surface", file = "map.npz", size = [1e-5, 3e-5] }\n'
+        "path.separation = [2e-7, 1e-7]\n"
+    )
+    section = rm.scene.read(tmp_path / "s.toml").asperities
+    assert section.nominal_area == approx(3e-10, rel=1e-12)
+
+
 def test_fill_values_are_undefined(tmp_path: Path) -> None:
     netcdf(tmp_path / "nan.nc", np.where(abs(bumps()) > 1.5e-7, np.nan, bumps()))
     netcdf(tmp_path / "inf.nc", np.where(abs(bumps()) > 1.5e-7, np.inf * bumps(), bumps()))
@@ -147,6 +171,11 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
     ("a.npy", written(b""), {}, "a.npy: is empty"),
     ("a.txt", written(b""), {}, "a.txt: is empty"),
     ("a.npz", zipped(a=np.eye(9), b=np.eye(9)), {}, r"no array 'height', but \['a', 'b'\]; name one as channel"),
+    ("a.npz", zipped(a=np.eye(9), size=[1e-5, 1e-5]), {}, "1e-05 m x 1e-05 m; leave out size"),
+    ("a.npz", zipped(a=bumps(), size=1e-5), {"size": None}, "20 x 30 points, and one size is that of a square"),
+    ("a.npz", zipped(a=np.eye(9), size=[1e-5, -1e-5]), {"size": None}, "'size', the size of the map: must be above 0"),
+    ("a.npz", zipped(a=np.eye(9), size=[9.0, 9.0, 1.0]), {"size": None}, "the size of the map: must be one side"),
+    ("a.npz", zipped(a=np.eye(9), c=np.eye(9), size=1e-5), {}, "no array 'height'"),
     ("a.npz", zipped(a=np.eye(9)), {"channel": "c"}, r"no array 'c', but \['a'\]"),
     ("a.npz", zipped(), {}, "no array 'height'"),
     ("a.npz", lambda path: renamed(np.save, ".npy")(path, np.eye(9)), {}, "not an .npz file"),
@@ -282,7 +311,7 @@ def test_files_of_instruments_without_a_size(tmp_path: Path) -> None:
 @pytest.mark.skipif(not (SHARED / "afm_film.di").exists(), reason="the measured surface is not here")
 def test_an_atomic_force_scan() -> None:
     pytest.importorskip("SurfaceTopography")
-    with pytest.warns(rm.errors.LimitWarning, match=r"^afm_film.di: 19.8 points a summit \(warned of below 40\)"):
+    with pytest.warns(rm.errors.LimitWarning, match=r"^afm_film.di: radii uncertain by about 48 %: the map does not"):
         found = generate(SHARED / "afm_film.di")
     assert found.sizes["asperity"] == approx(13_260, rel=0.01)
     assert (found.attrs["patch_x"], found.attrs["patch_y"]) == approx((3e-7, 3e-7), rel=1e-9)

@@ -37,21 +37,31 @@ def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
     return (slice(first, min(first + size, rows)) for first in range(0, rows, size))
 
 
+def mean_and_rms(surface: HeightMap) -> tuple[float, float]:
+    """Return the mean height, and the r.m.s. height about it [m]."""
+    height, scale = surface.height, surface.highest or 1.0  # so that no square leaves the range of a float
+
+    def parts() -> Iterator[Floats]:
+        return (height[rows] / scale for rows in blocks(*height.shape))
+
+    mean = sum(float(np.nansum(part)) for part in parts()) / surface.defined
+    return scale * mean, scale * _rms(part - mean for part in parts())
+
+
 def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
     """Return r.m.s. height [m], r.m.s. slope sqrt(<h_x^2> + <h_y^2>), the undefined fraction, and 1 if periodic."""
     height, dx, dy, periodic, _ = surface
     nx, ny = height.shape
-    scale = surface.highest or 1.0  # so that no square leaves the range of a float
+    scale = surface.highest or 1.0
 
     def parts() -> Iterator[Floats]:
         return (height[rows] / scale for rows in blocks(nx, ny))
 
-    mean = sum(float(np.nansum(part)) for part in parts()) / surface.defined
     with_next = (np.arange(rows.start, rows.stop + 1) for rows in blocks(nx if periodic else nx - 1, ny))
     along_x = (np.diff(height[rows % nx], axis=0) / scale for rows in with_next)
     along_y = (np.diff(part, axis=1, append=part[:, : int(periodic)]) for part in parts())
     return {
-        "rms_height": scale * _rms(part - mean for part in parts()),
+        "rms_height": mean_and_rms(surface)[1],
         "rms_slope": math.hypot(_rms(along_x) * scale / dx, _rms(along_y) * scale / dy),
         "undefined_share": (height.size - surface.defined) / height.size,
         "periodic": int(periodic),

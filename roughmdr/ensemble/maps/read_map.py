@@ -7,15 +7,15 @@ Each reader raises RoughmdrError where the file does not hold such a map.
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.from_file import open_dataset
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks
+from roughmdr.ensemble.maps.raw_map import RawMap, Size, SizeReader, check_points, spacings, spacings_of_sides
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.units import unit_factor
 
 if TYPE_CHECKING:
@@ -23,35 +23,8 @@ if TYPE_CHECKING:
 
 _INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
 _DELIMITERS = (";", ",", "\t")
+_SIZE_ARRAY = "size"  # in a .npz file
 _MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
-
-
-Size = float | tuple[float, float]
-"""The side of a square map, or the lengths along x and y [m]."""
-
-
-class RawMap(NamedTuple):
-    """A map as a file states it; None is what the file does not say."""
-
-    height: NDArray[Any]  # over x and y, not yet checked; it may be overwritten
-    unit: str | None = None  # of the heights
-    spacing: tuple[float, float] | None = None  # along x and y [m]
-    periodic: bool | None = None
-
-
-class SizeReader:
-    """Reads the size of a map."""
-
-    dimension = "m"
-    _side = Quantity("m", above=0.0)
-
-    def __call__(self, value: object) -> Size:
-        """Return one side, or both, in SI."""
-        if not isinstance(value, list | tuple):
-            return self._side(value)
-        if len(value) != 2:
-            raise RoughmdrError('must be one side, as "100 um", or two, along x and y, as ["100 um", "50 um"]')
-        return self._side(value[0]), self._side(value[1])
 
 
 def read_map(
@@ -68,10 +41,10 @@ def read_map(
     """
     raw = _reader(path)(path, channel)
     values = raw.height
-    _check_points(values.shape)
+    check_points(values.shape)
     if values.dtype.kind not in "iuf":
         raise RoughmdrError(f"heights are of type {values.dtype}; they must be real numbers")
-    (dx, dy), factor = _spacings(raw, size), _factor(raw, unit)
+    (dx, dy), factor = spacings(raw, size), _factor(raw, unit)
     eps = float(np.finfo(values.dtype).eps) if values.dtype.kind == "f" else 0.0
     with np.errstate(over="ignore"):  # a height out of range is undefined
         height = np.require(values, np.float64, "W")
@@ -103,13 +76,6 @@ def _reader(path: Path) -> Callable[[Path, str | None], RawMap]:
     return _read_instrument
 
 
-def _check_points(shape: tuple[int, ...]) -> None:
-    """Raise RoughmdrError where a map of this shape has no inner point."""
-    if len(shape) != 2 or min(shape) < 3:
-        points = " x ".join(map(str, shape)) or "no"
-        raise RoughmdrError(f"the map has {points} points; it needs at least 3 x 3, over two dimensions")
-
-
 def _factor(raw: RawMap, unit: str | None) -> float:
     """Return one unit of the heights in metres."""
     if unit is not None and raw.unit is not None:
@@ -120,27 +86,11 @@ def _factor(raw: RawMap, unit: str | None) -> float:
         raise RoughmdrError(f"units of the heights: {error}") from None
 
 
-def _spacings(raw: RawMap, size: Size | None) -> tuple[float, float]:
-    """Return the spacings along x and y [m], which the file or the user gives."""
-    nx, ny = raw.height.shape
-    if raw.spacing is not None:
-        if size is not None:
-            sides = f"{raw.spacing[0] * nx:.4g} m x {raw.spacing[1] * ny:.4g} m"
-            raise RoughmdrError(f"the file says itself that the map is {sides}; leave out size")
-        return raw.spacing
-    if size is None:
-        raise RoughmdrError('the file does not say how large the map is; give size, as size = "100 um"')
-    if not isinstance(size, tuple) and nx != ny:
-        raise RoughmdrError(
-            f"the map has {nx} x {ny} points, and one size is that of a square; "
-            'give the sides along x and y, as size = ["100 um", "50 um"]'
-        )
-    along_x, along_y = size if isinstance(size, tuple) else (size, size)
-    return along_x / nx, along_y / ny
-
-
 def _read_numpy(path: Path, channel: str | None) -> RawMap:
-    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run."""
+    """Read the array of a .npy file, or of a .npz file ``channel``, or height, or the only one; no code is run.
+
+    An array ``size`` of a .npz file is the size of the map [m].
+    """
     try:
         loaded = np.load(path, allow_pickle=False)
     except Exception as error:
@@ -154,13 +104,27 @@ def _read_numpy(path: Path, channel: str | None) -> RawMap:
         return RawMap(loaded)
     with loaded:
         names = list(loaded.files)
-        name = channel or ("height" if "height" in names or len(names) != 1 else names[0])
+        maps = [name for name in names if name != _SIZE_ARRAY] or names
+        name = channel or ("height" if "height" in maps or len(maps) != 1 else maps[0])
         if name not in names:
             raise RoughmdrError(f"has no array {name!r}, but {names}; name one as channel")
+        height = _array_of(loaded, name)
+        if _SIZE_ARRAY not in names or name == _SIZE_ARRAY:
+            return RawMap(height)
+        check_points(height.shape)
         try:
-            return RawMap(np.asarray(loaded[name]))
-        except Exception as error:
-            raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
+            size = SizeReader()(_array_of(loaded, _SIZE_ARRAY).squeeze().tolist())
+        except RoughmdrError as error:
+            raise RoughmdrError(f"its array {_SIZE_ARRAY!r}, the size of the map: {error}") from None
+        return RawMap(height, spacing=spacings_of_sides(size, *height.shape))
+
+
+def _array_of(loaded: Any, name: str) -> NDArray[Any]:
+    """Return an array of an open .npz file."""
+    try:
+        return np.asarray(loaded[name])
+    except Exception as error:
+        raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
 
 
 def _read_text(path: Path, channel: str | None) -> RawMap:
@@ -192,7 +156,7 @@ def _read_netcdf(path: Path, channel: str | None) -> RawMap:
         if name not in dataset.data_vars or dataset[name].ndim != 2:
             raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
         height = dataset[name]
-        _check_points(height.shape)
+        check_points(height.shape)
         # In blocks, since packed heights take several times the memory while they are unpacked; rows that the file
         # compresses together are read together, and so only once.
         values = np.empty(height.shape, height.dtype)

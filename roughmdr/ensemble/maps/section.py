@@ -1,6 +1,7 @@
 """source = "surface": the summits of a measured height map, as paraboloids."""
 
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,21 +11,20 @@ from pydantic import BeforeValidator, StrictBool, field_validator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.height_map import map_statistics
-from roughmdr.ensemble.maps.read_map import Size, SizeReader, read_map
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, mean_and_rms
+from roughmdr.ensemble.maps.raw_map import Size, SizeReader
+from roughmdr.ensemble.maps.read_map import read_map
+from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
-
-# Points per summit below which there is a warning. On maps without noise, the fit finds the mean curvature of the
-# summits 2 % low at 290 points per summit, 9 % at 74, 15 % at 42 and 29 % at 19 where all waves are equally long; 3 %
-# at 260, 14 % at 68 and 23 % at 42 where they are self-affine. A map of white noise has 9.5 points per summit. With
-# weak noise on long waves there are many, and only the misfit of the fit shows it: up to a misfit of 0.15 the mean
-# curvature is within 15 %, whatever the cause.
-FEW_POINTS = 40.0
+_UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
+"""Attributes of an ensemble that tell of its map as it was before the cutoff, too."""
 
 
 class SurfaceAsperities(FromFile):
@@ -33,6 +33,10 @@ class SurfaceAsperities(FromFile):
     ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
     file; ``periodic`` overrides the file. ``detrend`` is removed, by default "quadratic", or "mean" of a periodic map;
     so are waves shorter than ``cutoff``.
+
+    Attributes of the ensemble beside those of ``find_summits`` and ``map_statistics``: ``rms_height_raw`` [m], before
+    the trend is removed; ``mean_curvature_radius`` [m], 1/<sqrt(k1 k2)>; with a cutoff ``uncut_...``, without it; and
+    ``radius_uncertainty`` [1] (``resolution``).
     """
 
     source: Literal["surface"]
@@ -53,30 +57,66 @@ class SurfaceAsperities(FromFile):
     def read(self) -> Ensemble:
         path = Path(self.file)
         try:
-            surface = read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
-            noise = surface.rounding + _ROUNDING * surface.highest
-            trend = self.detrend or ("mean" if surface.periodic else "quadratic")
-            if surface.periodic and trend in ("plane", "quadratic"):
-                raise RoughmdrError(
-                    f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
-                )
-            remove_trend(surface.height, trend)
-            if self.cutoff is not None:
-                remove_short_waves(surface, self.cutoff)
-            if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
-                raise RoughmdrError(f"the map has no summit: with detrend {trend!r} it is flat, but for rounding")
-            with np.errstate(over="ignore", under="ignore"):  # refused below
-                summits = find_summits(surface, noise)
-            radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
-            if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
-                raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
+            surface = self._read_map()
+            noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
+            self._remove_trend(surface)
+            uncut = {} if self.cutoff is None else self._summits(surface, noise)[1]
+            self._remove_short_waves(surface)
+            summits, found = self._summits(surface, noise)
         except RoughmdrError as error:
             raise SceneError(f"{self.file}: {error}") from error
-        options = {"detrend": trend} | ({} if self.cutoff is None else {"cutoff": self.cutoff})
-        attrs = {**summits.attrs, **map_statistics(surface), **options}
-        points = float(summits.attrs["points_per_summit"])
-        warning = (
-            f"{path.name}: {points:.3g} points a summit (warned of below {FEW_POINTS:g}): noise, or the spacing, may "
-            "set the radii of the summits; a finer map or a cutoff shows whether it does"
-        )
-        return replace(summits, attrs=attrs, warnings=(warning,) if points < FEW_POINTS else ())
+        attrs = {**summits.attrs, **found, "rms_height_raw": raw, "detrend": self._trend(surface)}
+        if self.cutoff is not None:
+            attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
+        attrs["radius_uncertainty"] = radius_uncertainty(attrs)
+        text = warning(path.name, attrs)
+        return replace(summits, attrs=attrs, warnings=(text,) if text else ())
+
+    @property
+    def description(self) -> tuple[str, ...]:
+        return describe_map(self.asperities.attrs)
+
+    @cached_property
+    def waves(self) -> MapWaves:
+        """The waves of the map that the summits are those of; SceneError where it cannot be read."""
+        try:
+            surface = self._read_map()
+            self._remove_trend(surface)
+            self._remove_short_waves(surface)
+        except RoughmdrError as error:
+            raise SceneError(f"{self.file}: {error}") from error
+        return MapWaves.of(surface, self.cutoff)
+
+    def _read_map(self) -> HeightMap:
+        path = Path(self.file)
+        return read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
+
+    def _trend(self, surface: HeightMap) -> Trend:
+        return self.detrend or ("mean" if surface.periodic else "quadratic")
+
+    def _remove_trend(self, surface: HeightMap) -> None:
+        trend = self._trend(surface)
+        if surface.periodic and trend in ("plane", "quadratic"):
+            raise RoughmdrError(
+                f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
+            )
+        remove_trend(surface.height, trend)
+
+    def _remove_short_waves(self, surface: HeightMap) -> None:
+        if self.cutoff is not None:
+            remove_short_waves(surface, self.cutoff)
+
+    def _summits(self, surface: HeightMap, noise: float) -> tuple[Ensemble, dict[str, float | int | str]]:
+        """Return the summits of a map, and statistics of both; RoughmdrError where no float holds their radii."""
+        if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
+            raise RoughmdrError(
+                f"the map has no summit: with detrend {self._trend(surface)!r} it is flat, but for rounding"
+            )
+        with np.errstate(over="ignore", under="ignore"):  # refused below
+            summits = find_summits(surface, noise)
+        radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
+        if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
+            raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
+        smallest = float(radius.min())  # over which no mean curvature overflows
+        mean = smallest / float(np.mean(smallest / radius))
+        return summits, {**summits.attrs, **map_statistics(surface), "mean_curvature_radius": mean}

@@ -1,0 +1,80 @@
+"""The waves of a height map: the moments of its spectrum, and the spectrum itself."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks, map_statistics, mean_and_rms
+from roughmdr.numerics.arguments import Floats
+from roughmdr.spectrum import MapSpectrum, Moments
+
+_BINS = 400  # of the wave number, by its logarithm
+
+
+class MapWaves(NamedTuple):
+    """A map as theories of rough surfaces take it: isotropic and Gaussian."""
+
+    mean: float  # height [m]
+    moments: Moments  # of a profile, averaged over all directions
+    spectrum: MapSpectrum | None  # None where points of the map are undefined
+    short_wave: float  # [m]; two spacings, unless shorter waves were cut off
+
+    @classmethod
+    def of(cls, surface: HeightMap, cutoff: float | None) -> "MapWaves":
+        """Return the waves of a map, its moments by differences between neighbouring points.
+
+        m2 is half the mean square slope, and m4 is 3/8 of the mean square of h_xx + h_yy, as of isotropic surfaces.
+        """
+        mean, rms_height = mean_and_rms(surface)
+        slope = float(map_statistics(surface)["rms_slope"])
+        moments = Moments(rms_height**2, 0.5 * slope**2, 0.375 * _mean_square_laplacian(surface))
+        complete = surface.defined == surface.height.size
+        short_wave = 2.0 * max(surface.dx, surface.dy) if cutoff is None else cutoff
+        return cls(mean, moments, _spectrum(surface, mean) if complete else None, short_wave)
+
+
+def _mean_square_laplacian(surface: HeightMap) -> float:
+    """Return <(h_xx + h_yy)^2> [1/m2] by second differences, over the points whose four neighbours are defined."""
+    height, dx, dy, periodic, _ = surface
+    nx, ny = height.shape
+    total, count = 0.0, 0
+    for rows in blocks(nx if periodic else nx - 2, ny):
+        first = rows.start if periodic else rows.start + 1
+        part = height[np.arange(first - 1, first + rows.stop - rows.start + 1) % nx]
+        part = np.pad(part, ((0, 0), (1, 1)), mode="wrap") if periodic else part
+        inner = part[1:-1, 1:-1]
+        along_x = part[2:, 1:-1] - 2.0 * inner + part[:-2, 1:-1]
+        along_y = part[1:-1, 2:] - 2.0 * inner + part[1:-1, :-2]
+        values = along_x / (dx * dx) + along_y / (dy * dy)
+        values = values[np.isfinite(values)]
+        total += float(values @ values)
+        count += values.size
+    return total / max(count, 1)
+
+
+def _spectrum(surface: HeightMap, mean: float) -> MapSpectrum:
+    """Return the variance in bins of the wave number; a map that is not periodic is tapered by Hann's window."""
+    from scipy import fft
+
+    nx, ny = surface.height.shape
+    height = surface.height - mean
+    if not surface.periodic:
+        along_x, along_y = (np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in (nx, ny))
+        height *= along_x[:, None] / np.sqrt(np.mean(along_x**2))
+        height *= along_y / np.sqrt(np.mean(along_y**2))
+    variance = np.abs(fft.rfft2(height, overwrite_x=True)) ** 2 / float(nx * ny) ** 2
+    variance[:, 1 : (ny + 1) // 2] *= 2.0  # of the waves of negative numbers along y too
+    q = 2.0 * np.pi * np.hypot(fft.fftfreq(nx, surface.dx)[:, None], fft.rfftfreq(ny, surface.dy))
+    kept = q > 0.0
+    return _binned(q[kept], variance[kept])
+
+
+def _binned(q: Floats, variance: Floats) -> MapSpectrum:
+    """Return waves in bins; the slope of each bin is that of its waves."""
+    log_q = np.log(q / q.min())
+    numbers = np.minimum((log_q * (_BINS / log_q.max())).astype(np.int64), _BINS - 1)
+    of_heights, of_slopes = (
+        np.bincount(numbers, values, _BINS).astype(np.float64) for values in (variance, q * q * variance)
+    )
+    filled = of_slopes > 0.0
+    return MapSpectrum(np.sqrt(of_slopes[filled] / of_heights[filled]), of_heights[filled])

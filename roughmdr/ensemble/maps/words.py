@@ -1,0 +1,51 @@
+"""A map and its summits in words."""
+
+from collections.abc import Mapping
+
+from roughmdr.ensemble.maps.resolution import verdict
+from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.schema.units import format_quantity
+
+
+def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
+    """Return lines on a map, its heights, its summits and their radii, from the attributes of its ensemble."""
+
+    def length(name: str) -> str:
+        return format_quantity(float(attrs[name]), "m")
+
+    kept = f"{'periodic, ' * int(attrs['periodic'])}detrended: {attrs['detrend']}"
+    heights = f"r.m.s. height {length('rms_height_raw')} as measured, {length('rms_height')} of it kept"
+    slopes = f"r.m.s. slope {attrs['rms_slope']:.3g}"
+    if "cutoff" in attrs:
+        kept += f", without waves below {length('cutoff')}"
+        heights = (
+            f"r.m.s. height {length('rms_height_raw')} as measured, {length('uncut_rms_height')} without the trend, "
+            f"{length('rms_height')} after the cutoff"
+        )
+        slopes += f", uncut {attrs['uncut_rms_slope']:.3g}: pressures at a given contact area fall with it"
+    return (
+        f"{length('patch_x')} x {length('patch_y')}, {attrs['undefined_share']:.2%} undefined; {kept}",
+        f"{heights}; {slopes}",
+        f"{attrs['points_per_summit']:.3g} points a summit, misfit {attrs['misfit']:.2g}; "
+        f"{attrs['saddles']} saddles left out",
+        verdict(attrs),
+    )
+
+
+def describe_moments(waves: MapWaves) -> str:
+    """Return the moments that a theory takes from a map, and what decides them."""
+    m0, m2, m4 = waves.moments
+    return (
+        f"moments of the map: m0 = {m0:.3g} m2, m2 = {m2:.3g}, m4 = {m4:.3g} m-2, by differences of neighbours; "
+        f"m4, and so radii and number of summits, is that of its shortest waves, {_shortest(waves)}, and of noise"
+    )
+
+
+def describe_spectrum(waves: MapWaves) -> str:
+    """Return what a theory takes from the spectrum of a map."""
+    slope = "" if waves.spectrum is None else f", r.m.s. slope {waves.spectrum.rms_slope:.3g}"
+    return f"spectrum of the map down to waves of {_shortest(waves)}{slope}"
+
+
+def _shortest(waves: MapWaves) -> str:
+    return format_quantity(waves.short_wave, "m")
