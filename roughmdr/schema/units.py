@@ -1,4 +1,4 @@
-"""SI units: "50 mJ/m^2" is 0.05 J/m^2."""
+"""SI units, read and written: "50 mJ/m^2" is 0.05 J/m^2."""
 
 import math
 import re
@@ -47,6 +47,11 @@ _EXAMPLES = {
     "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
     "m-2": '"1e9 /m^2"', "N": '"3 mN"',
 }  # fmt: skip
+_SHOWN = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2"}
+"""Units as results have them, in the spelling of a scene."""
+_POWERS = {"m^2": 2, "/m^2": -2}
+_DIGITS, _ERROR_DIGITS = 4, 2
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
@@ -85,3 +90,41 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     others = [f"{unit!r} is a unit of {other}" for other in _BASES if spelled in _table(other)]
     found = others[0] if others else f"unknown unit {short_repr(unit)}"
     raise RoughmdrError(f"{found}; expected a unit of {dimension}, like {_EXAMPLES.get(dimension, 'a plain number')}")
+
+
+def format_quantity(value: float, unit: str, *, to: float | None = None, error: float | None = None) -> str:
+    """Format a quantity in SI with a prefix: "1.234 uN", with its error "1.23 ± 0.05 uN", as a range "0.2 to 1.5 um".
+
+    ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range. A single quantity
+    is read again by ``quantity``.
+    """
+    spelled = _SPELLED.get(unit, unit)
+    given = [abs(number) for number in (value, to, error) if number is not None and math.isfinite(number)]
+    largest = max(given, default=0.0)
+    exponent = 0 if spelled == DIMENSIONLESS else _exponent(largest, _POWERS.get(spelled, 1))
+    power = exponent * _POWERS.get(spelled, 1)
+    text = _plain(value, power, _DIGITS)
+    if to is not None:
+        text += f" to {_plain(to, power, _DIGITS)}"
+    if error is not None and math.isfinite(error):
+        text += f" ± {_plain(error, power, _ERROR_DIGITS)}"
+    slash = "/" if spelled.startswith("/") else ""
+    prefixed = f"{slash}{_SHOWN[exponent]}{spelled.removeprefix('/')}"
+    return text if spelled == DIMENSIONLESS else f"{text} {prefixed}"
+
+
+def _exponent(value: float, power: int) -> int:
+    """Return the exponent of the prefix, raised to ``power``, by which a value is from 1 to 1000, or to 1000^power."""
+    if not 0.0 < value < math.inf:
+        return 0
+    decade = Decimal(f"{value:.{_DIGITS - 1}e}").adjusted()  # of the value as it is shown
+    whole = decade // (3 * power) if power > 0 else -(decade // (-3 * power))
+    return min(max(3 * whole, min(_SHOWN)), max(_SHOWN))
+
+
+def _plain(value: float, power: int, digits: int) -> str:
+    """Format a value over 10^power, without an exponent where it is near 1."""
+    if not math.isfinite(value):
+        return f"{value:g}"
+    scaled = Decimal(f"{value:.{digits - 1}e}").scaleb(-power).normalize()
+    return f"{scaled:f}" if -_DIGITS <= scaled.adjusted() < 2 * _DIGITS or not scaled else f"{scaled:g}".lower()

@@ -1,9 +1,11 @@
 import math
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.units import quantity
+from roughmdr.schema.units import _BASES, format_quantity, quantity
 
 
 @pytest.mark.parametrize(
@@ -58,3 +60,40 @@ def test_a_long_unit_is_shown_cut() -> None:
         with pytest.raises(RoughmdrError) as refused:
             quantity("1 " + "m" * 100_000, dimension)
         assert len(str(refused.value)) < 200
+
+
+@settings(deadline=None)
+@given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from([*_BASES, "1"]))
+def test_a_quantity_that_is_shown_is_read_again_to_four_digits(value: float, unit: str) -> None:
+    text = format_quantity(value, unit)
+    if 0.0 < abs(value) < 1e-300 or abs(value) > 9.9995e307:  # rounded to four digits these may be no floats any more
+        return
+    assert quantity(text, unit) == pytest.approx(value, rel=5.1e-4, abs=0.0)
+
+
+@settings(deadline=None)
+@given(st.floats(1e-11, 1e11), st.sampled_from(["m", "Pa", "N", "J/m^2"]))
+def test_the_prefix_leaves_one_to_three_digits_before_the_point(value: float, unit: str) -> None:
+    assert 1.0 <= float(format_quantity(value, unit).split()[0]) < 1000.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"value": -2.356e-7, "unit": "N"}, "-235.6 nN"),
+        ({"value": 0.00099996, "unit": "N"}, "1 mN"),
+        ({"value": 0.0, "unit": "Pa"}, "0 Pa"),
+        ({"value": math.nan, "unit": "N"}, "nan N"),
+        ({"value": 0.01, "unit": "J m-2"}, "10 mJ/m^2"),
+        ({"value": 2e9, "unit": "m-2"}, "2000 /mm^2"),
+        ({"value": 3e-4, "unit": "m2"}, "300 mm^2"),
+        ({"value": 250.0, "unit": "N m-1"}, "250 N/m"),
+        ({"value": 0.25, "unit": "1"}, "0.25"),
+        ({"value": 1e-7, "to": 2e-6, "unit": "m"}, "0.1 to 2 um"),
+        ({"value": -1.234e-6, "error": 5.67e-8, "unit": "N"}, "-1.234 ± 0.057 uN"),
+        ({"value": 0.0, "error": 1.2e-5, "unit": "N"}, "0 ± 12 uN"),
+        ({"value": -1e-6, "error": math.nan, "unit": "N"}, "-1 uN"),
+    ],
+)
+def test_a_quantity_is_shown_with_a_prefix(arguments: dict[str, float], text: str) -> None:
+    assert format_quantity(**arguments) == text  # type: ignore[arg-type]
