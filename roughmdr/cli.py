@@ -162,7 +162,7 @@ def plot(
 ) -> None:
     """Draw the load-separation law in RESULT.
 
-    An existing picture of the same format is replaced.
+    An existing picture of the same format is replaced, since RESULT draws it again.
     """
     from roughmdr.report.plots import format_of, plot
     from roughmdr.result.layout import asked_variables
@@ -223,9 +223,10 @@ def new(scene: Path) -> None:
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.storage.files import check_writable, replace_atomically
+    from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 
     check_writable(scene)
+    check_ending(scene, "scene", [".toml"])
     if scene.exists():
         raise StoreError(f"{scene}: exists already; give a new name")
     with replace_atomically(scene) as temporary:
@@ -244,14 +245,14 @@ def new(scene: Path) -> None:
 def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: tuple[str, ...]) -> None:
     """Write the asperities of one realisation of SCENE.
 
-    An existing file of asperities is replaced.
+    An existing file of asperities is left alone unless it holds the very ones.
     """
     from roughmdr.ensemble import make
     from roughmdr.report.summary import describe_ensemble
     from roughmdr.scene import read
-    from roughmdr.storage.files import check_writable
+    from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
     from roughmdr.storage.netcdf_writing import write_netcdf
-    from roughmdr.storage.result_file import check_same_kind, provenance
+    from roughmdr.storage.result_file import check_nothing_lost, check_same_kind, provenance
 
     validated = read(scene, changes)
     for axis in validated.sweep.axes:
@@ -260,9 +261,12 @@ def generate(scene: Path, output: Path, realization: int, fresh: bool, changes: 
     if realization > 0 and not validated.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
     check_writable(output, validated.inputs)
+    check_ending(output, "file of asperities", NETCDF_ENDINGS)
     if not fresh:
         check_same_kind(output, "ensemble")
     ensemble = make(validated.asperities, validated.seed, realization).labelled()
+    if not fresh:
+        check_nothing_lost(output, ensemble)
     write_netcdf(ensemble._replace(attrs={**provenance(validated.title, _command_line()), **ensemble.attrs}), output)
     print_text(describe_ensemble(ensemble))
     print_text(f"ensemble     {click.format_filename(output)}")

@@ -71,7 +71,7 @@ def test_a_picture_of_what_is_not_there(small: Path) -> None:
     assert roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", cwd=small).returncode == 0
     for arguments, says in (
         (["-o", "a.png", "--variable", "energy"], "it holds force"),
-        (["-o", "a.xyz"], "cannot draw a .xyz"),
+        (["-o", "a.xyz"], "the name of a picture must end in .png, .pdf or .svg"),
     ):
         done = roughmdr("plot", "out.nc", *arguments, cwd=small)
         assert done.returncode == 2

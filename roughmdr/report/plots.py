@@ -11,7 +11,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
 from roughmdr.schema.wording import escape_controls
-from roughmdr.storage.files import replace_atomically
+from roughmdr.storage.files import check_ending, replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CURVE_VARIABLES
 
@@ -96,10 +96,7 @@ def separations(result: Labelled) -> Floats:
 
 def format_of(path: Path) -> str:
     """Return the format of a picture by its name; StoreError if there is no such format."""
-    suffix = path.suffix.lstrip(".").lower() or "png"
-    if suffix not in ("png", "pdf", "svg"):
-        raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")
-    return suffix
+    return check_ending(path, "picture", (".png", ".pdf", ".svg")).removeprefix(".")
 
 
 def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:

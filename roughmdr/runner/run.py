@@ -26,7 +26,7 @@ from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
-from roughmdr.storage.files import check_writable, destination
+from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED
@@ -119,6 +119,7 @@ def execute(
     backend.check()
     if target is not None:
         check_writable(target, plan.scene.inputs)
+        check_ending(target, "result", NETCDF_ENDINGS)
         target = destination(target)
     rounds = Rounds(plan)
     with ExitStack() as stack:
