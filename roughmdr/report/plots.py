@@ -17,6 +17,7 @@ from roughmdr.variables import CURVE_VARIABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 EXPECTED = "expected"
 _BRANCH_COLOURS = {"loading": "#1b6ca8", "unloading": "#c8553d"}
@@ -48,12 +49,12 @@ class _Curve(NamedTuple):
     runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
 
 
-def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[OverlayLine] = ()) -> None:
-    """Draw variables of a result against separation into ``path``, with ``lines`` over them.
+def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) -> "Figure":
+    """Draw variables of a result against separation, with ``lines`` over them.
 
     Every realisation is a thin line, the mean a thick one, twice its standard error a band. The cells of a sweep have a
     colour each and no thin lines; unloading is dashed. The expected law is thin and dark, theory curves are dotted.
-    StoreError if no run was computed, or the picture cannot be written.
+    StoreError if no run was computed.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -83,6 +84,11 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Overlay
     else:
         axes.flat[0].legend(handles=handles, frameon=False)
     figure.suptitle(f"{escape_controls(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
+    return figure
+
+
+def save(figure: "Figure", path: Path) -> None:
+    """Write a picture in the format that its name says; StoreError if it cannot be written."""
     with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format=format_of(path))
 
