@@ -63,8 +63,8 @@ def run(
     resume : bool
         Whether what ``out`` holds, or an earlier run kept beside it, is reused; else it is replaced.
     set : dict, optional
-        Keys of the scene, dotted, with the values that they get, as in ``{"adhesion.work": "10 mJ/m^2"}``. A key that is
-        set is no longer swept; names of files are relative to the current folder.
+        Keys of the scene, dotted, with the values that they get, as in ``{"adhesion.work": "10 mJ/m^2"}``. A key that
+        is set is no longer swept; names of files are relative to the current folder.
     quiet : bool
         Leave out the progress display.
 

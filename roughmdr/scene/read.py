@@ -28,9 +28,9 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] | M
     """Return a validated scene with all changes applied.
 
     ``source`` is the path of a TOML file or of a result, which contains its scene, a dictionary of the same form, or a
-    Scene. ``changes`` are KEY=VALUE with dotted keys, a value in TOML or else a string, or a dictionary of such keys and
-    values; a key that is set is no longer swept. SceneError names every fault by file, line, key, value and what is
-    allowed.
+    Scene. ``changes`` are KEY=VALUE with dotted keys, a value in TOML or else a string, or a dictionary of such keys
+    and values; a key that is set is no longer swept. SceneError names every fault by file, line, key, value and what
+    is allowed.
     """
     if isinstance(changes, Mapping):
         applied = [_named_change(key, value) for key, value in changes.items()]

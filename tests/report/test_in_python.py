@@ -49,7 +49,7 @@ def test_numbers_that_were_changed_are_shown_with_a_warning(tmp_path: Path) -> N
 @pytest.mark.parametrize("given", [3, None, xr.Dataset({"force": ("step", np.zeros(2))}), "none.nc", Path("none.nc")])
 def test_what_is_no_result_is_refused(given: Any) -> None:
     for read in (rm.info, rm.plot):
-        with pytest.raises(rm.StoreError, match="result|no such file"):
+        with pytest.raises(rm.StoreError, match=r"result|no such file"):
             read(given)
 
 
