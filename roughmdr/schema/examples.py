@@ -39,4 +39,4 @@ def example_of(key: str) -> str:
     if key in _SECTIONS:
         return f"[{key}] " + ", ".join(f"{name} = {value}" for name, value in _SECTIONS[key].items())
     value = _KEYS.get(key) or _KEYS.get(f"asperities.{key}")
-    return f"{key.split('.')[-1]} = {value}" if value else ""
+    return f"{key.rsplit('.', maxsplit=1)[-1]} = {value}" if value else ""
