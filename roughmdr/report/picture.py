@@ -75,7 +75,7 @@ def plot(
     ...     },
     ... })
     >>> [axes.get_ylabel() for axes in rm.plot(result, variables=["force", "contact_count"]).axes]
-    ['force [N]', 'contact count']
+    ['force [mN]', 'contact count']
     """
     data, file = given_result(result)
     if out is not None:

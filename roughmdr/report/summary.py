@@ -8,6 +8,7 @@ import numpy as np
 
 from roughmdr.result import layout
 from roughmdr.result.pull_off import PullOff, pull_off_force
+from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, FAILED
@@ -82,11 +83,12 @@ def describe_ensemble(ensemble: Labelled) -> str:
     attrs = ensemble.attrs
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
     if "points_per_summit" in attrs:
-        cut = f", without waves below {attrs['cutoff']:.4g} m" if "cutoff" in attrs else ""
+        cut = f", without waves below {format_quantity(attrs['cutoff'], 'm')}" if "cutoff" in attrs else ""
+        x, y, rms = (format_quantity(attrs[name], "m") for name in ("patch_x", "patch_y", "rms_height"))
         lines += [
-            ("map", f"{attrs['patch_x']:.4g} m x {attrs['patch_y']:.4g} m, {attrs['undefined_share']:.2%} undefined"),
+            ("map", f"{x} x {y}, {attrs['undefined_share']:.2%} undefined"),
             ("", f"{'periodic, ' * attrs['periodic']}detrended: {attrs['detrend']}{cut}"),
-            ("", f"r.m.s. height {attrs['rms_height']:.4g} m, r.m.s. slope {attrs['rms_slope']:.3g}"),
+            ("", f"r.m.s. height {rms}, r.m.s. slope {attrs['rms_slope']:.3g}"),
             ("summits", f"{attrs['points_per_summit']:.3g} points a summit; {attrs['saddles']} saddles left out"),
             ("", "each is a paraboloid through a point above its eight neighbours, fitted to these"),
             ("", f"misfit {attrs['misfit']:.2g}: up to 0.15, noise and spacing change the curvatures by 15 % at most"),

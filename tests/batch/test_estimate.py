@@ -40,7 +40,7 @@ def test_with_time_the_parts_are_bounded_whatever_the_scene(tmp_path: Any) -> No
 
 
 def test_what_a_state_costs_bounds_the_number_of_states() -> None:
-    """At the constants of ``costs``, 1.5e-7 s a state, the whole of the largest part would not fit into a tenth of it."""
+    """At 1.5e-7 s a state, as ``costs`` has it, the largest part would take fifteen times as long."""
     cell = make_plan(read(scene(asperities=LARGE, path=LONG, adhesion=FINITE_RANGE))).cells[0]
     estimate(make_plan(read(scene(adhesion=FINITE_RANGE))), 1, 0.0)  # compiled
     cost = measure(cell, "sampled", ["force"], 0.05)
