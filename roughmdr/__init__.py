@@ -12,8 +12,19 @@ if TYPE_CHECKING:
     from roughmdr.asperity.equilibria import equilibria
     from roughmdr.asperity.indent import indent, pull_off, tabor
     from roughmdr.ensemble import generate
-    from roughmdr.errors import LimitWarning, OutOfRange, RoughmdrError, SceneError, ShapeError, StoreError
+    from roughmdr.errors import (
+        FailedRuns,
+        LimitWarning,
+        OutOfRange,
+        RoughmdrError,
+        SceneError,
+        ShapeError,
+        StoreError,
+        Unfinished,
+    )
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
+    from roughmdr.report.info import info
+    from roughmdr.report.picture import plot
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
     from roughmdr.schema.material import effective_modulus
@@ -37,8 +48,19 @@ _ROOMS = {
     "asperity.equilibria": ("equilibria",),
     "asperity.indent": ("indent", "pull_off", "tabor"),
     "ensemble": ("generate",),
-    "errors": ("LimitWarning", "OutOfRange", "RoughmdrError", "SceneError", "ShapeError", "StoreError"),
+    "errors": (
+        "FailedRuns",
+        "LimitWarning",
+        "OutOfRange",
+        "RoughmdrError",
+        "SceneError",
+        "ShapeError",
+        "StoreError",
+        "Unfinished",
+    ),
     "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
+    "report.info": ("info",),
+    "report.picture": ("plot",),
     "runner.run": ("run",),
     "scene": ("Scene",),
     "schema.material": ("effective_modulus",),
@@ -48,6 +70,7 @@ _ROOMS = {
 __all__ = [
     "CappedParaboloid",
     "Cone",
+    "FailedRuns",
     "FlatPunch",
     "LimitWarning",
     "OutOfRange",
@@ -65,12 +88,15 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "Unfinished",
     "axis_stress",
     "effective_modulus",
     "equilibria",
     "generate",
     "indent",
+    "info",
     "load_separation",
+    "plot",
     "pressure",
     "pull_off",
     "run",

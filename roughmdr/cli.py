@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,6 +18,7 @@ from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.report.terminal import INCOMPLETE, Group, print_text
 
 if TYPE_CHECKING:
+    from roughmdr.runner.backend import Backend
     from roughmdr.runner.cluster import Tls
     from roughmdr.storage.labelled import Labelled
 
@@ -80,15 +81,9 @@ _workers = click.option(
     help="Reuse what the output or an interrupted run already contains, or start anew.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+@click.option("--verbose", is_flag=True, help="Also print what was left out, and why.")
 def run(
-    scene: Path,
-    output: Path,
-    changes: tuple[str, ...],
-    workers: int,
-    scheduler: str,
-    resume: bool,
-    quiet: bool,
-    **tls_files: Path | None,
+    scene: Path, output: Path, changes: tuple[str, ...], resume: bool, quiet: bool, verbose: bool, **where: Any
 ) -> None:
     """Compute the load-separation law of SCENE.
 
@@ -96,6 +91,8 @@ def run(
     done. If the command is interrupted or killed, or the disk is full, the same command continues from there. Ctrl-C
     waits for the current runs; a second Ctrl-C does not.
     """
+    if quiet and verbose:
+        raise click.UsageError("--quiet and --verbose exclude each other")
     started = time.perf_counter()
     with _without_garbage_collection():
         from roughmdr.report.summary import describe_failed, describe_result
@@ -103,19 +100,23 @@ def run(
 
         validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.plan import make_plan
-        from roughmdr.runner.backend import Backend
         from roughmdr.runner.run import execute
 
         planned = make_plan(validated)
-    backend = Backend(scheduler, workers, _tls(**tls_files))
-    result = execute(planned, output, backend, resume=resume, quiet=quiet, command=_command_line())
+    result = execute(planned, output, _backend(**where), resume=resume, quiet=quiet, command=_command_line())
     if not quiet:
-        print_text(describe_result(result, time.perf_counter() - started))
+        print_text(describe_result(result, time.perf_counter() - started, left_out=verbose))
         print_text(f"result       {click.format_filename(output)}")
     if failed := describe_failed(result):
         if quiet:
             print_text(f"roughmdr: {failed}", err=True)
         sys.exit(INCOMPLETE)
+
+
+def _backend(workers: int, scheduler: str, **tls_files: Path | None) -> "Backend":
+    from roughmdr.runner.backend import Backend
+
+    return Backend(scheduler, workers, _tls(**tls_files))
 
 
 def _tls(**files: Path | None) -> "Tls | None":
@@ -163,31 +164,19 @@ def plot(
 ) -> None:
     """Draw the load-separation law in RESULT.
 
-    An existing picture of the same format is replaced.
+    An existing picture of the same format is replaced, since RESULT draws it again.
     """
-    from roughmdr.report.plots import format_of, plot
-    from roughmdr.result.layout import asked_variables
-    from roughmdr.storage.files import check_writable
-    from roughmdr.storage.result_file import check_same_kind, read_result
+    from roughmdr.report.picture import check_picture, draw_result
+    from roughmdr.report.plots import save
+    from roughmdr.storage.result_file import read_result
 
-    check_writable(output, [result])
-    if not fresh:
-        check_same_kind(output, format_of(output))
+    check_picture(output, [result], fresh=fresh)
     data = read_result(result)
     _warn_if_changed(result, data)
-    names = asked_variables(data, variables)
-    lines = []
-    if with_expected or with_theory:
-        from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
-
-        planned = plan_of_result(result, data)
-        wanted = [("expected", overlay_expected)] * with_expected + [("theory", overlay_theory)] * with_theory
-        for title, overlay in wanted:
-            drawn = overlay(planned, names)
-            lines += drawn.lines
-            for remark in drawn.remarks:
-                print_text(f"{title:<12} {remark}")
-    plot(data, output, names, lines)
+    picture = draw_result(data, variables, result, with_expected=with_expected, with_theory=with_theory)
+    for title, remark in picture.remarks:
+        print_text(f"{title:<12} {remark}")
+    save(picture.figure, output)
     print_text(f"picture      {click.format_filename(output)}")
 
 
@@ -199,16 +188,12 @@ def info(result: Path, cells: bool) -> None:
 
     Prints sizes, the pull-off force with its error, run time, seed, versions and the scene.
     """
-    from roughmdr.report.summary import describe_cells, describe_origin, describe_result
+    from roughmdr.report.info import describe
     from roughmdr.storage.result_file import read_result
 
     data = read_result(result)
     _warn_if_changed(result, data)
-    if cells:
-        print_text(describe_cells(data))
-        return
-    print_text(describe_result(data))
-    print_text(describe_origin(data, result.stat().st_size))
+    print_text(describe(data, result, cells=cells))
 
 
 def _warn_if_changed(file: Path, result: "Labelled") -> None:
@@ -224,9 +209,10 @@ def new(scene: Path) -> None:
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
-    from roughmdr.storage.files import check_writable, replace_atomically
+    from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 
     check_writable(scene)
+    check_ending(scene, "scene", [".toml"])
     if scene.exists():
         raise StoreError(f"{scene}: exists already; give a new name")
     with replace_atomically(scene) as temporary:
@@ -248,14 +234,14 @@ def generate(
 ) -> None:
     """Write the asperities of one realisation of SCENE.
 
-    An existing file of asperities is replaced.
+    An existing file of asperities is left alone unless it holds the very ones.
     """
     from roughmdr.ensemble import make
     from roughmdr.report.summary import describe_ensemble
     from roughmdr.scene import read
-    from roughmdr.storage.files import check_writable
+    from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
     from roughmdr.storage.netcdf_writing import write_netcdf
-    from roughmdr.storage.result_file import check_same_kind, provenance
+    from roughmdr.storage.result_file import check_nothing_lost, check_same_kind, provenance
 
     validated = read(scene, changes)
     for axis in validated.sweep.axes:
@@ -272,9 +258,12 @@ def generate(
     if realization > 0 and not validated.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
     check_writable(output, validated.inputs)
+    check_ending(output, "file of asperities", NETCDF_ENDINGS)
     if not fresh:
         check_same_kind(output, "ensemble")
     ensemble = make(validated.asperities, validated.seed, realization).labelled()
+    if not fresh:
+        check_nothing_lost(output, ensemble)
     write_netcdf(ensemble._replace(attrs={**provenance(validated.title, _command_line()), **ensemble.attrs}), output)
     print_text(describe_ensemble(ensemble))
     print_text(f"ensemble     {click.format_filename(output)}")

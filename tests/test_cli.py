@@ -27,7 +27,7 @@ def small(tmp_path: Path) -> Path:
 def test_run_and_plot(small: Path) -> None:
     done = roughmdr("run", "small.toml", "-o", "out.nc", "--set", "batch.realizations=3", cwd=small)
     assert done.returncode == 0, done.stderr
-    for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "left out", "out.nc"):
+    for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "out.nc"):
         assert text in done.stdout
     assert done.stderr.strip() == "A small scene: 3 of 3 runs"
     with xr.open_dataset(small / "out.nc") as result:
@@ -71,7 +71,7 @@ def test_a_picture_of_what_is_not_there(small: Path) -> None:
     assert roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", cwd=small).returncode == 0
     for arguments, says in (
         (["-o", "a.png", "--variable", "energy"], "it holds force"),
-        (["-o", "a.xyz"], "cannot draw a .xyz"),
+        (["-o", "a.xyz"], "the name of a picture must end in .png, .pdf or .svg"),
     ):
         done = roughmdr("plot", "out.nc", *arguments, cwd=small)
         assert done.returncode == 2

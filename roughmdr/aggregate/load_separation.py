@@ -14,7 +14,7 @@ from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
-from roughmdr.kernels.adhesion import Adhesion, Model
+from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
@@ -23,7 +23,7 @@ from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
-from roughmdr.schema.material import MaterialArguments, effective_modulus_of
+from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
@@ -168,11 +168,9 @@ def load_separation(
     *,
     separation: ArrayLike,
     work: float | str = 0.0,
-    adhesion: Model = "jkr",
-    strength: float | str | None = None,
     unload: bool = False,
     variables: Iterable[str] = DEFAULT_VARIABLES,
-    **material: Unpack[MaterialArguments],
+    **material: Unpack[AdhesiveMaterial],
 ) -> xr.Dataset:
     """Compute the load-separation curve of an ensemble pressed by a rigid flat, in this process.
 
@@ -184,10 +182,6 @@ def load_separation(
         Path of the flat [m], which comes from infinity.
     work : float or str, optional
         Work of adhesion [J/m^2]; 0 for none.
-    adhesion : {"jkr", "dugdale"}, optional
-        "dugdale" has a range and needs strength; "jkr" with strength warns where the Tabor number is small.
-    strength : float or str, optional
-        Stress of the attraction [Pa].
     unload : bool, optional
         Whether the same separations follow in reversed order, the turning point repeated.
     variables : str or iterable of str, optional
@@ -195,6 +189,9 @@ def load_separation(
         dissipated_energy, model_error_curve.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
+        adhesion="dugdale" needs the strength [Pa] of the attraction, or its range [m], work/strength; "jkr", the
+        default, then warns where the Tabor number is small. "auto" takes JKR where its force is off by at most
+        ``error`` (default 0.01) of the largest force, else Dugdale; the attribute ``adhesion`` says which.
 
     Returns
     -------
@@ -230,11 +227,11 @@ def load_separation(
 
     if not isinstance(ensemble, xr.Dataset):
         raise SceneError(f"ensemble is a {type(ensemble).__name__}; it must be a Dataset as generate returns it")
-    effective_modulus = effective_modulus_of(load_separation, material)
     try:
-        asked = Adhesion.checked(adhesion, work, strength)
+        asked = Adhesion.from_arguments(work, material)
     except RoughmdrError as error:
         raise error if isinstance(error, OutOfRange) else SceneError(str(error)) from None
+    effective_modulus = effective_modulus_of(load_separation, material)
     separations = np.atleast_1d(check_values("separation", separation, "m"))
     if separations.size == 0:
         raise OutOfRange("separation is empty; it must hold at least one number")
@@ -251,4 +248,5 @@ def load_separation(
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
     warnings = [*result.warnings, *result.extremes.warnings, *fraction_warnings(result.model_error.largest_fraction)]
-    return Labelled(data, {"separation": distance, "branch": path.branch()}, warn_limits(warnings)).to_xarray()
+    attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
+    return Labelled(data, {"separation": distance, "branch": path.branch()}, attrs).to_xarray()

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact, Results
 from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError, warn_limits
-from roughmdr.kernels.adhesion import Adhesion, Model, tabor_number
+from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial, tabor_number
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, check_values, exactly_one
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
@@ -23,13 +23,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from roughmdr.springs import Springs
-
-
-class AdhesiveMaterial(MaterialArguments, total=False):
-    """The elastic constants and how the surfaces attract each other, as keyword arguments."""
-
-    adhesion: Model
-    strength: float | str | None
 
 
 def indent(
@@ -59,15 +52,17 @@ def indent(
         "springs" solves a row of so many springs (``roughmdr.springs``) in place of the exact contact.
     **material
         E* as effective_modulus [Pa], or as modulus [Pa] with poisson [1] (and counter_modulus with counter_poisson).
-        adhesion="dugdale" needs strength [Pa]: the surfaces attract each other with that stress up to a gap of
-        work/strength. With adhesion="jkr", the default, strength leads to a warning where the Tabor number is small.
+        adhesion="dugdale" needs strength [Pa], with which the surfaces attract each other, or the range [m] of that,
+        work/strength. "jkr", the default, then warns where the Tabor number is small. "auto" takes JKR where its
+        pull-off force differs from Dugdale's by at most ``error`` (default 0.01) of it, else Dugdale.
 
     Returns
     -------
     xarray.Dataset
         Over the control, in the order given, without dimension for a number: force [N], indentation [m], contact_radius
         [m], contact_area [m2], stiffness [N/m] and, with "dugdale", cohesive_radius [m], up to which the surfaces
-        attract each other. At the fold, where k is infinite, the stiffness is that of the next larger indentation.
+        attract each other. At the fold, where k is infinite, the stiffness is that of the next larger indentation. The
+        attribute ``adhesion`` is the model that "auto" took.
 
     Raises
     ------
@@ -91,14 +86,15 @@ def indent(
     >>> [f"{force:.4g}" for force in contact.force.values]
     ['3.243e-06', '9.174e-06']
     """
-    adhesion, strength = material.pop("adhesion", "jkr"), material.pop("strength", None)
-    if method == "springs" and adhesion != "jkr":
-        raise RoughmdrError(f"adhesion is {adhesion!r}; with method='springs' it must be 'jkr'")
+    asked = Adhesion.from_arguments(work, material)
+    if method == "springs" and asked.model != "jkr":
+        raise RoughmdrError(f"adhesion is {asked.model!r}; with method='springs' it must be 'jkr'")
     control, raw = exactly_one("indent", indentation=indentation, force=force, contact_radius=contact_radius)
     unit = ASPERITY[control].units
     values = check_values(control, raw, unit)
-    asked = Adhesion.checked(adhesion, work, strength)
-    contact = _contact(shape, effective_modulus_of(indent, material), asked, method, springs)
+    effective_modulus = effective_modulus_of(indent, material)
+    taken = _resolved(shape, effective_modulus, asked)
+    contact = _contact(shape, effective_modulus, taken, method, springs)
     solve = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
     with np.errstate(all="ignore"):  # what overflows is refused below
         results = {**solve[control](np.atleast_1d(values)), control: np.atleast_1d(values)}
@@ -107,7 +103,8 @@ def indent(
         lost = ~np.isfinite(numbers) | ((name == "contact_area") & (numbers == 0.0) & (results["contact_radius"] > 0.0))
         if lost.any():
             raise OutOfRange(f"{name} at {control} = {np.atleast_1d(values)[lost][0]:g} {unit} is not representable")
-    attrs = warn_limits(_warnings(shape, results["contact_radius"], contact.effective_modulus, asked))
+    attrs = warn_limits(_warnings(shape, results["contact_radius"], contact.effective_modulus, taken))
+    attrs |= {"adhesion": taken.model} if asked.model == "auto" else {}
     return _dataset({name: numbers.reshape(values.shape) for name, numbers in results.items()}, control, attrs)
 
 
@@ -123,7 +120,7 @@ def pull_off(
     Parameters
     ----------
     shape, work, **material
-        Profile, work of adhesion [J/m^2], and E*, adhesion and strength as in ``indent``.
+        Profile, work of adhesion [J/m^2], and E*, adhesion, strength, range and error as in ``indent``.
     control : {"displacement", "force"}, optional
         Retraction under fixed grips, or under dead load.
 
@@ -152,8 +149,10 @@ def pull_off(
     """
     if control not in ("displacement", "force"):
         raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
-    asked = Adhesion.checked(material.pop("adhesion", "jkr"), work, material.pop("strength", None))
-    contact = Contact.of(shape, effective_modulus_of(pull_off, material), asked)
+    wanted = Adhesion.from_arguments(work, material)
+    effective_modulus = effective_modulus_of(pull_off, material)
+    asked = _resolved(shape, effective_modulus, wanted)
+    contact = Contact.of(shape, effective_modulus, asked)
     names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if asked.model == "dugdale" else [])]
     if not contact.law.adhesive:
         return _dataset({name: np.zeros(()) for name in names}, None, {})
@@ -165,10 +164,18 @@ def pull_off(
             given = f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
             raise OutOfRange(f"{name} at pull-off is not representable: {given}")
     attrs = warn_limits(_warnings(shape, radius, contact.effective_modulus, asked))
+    attrs |= {"adhesion": asked.model} if wanted.model == "auto" else {}
     return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
 
 
-def tabor(shape: Shape, *, work: float | str, strength: float | str, **material: Unpack[MaterialArguments]) -> float:
+def tabor(
+    shape: Shape,
+    *,
+    work: float | str,
+    strength: float | str | None = None,
+    range: float | str | None = None,  # noqa: A002 - as in a scene
+    **material: Unpack[MaterialArguments],
+) -> float:
     """Compute the Tabor number dl(a) strength/(pi^(2/3) work) of a contact.
 
     dl(a) = sqrt(2 pi a work/E*), and a is the radius at which JKR detaches under fixed grips.
@@ -179,8 +186,10 @@ def tabor(shape: Shape, *, work: float | str, strength: float | str, **material:
     ----------
     shape, **material
         Profile and E* as in ``indent``.
-    work, strength : float or str
-        Work of adhesion [J/m^2] and stress of the attraction [Pa], above 0.
+    work : float or str
+        Work of adhesion [J/m^2], above 0.
+    strength, range : float or str, optional
+        One of both: the stress of the attraction [Pa], or its range work/strength [m], above 0.
 
     Returns
     -------
@@ -202,7 +211,8 @@ def tabor(shape: Shape, *, work: float | str, strength: float | str, **material:
     >>> round(rm.tabor(rm.Paraboloid(radius=1e-6), effective_modulus=1e9, work=0.05, strength="5 MPa"), 3)
     0.136
     """
-    asked = Adhesion(check_number("work", work, "J/m^2"), "jkr", check_number("strength", strength, "Pa"))
+    exactly_one("tabor", strength=strength, range=range)
+    asked = Adhesion.checked("jkr", check_number("work", work, "J/m^2"), strength, range)
     return _tabor(shape, effective_modulus_of(tabor, material), asked)
 
 
@@ -225,6 +235,24 @@ def _contact(
     if not isinstance(shape, Shape) and callable(shape):
         raise ShapeError(f"shape is {shape!r}; a function f(r) goes with method='springs' only")
     return Contact.of(shape, effective_modulus, adhesion)
+
+
+def _resolved(shape: object, effective_modulus: float, adhesion: Adhesion) -> Adhesion:
+    """Return the model itself: for "auto" JKR where its pull-off force is near enough to Dugdale's."""
+    if adhesion.model != "auto" or not isinstance(shape, Shape) or adhesion.work == 0.0:
+        return adhesion.resolved(0.0)
+    try:
+        with np.errstate(all="ignore"):  # a contact that is not representable has no finite force
+            jkr, dugdale = (
+                float(
+                    Contact.of(shape, effective_modulus, adhesion._replace(model=model)).pull_off("force")["force"][0]
+                )
+                for model in adhesion.candidates
+            )
+    except OutOfRange:
+        return adhesion.resolved(math.inf)
+    known = math.isfinite(jkr) and math.isfinite(dugdale) and dugdale < 0.0
+    return adhesion.resolved(abs(jkr / dugdale - 1.0) if known else math.inf)
 
 
 def _tabor(shape: Shape, effective_modulus: float, adhesion: Adhesion) -> float:

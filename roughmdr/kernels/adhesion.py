@@ -5,8 +5,20 @@ from typing import Literal, NamedTuple, get_args
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.arguments import check_number
+from roughmdr.schema.material import MaterialArguments
 
 Model = Literal["jkr", "dugdale"]
+AskedModel = Literal[Model, "auto"]
+DEFAULT_ERROR = 0.01  # of the largest force, by which "auto" may be off unless it is given
+
+
+class AdhesiveMaterial(MaterialArguments, total=False):
+    """The elastic constants and how the surfaces attract each other, as keyword arguments."""
+
+    adhesion: AskedModel
+    strength: float | str | None
+    range: float | str | None
+    error: float | None
 
 
 class Adhesion(NamedTuple):
@@ -14,7 +26,7 @@ class Adhesion(NamedTuple):
 
     work: float = 0.0
     """w [J/m2]; 0 for none."""
-    model: Literal["jkr", "dugdale", "auto"] = "jkr"
+    model: AskedModel = "jkr"
     strength: float = math.inf
     """sigma0 [Pa], the stress of the attraction (Dugdale); inf where it is not given."""
     error: float = 0.0
@@ -51,17 +63,56 @@ class Adhesion(NamedTuple):
         return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")
 
     @classmethod
-    def checked(cls, model: Model, work: float | str, strength: float | str | None) -> "Adhesion":
-        """Return the model asked for; w [J/m2], sigma0 [Pa] or None where it is not given.
+    def checked(
+        cls,
+        model: AskedModel,
+        work: float | str,
+        strength: float | str | None = None,
+        range: float | str | None = None,  # noqa: A002 - as in a scene
+        error: float | None = None,
+    ) -> "Adhesion":
+        """Return the model asked for; w [J/m2], sigma0 [Pa] or w/sigma0 [m], the error [1]: None where not given.
 
-        RoughmdrError for an unknown model or a missing strength, OutOfRange for a number.
+        RoughmdrError for an unknown model or for what does not go together, OutOfRange for a number.
         """
         work = check_number("work", work, "J/m^2", zero=True)
-        if model not in get_args(Model):
-            raise RoughmdrError(f"adhesion is {model!r}; it must be 'jkr' or 'dugdale'")
-        if strength is None and model == "dugdale":
-            raise RoughmdrError("strength is missing: adhesion 'dugdale' needs the stress of the attraction [Pa]")
-        return cls(work, model, math.inf if strength is None else check_number("strength", strength, "Pa"))
+        if model not in get_args(AskedModel):
+            raise RoughmdrError(f"adhesion is {model!r}; it must be 'jkr', 'dugdale' or 'auto'")
+        try:
+            check_combination(model, strength, range, error)
+        except RoughmdrError as fault:
+            raise RoughmdrError(f"adhesion {fault}") from None
+        stress = math.inf if strength is None else check_number("strength", strength, "Pa")
+        if range is not None:
+            stress = strength_of(work, check_number("range", range, "m"))
+        limit = check_number("error", DEFAULT_ERROR if error is None else error, "1") if model == "auto" else 0.0
+        return cls(work, model, stress, limit)
+
+    @classmethod
+    def from_arguments(cls, work: float | str, material: AdhesiveMaterial) -> "Adhesion":
+        """Take what describes the attraction out of the keyword arguments of a function; errors as ``checked``."""
+        return cls.checked(
+            material.pop("adhesion", "jkr"),
+            work,
+            material.pop("strength", None),
+            material.pop("range", None),
+            material.pop("error", None),
+        )
+
+
+def check_combination(model: str, strength: object, range: object, error: object) -> None:  # noqa: A002
+    """Raise RoughmdrError where an adhesion model does not go with what is given, None for what is not."""
+    if strength is not None and range is not None:
+        raise RoughmdrError("takes strength or range, not both")
+    if model != "jkr" and strength is None and range is None:
+        raise RoughmdrError(f"model {model!r} needs strength, the stress of the attraction, or its range")
+    if error is not None and model != "auto":
+        raise RoughmdrError("takes error only with model 'auto'")
+
+
+def strength_of(work: float, range: float) -> float:  # noqa: A002
+    """Return sigma0 = w/range [Pa], inf without adhesion; OutOfRange where no float can hold it."""
+    return check_number("work over range", work / range, "Pa") if work > 0.0 else math.inf
 
 
 def release_stretch(radius: float, effective_modulus: float, work: float) -> float:

@@ -14,6 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.report.plots import EXPECTED, OverlayLine, separations
 from roughmdr.report.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.scene import read
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Labelled
 from roughmdr.theory.equal_summits import Variable
@@ -36,18 +37,18 @@ class Overlay(NamedTuple):
     remarks: list[str]
 
 
-def plan_of_result(file: Path, result: Labelled) -> Plan:
-    """Return the plan of the scene in the result ``file``.
+def plan_of_result(file: Path | None, result: Labelled) -> Plan:
+    """Return the plan of the scene in a result, which was read from ``file`` unless that is None.
 
     SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
     """
-    plan, stored = make_plan(read(file)), separations(result)
+    plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), separations(result)
     planned = np.array([cell.path.separation for cell in plan.cells])
     if (
         stored.size != planned.size
         or np.abs(stored.reshape(planned.shape) - planned).max() > _SEPARATION_RTOL * np.abs(planned).max()
     ):
-        raise StoreError(f"{file}: its separations are not those of the scene in it")
+        raise StoreError(f"{file or 'result'}: its separations are not those of the scene in it")
     return plan
 
 

@@ -11,12 +11,13 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
 from roughmdr.schema.wording import escape_controls
-from roughmdr.storage.files import replace_atomically
+from roughmdr.storage.files import check_ending, replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CURVE_VARIABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 EXPECTED = "expected"
 _BRANCH_COLOURS = {"loading": "#1b6ca8", "unloading": "#c8553d"}
@@ -48,12 +49,12 @@ class _Curve(NamedTuple):
     runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
 
 
-def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[OverlayLine] = ()) -> None:
-    """Draw variables of a result against separation into ``path``, with ``lines`` over them.
+def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) -> "Figure":
+    """Draw variables of a result against separation, with ``lines`` over them.
 
     Every realisation is a thin line, the mean a thick one, twice its standard error a band. The cells of a sweep have a
     colour each and no thin lines; unloading is dashed. The expected law is thin and dark, theory curves are dotted.
-    StoreError if no run was computed, or the picture cannot be written.
+    StoreError if no run was computed.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -83,6 +84,11 @@ def plot(result: Labelled, path: Path, names: list[str], lines: Sequence[Overlay
     else:
         axes.flat[0].legend(handles=handles, frameon=False)
     figure.suptitle(f"{escape_controls(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
+    return figure
+
+
+def save(figure: "Figure", path: Path) -> None:
+    """Write a picture in the format that its name says; StoreError if it cannot be written."""
     with replace_atomically(path) as temporary:
         figure.savefig(temporary, dpi=160, format=format_of(path))
 
@@ -96,10 +102,7 @@ def separations(result: Labelled) -> Floats:
 
 def format_of(path: Path) -> str:
     """Return the format of a picture by its name; StoreError if there is no such format."""
-    suffix = path.suffix.lstrip(".").lower() or "png"
-    if suffix not in ("png", "pdf", "svg"):
-        raise StoreError(f"{path}: cannot draw a .{suffix}; it can be .png, .pdf or .svg")
-    return suffix
+    return check_ending(path, "picture", (".png", ".pdf", ".svg")).removeprefix(".")
 
 
 def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:

@@ -61,8 +61,8 @@ def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "", "time, memory and tasks are those of the runs above"
 
 
-def describe_result(result: Labelled, elapsed: float | None = None) -> str:
-    """Return what a result holds; ``elapsed`` [s] is the time of the whole run."""
+def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
+    """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     attrs = result.attrs
     realizations, steps = layout.realizations_of(result), result.sizes["step"]
     time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
@@ -83,7 +83,7 @@ def describe_result(result: Labelled, elapsed: float | None = None) -> str:
         _numerical_error(result),
         ("run time", time),
     ]
-    return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines())])
+    return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines() if left_out else ())])
 
 
 def _numerical_error(result: Labelled) -> tuple[str, str]:
@@ -105,11 +105,11 @@ def describe_ensemble(ensemble: Labelled) -> str:
     return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 
-def describe_origin(result: Labelled, size: float) -> str:
-    """Return seed, versions, history and scene of a result of ``size`` bytes."""
+def describe_origin(result: Labelled, size: float | None) -> str:
+    """Return seed, versions, history and scene of a result of ``size`` bytes, None where it is in no file."""
     attrs = result.attrs
     lines = [
-        ("size", format_bytes(size)),
+        *([] if size is None else [("size", format_bytes(size))]),
         ("seed", str(attrs["seed"])),
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),

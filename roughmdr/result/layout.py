@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE
 
@@ -88,7 +89,7 @@ def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     for name, array in result.coordinates.items():
         if name not in AUXILIARY_COORDINATES and array.dims and set(array.dims) <= set(names):
             value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
-            unit = array.attrs.get("units", "1")
-            shown = f"{value:.6g}" if array.values.dtype.kind == "f" else str(value)
-            parts.append(f"{name} = {shown}{'' if unit == '1' else f' {unit}'}")
+            is_number = array.values.dtype.kind in "if"
+            shown = format_quantity(float(value), array.attrs.get("units", "1")) if is_number else str(value)
+            parts.append(f"{name} = {shown}")
     return ", ".join(parts)

@@ -27,7 +27,7 @@ from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
-from roughmdr.storage.files import check_writable, destination
+from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.variables import FAILED
@@ -46,6 +46,7 @@ def run(
     scheduler: "str | Client" = "threads",
     resume: bool = True,
     *,
+    set: dict[str, Any] | None = None,  # noqa: A002 - as --set
     quiet: bool = True,
 ) -> "xr.Dataset":
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
@@ -62,6 +63,9 @@ def run(
         "threads", "processes", or a dask cluster: its address, ``tcp://HOST:PORT`` or ``tls://HOST:PORT``, or a Client.
     resume : bool
         Whether what ``out`` holds, or an earlier run kept beside it, is reused; else it is replaced.
+    set : dict, optional
+        Keys of the scene, dotted, with the values that they get, as in ``{"adhesion.work": "10 mJ/m^2"}``. A key that
+        is set is no longer swept; names of files are relative to the current folder.
     quiet : bool
         Leave out the progress display.
 
@@ -93,9 +97,11 @@ def run(
     ... })
     >>> dict(result.force.sizes)
     {'realization': 16, 'step': 3}
+
+    A scene file with another work of adhesion: ``rm.run("scene.toml", set={"adhesion.work": "10 mJ/m^2"})``.
     """
     target = None if out is None else Path(out)
-    plan = make_plan(read(scene))
+    plan = make_plan(read(scene, set or {}))
     result = execute(plan, target, Backend(scheduler, workers), resume=resume, quiet=quiet)
     warn_limits(result.attrs.get("warnings", "").splitlines())
     status = result.variables["status"].values
@@ -120,6 +126,7 @@ def execute(
     backend.check()
     if target is not None:
         check_writable(target, plan.scene.inputs)
+        check_ending(target, "result", NETCDF_ENDINGS)
         target = destination(target)
     rounds = Rounds(plan)
     with ExitStack() as stack:

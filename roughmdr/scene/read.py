@@ -2,11 +2,11 @@
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial, reduce
 from operator import getitem
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,16 +24,20 @@ _NETCDF_MAGIC = (b"\x89HDF", b"CDF")
 _MAX_BYTES = 2**24
 
 
-def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = ()) -> Scene:
+def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] | Mapping[str, Any] = ()) -> Scene:
     """Return a validated scene with all changes applied.
 
     ``source`` is the path of a TOML file or of a result, which contains its scene, a dictionary of the same form, or a
-    Scene. ``changes`` are KEY=VALUE with dotted keys; a value is TOML, or else a string; a key that is set is no longer
-    swept. SceneError names every fault by file, line, key, value and what is allowed.
+    Scene. ``changes`` are KEY=VALUE with dotted keys, a value in TOML or else a string, or a dictionary of such keys
+    and values; a key that is set is no longer swept. SceneError names every fault by file, line, key, value and what
+    is allowed.
     """
-    changes = list(changes)
+    if isinstance(changes, Mapping):
+        applied = [_named_change(key, value) for key, value in changes.items()]
+    else:
+        applied = [_parse_change(change) for change in changes]
     if isinstance(source, Scene):
-        if not changes:
+        if not applied:
             return source
         path, label, text, table = source.file, "scene", "", parse_toml(source.toml)
     elif isinstance(source, dict):
@@ -51,7 +55,8 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     except OSError as error:
         raise SceneError(f"{label}: the current folder cannot be determined: {error.strerror}") from None
     try:
-        changed = {_apply_change(table, change) for change in changes}
+        for change in applied:
+            _apply_change(table, change)
         stem = path.stem if path else "scene"
         table.setdefault("title", "".join(letter if letter.isprintable() else "?" for letter in stem))
         scene, faults = validate(table, path)
@@ -60,8 +65,8 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] = (
     lines = key_lines(text)
     if faults or scene is None:
         faults = sorted(faults, key=lambda fault: line_of(fault.key, lines) or 0)
-        raise SceneError.of([_add_location(fault, label, lines, changed) for fault in faults])
-    scene._locate = partial(_add_location, label=label, lines=lines, changed=changed)
+        raise SceneError.of([_add_location(fault, label, lines, applied) for fault in faults])
+    scene._locate = partial(_add_location, label=label, lines=lines, applied=applied)
     return scene
 
 
@@ -99,17 +104,39 @@ def _unquoted_unit_hint(message: str, text: str) -> str:
     return f'; a number with a unit stands in quotes: "{bare[1].strip()}"' if bare else ""
 
 
-def _apply_change(table: dict[str, Any], change: str) -> str:
-    """Apply one KEY=VALUE to a table; return the dotted key."""
+class _Change(NamedTuple):
+    """A key that gets another value."""
+
+    by: str  # option or argument that sets it
+    name: str  # of the change, in messages
+    key: str
+    value: Any
+
+
+def _parse_change(change: str) -> _Change:
+    """Read KEY=VALUE."""
     key, equals, value = change.partition("=")
     dotted = unquote_key(key)
-    parts = dotted.split(".")
     if not change.isprintable() and change.encode("utf-8", "replace").decode() != change:
         raise SceneError(f"--set {change!r}: is not UTF-8")
-    if not equals or not all(parts):
+    if not equals or not all(dotted.split(".")):
         raise SceneError(f"--set {printable(change)}: expected KEY=VALUE, like adhesion.work='10 mJ/m^2'")
+    return _Change("--set", printable(change), dotted, _parse_value(value))
+
+
+def _named_change(key: object, value: object) -> _Change:
+    """Check a key with its value as they stand in a dictionary."""
+    dotted = unquote_key(key) if isinstance(key, str) else ""
+    if not all(dotted.split(".")):
+        raise SceneError(f"set: {short_repr(key)} is no key; expected dotted keys, like 'adhesion.work'")
+    return _Change("set", printable(dotted), dotted, _to_plain(value))
+
+
+def _apply_change(table: dict[str, Any], change: _Change) -> None:
+    """Apply a change to a table."""
+    dotted, parts = change.key, change.key.split(".")
     alone: dict[str, Any] = {}
-    set_key(alone, dotted, _parse_value(value))
+    set_key(alone, dotted, change.value)
     _normalise(alone, Path())
     try:
         if parts[0] == "sweep":
@@ -121,8 +148,7 @@ def _apply_change(table: dict[str, Any], change: str) -> str:
             set_key(table, dotted, reduce(getitem, parts, alone))
             _remove_from_sweep(table, dotted)
     except RoughmdrError as error:
-        raise SceneError(f"--set {printable(change)}: {error}") from None
-    return dotted
+        raise SceneError(f"{change.by} {change.name}: {error}") from None
 
 
 def _merge_range(before: Any, after: Any) -> Any:
@@ -181,8 +207,9 @@ def _normalise(table: dict[str, Any], folder: Path) -> None:
         sweep["asperities.file"] = [absolute(name) for name in sweep["asperities.file"]]
 
 
-def _add_location(fault: Fault, label: str, lines: dict[str, int], changed: set[str]) -> Fault:
-    if any(fault.key == key or fault.key.startswith((f"{key}.", f"{key}[")) for key in changed):
-        return fault._replace(location="--set")
+def _add_location(fault: Fault, label: str, lines: dict[str, int], applied: list[_Change]) -> Fault:
+    for change in applied:
+        if fault.key == change.key or fault.key.startswith((f"{change.key}.", f"{change.key}[")):
+            return fault._replace(location=change.by)
     line = line_of(fault.key, lines)
     return fault._replace(location=label if line is None else f"{label}:{line}")

@@ -98,7 +98,7 @@ class Scene(Section):
         exponent = asperities.min_exponent
         if self.work > 0.0 and not exponent > 0.5:
             key = "exponent" if asperities.shared_profile is None else "terms"
-            raise mismatch(f"asperities.{key}", f"can be as low as {exponent:g}; with adhesion it must be above 0.5")
+            raise mismatch(f"asperities.{key}", f"{exponent:g} is too low; with adhesion it must be above 0.5")
         return self
 
     def _check_accuracy(self, accuracy: Accuracy) -> None:

@@ -6,13 +6,11 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.schema.arguments import check_number
+from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
 from roughmdr.schema.material import check_one_body
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
-_DEFAULT_ERROR = 0.01  # of the largest force, by which "auto" may be off unless the scene gives it
 _MAX_REALIZATIONS = 1_000_000_000
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, at_most=0.5))]
@@ -44,7 +42,7 @@ class AdhesionSection(Section):
     "auto" uses JKR if its force differs from Dugdale's by at most ``error`` of the largest force.
     """
 
-    model: Literal["jkr", "dugdale", "auto"]
+    model: AskedModel
     work: Annotated[float, BeforeValidator(Quantity("J/m^2", at_least=0.0))]
     strength: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
     range: Annotated[float, BeforeValidator(Quantity("m", above=0.0))] | None = None
@@ -52,24 +50,18 @@ class AdhesionSection(Section):
 
     @model_validator(mode="after")
     def _combination(self) -> "AdhesionSection":
-        if self.strength is not None and self.range is not None:
-            raise RoughmdrError("takes strength or range, not both")
-        if self.model != "jkr" and self.strength is None and self.range is None:
-            raise RoughmdrError(f"model {self.model!r} needs strength, the stress of the attraction, or its range")
-        if self.error is not None and self.model != "auto":
-            raise RoughmdrError("takes error only with model 'auto'")
-        if self.range is not None and self.work > 0.0:
-            check_number("work over range", self.work / self.range, "Pa")
+        check_combination(self.model, self.strength, self.range, self.error)
+        _ = self.adhesion_model
         return self
 
     @property
     def adhesion_model(self) -> Adhesion:
         """Adhesion model with its parameters."""
-        strength = self.strength
-        if self.range is not None and self.work > 0.0:
-            strength = self.work / self.range
-        error = 0.0 if self.model != "auto" else (_DEFAULT_ERROR if self.error is None else self.error)
-        return Adhesion(self.work, self.model, math.inf if strength is None else strength, error)
+        strength = math.inf if self.strength is None else self.strength
+        if self.range is not None:
+            strength = strength_of(self.work, self.range)
+        error = 0.0 if self.model != "auto" else (DEFAULT_ERROR if self.error is None else self.error)
+        return Adhesion(self.work, self.model, strength, error)
 
 
 def _check_variable(value: object) -> object:

@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import quantity
+from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.schema.wording import short_repr
 
 
 def check_number(name: str, value: float | str, dimension: str, *, zero: bool = False) -> float:
     """Return ``value`` in SI; OutOfRange unless it is finite and above 0 (or 0, where ``zero`` allows that)."""
-    allowed = f"a finite number {'of at least' if zero else 'above'} 0 {dimension}"
+    unit = "" if dimension == DIMENSIONLESS else f" {dimension}"
+    allowed = f"a finite number {'of at least' if zero else 'above'} 0{unit}"
     try:
         number = _from_text(name, value, dimension) if isinstance(value, str) else float(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -25,7 +26,7 @@ def check_number(name: str, value: float | str, dimension: str, *, zero: bool = 
             raise
         raise OutOfRange(f"{name} is {value!r}; it must be {allowed}") from None
     if not (math.isfinite(number) and (number > 0.0 or (zero and number == 0.0))):
-        raise OutOfRange(f"{name} is {number:g} {dimension}; it must be {allowed}")
+        raise OutOfRange(f"{name} is {number:g}{unit}; it must be {allowed}")
     return number
 
 

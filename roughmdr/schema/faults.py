@@ -9,10 +9,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
 from roughmdr.errors import Fault
+from roughmdr.schema.examples import example_of
 from roughmdr.schema.quantities import EntryError
 from roughmdr.schema.wording import close_matches, printable, short_repr, suggestion
 
 _Sections = list[type[BaseModel]]
+_INCOMPLETE = ("is missing", "needs ", "must be a table")  # beginnings of messages that an example follows
 
 
 def mismatch(key: str, message: str) -> PydanticCustomError:
@@ -22,7 +24,7 @@ def mismatch(key: str, message: str) -> PydanticCustomError:
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
     """Return all faults that pydantic found in ``data``, read as ``declared``: a section or a union of sections."""
-    return [_to_fault(fault, data, declared) for fault in error.errors(include_url=False)]
+    return [_with_example(_to_fault(fault, data, declared)) for fault in error.errors(include_url=False)]
 
 
 def with_likely_names(error: ValidationError, data: dict[str, Any], declared: Any) -> dict[str, Any] | None:
@@ -53,6 +55,13 @@ def sections_of(annotation: Any) -> _Sections:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [section for part in get_args(annotation) for section in sections_of(part)]
+
+
+def _with_example(fault: Fault) -> Fault:
+    """Add an example of what to write to a fault where something is missing."""
+    incomplete = fault.message.startswith(_INCOMPLETE) and "it can be" not in fault.message
+    example = example_of(fault.key) if incomplete else ""
+    return fault._replace(message=f"{fault.message}; for example: {example}") if example else fault
 
 
 def _to_fault(fault: Any, data: dict[str, Any], declared: Any) -> Fault:

@@ -3,12 +3,13 @@
 import os
 import stat
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError, StoreError
 
+NETCDF_ENDINGS = (".nc", ".nc4", ".cdf", ".netcdf")
 _TEMPORARY_PREFIX = ".roughmdr."
 
 
@@ -78,6 +79,15 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
         raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
     os.close(descriptor)
     Path(name).unlink()
+
+
+def check_ending(path: Path, kind: str, endings: Sequence[str]) -> str:
+    """Return the ending of the name of an output of this kind, in lower case; StoreError unless it is one of these."""
+    ending = path.suffix.lower()
+    if ending not in endings:
+        allowed = ", ".join(endings[:-1]) + " or " * (len(endings) > 1) + endings[-1]
+        raise StoreError(f"{path}: the name of a {kind} must end in {allowed}")
+    return ending
 
 
 def _is_utf8(path: Path) -> bool:

@@ -7,6 +7,8 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_dimensions, read_netcdf
@@ -40,6 +42,17 @@ def read_result(path: Path) -> Labelled:
     if fault := find_fault(data):
         raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
     return data
+
+
+def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
+    """Raise StoreError if there are other asperities at ``path`` than those of ``ensemble``, bit for bit."""
+    if not path.exists():
+        return
+    old = read_netcdf(path)
+    before, after = (file.variables | file.coordinates for file in (old, ensemble))
+    alike = old.attrs.get("shape") == ensemble.attrs["shape"] and before.keys() == after.keys()
+    if not (alike and all(np.array_equal(array.values, after[name].values) for name, array in before.items())):
+        raise StoreError(f"{path}: holds other asperities already: give another output, or --fresh to replace them")
 
 
 def check_same_kind(path: Path, kind: str) -> None:

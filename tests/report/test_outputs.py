@@ -165,7 +165,7 @@ def kinds(tmp_path: Path) -> Path:
     (tmp_path / "half.nc").write_bytes(b"\x89HDF\r\n\x1a\n rest")
     xr.Dataset({"height": (("x", "y"), np.ones((2, 2)))}).to_netcdf(tmp_path / "map.nc")
     rm.run(few(3), tmp_path / "out.nc")
-    rm.generate(FEW, seed=1).to_netcdf(tmp_path / "ensemble.nc")
+    assert command("generate", tmp_path / "scene.toml", "-o", tmp_path / "ensemble.nc")[0] == 0
     for name in ("picture.png", "picture.pdf", "picture.svg"):
         assert command("plot", tmp_path / "out.nc", "-o", tmp_path / name, "--variable", "force")[0] == 0
     return tmp_path
@@ -193,6 +193,62 @@ def test_nothing_is_replaced_by_another_kind_of_file_unasked(kinds: Path) -> Non
                     assert "--fresh" in said
             output.unlink()
     assert {path.name: path.read_bytes() for path in kinds.iterdir()} == before
+
+
+@pytest.mark.parametrize("shape", ["paraboloid", "tabulated"])
+def test_asperities_are_replaced_unasked_by_the_very_ones_alone(tmp_path: Path, shape: str) -> None:
+    section = {**FEW, "placement": "random"}
+    if shape == "tabulated":
+        section |= {"shape": shape, "r": [0, "1 um", "2 um"], "f": [0, "1 nm", "4 nm"]}
+        del section["radius"]
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(few(asperities=section)))
+    out = tmp_path / "ensemble.nc"
+    generate = ["generate", tmp_path / "scene.toml", "-o", out]
+    assert command(*generate)[0] == 0
+    before = out.read_bytes()
+    for others in (
+        ["--set", "seed=8"],
+        ["--realization", 1],
+        ["--set", "asperities.count=19"],
+        ["--set", "asperities.patch='2 mm'"],
+        ["--set", "asperities.height.std='2 um'"],
+    ):
+        status, said = command(*generate, *others)
+        assert (status, "holds other asperities already" in said, out.read_bytes()) == (2, True, before)
+    assert command(*generate)[0] == 0
+    assert command(*generate, "--set", "seed=8", "--fresh")[0] == 0
+    with xr.open_dataset(out) as ensemble:
+        assert ensemble.attrs["seed"] == 8
+        edited = ensemble.load().assign(height=ensemble.height + 1e-9)
+    edited.to_netcdf(out)
+    assert command(*generate, "--set", "seed=8")[0] == 2
+
+
+@pytest.mark.parametrize("name", ["out", "out.png", "out.toml.txt", "nc", ".nc", "out.nc.gz", "out.json"])
+def test_the_name_of_an_output_says_what_it_is(tmp_path: Path, name: str) -> None:
+    """Before anything is computed: the scene would fail where it is drawn."""
+    impossible = {**FEW, "placement": "hard_core", "min_distance": "1 m"}
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(few(asperities=impossible)))
+    rm.run(few(3), tmp_path / "result.nc")
+    before = names(tmp_path)
+    asked = {
+        "run": ([tmp_path / "scene.toml", "-o", tmp_path / name, "--fresh"], "result must end in .nc"),
+        "generate": ([tmp_path / "scene.toml", "-o", tmp_path / name, "--fresh"], "asperities must end in .nc"),
+        "plot": ([tmp_path / "result.nc", "-o", tmp_path / f"{name}.nc", "--fresh"], "end in .png, .pdf or .svg"),
+        "new": ([tmp_path / name], "scene must end in .toml"),
+    }
+    for verb, (arguments, says) in asked.items():
+        status, said = command(verb, *arguments)
+        assert (status, says in said) == (2, True), said
+    with pytest.raises(rm.StoreError, match="must end in"):
+        rm.run(few(3), tmp_path / name)
+    assert names(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["out.NC", "out.nc4", "out.netcdf", "out.cdf", "a.b.nc"])
+def test_every_usual_name_of_a_netcdf_file_will_do(tmp_path: Path, name: str) -> None:
+    rm.run(few(3), tmp_path / name)
+    assert names(tmp_path) == [name]
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])

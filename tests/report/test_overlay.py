@@ -295,7 +295,7 @@ def test_a_picture_of_a_sweep_names_cells_and_laws(tmp_path: Path) -> None:
     done = roughmdr("plot", str(result), "-o", str(picture), "--variable", "force", "--with-theory")
     assert "theory       fuller_tabor: drawn (in 1 of 2 cells)\n" in done.output
     drawn = picture.read_text()
-    assert [drawn.count(f"<!-- {text} -->") for text in (GW, FT, "adhesion_work = 0.05 J m-2")] == [1, 1, 1]
+    assert [drawn.count(f"<!-- {text} -->") for text in (GW, FT, "adhesion_work = 50 mJ/m^2")] == [1, 1, 1]
 
 
 def test_asperities_that_are_not_drawn_have_no_expected_law(tmp_path: Path) -> None:

@@ -142,7 +142,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         (
             {"asperities": {**{k: v for k, v in SCENE["asperities"].items() if k != "radius"}, "shape": "power_law",
                             "exponent": 0.5, "coefficient": 1.0}},
-            "asperities.exponent: can be as low as 0.5; with adhesion it must be above 0.5",
+            "asperities.exponent: 0.5 is too low; with adhesion it must be above 0.5",
         ),
     ],
 )  # fmt: skip

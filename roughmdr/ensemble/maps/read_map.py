@@ -17,6 +17,7 @@ from roughmdr.ensemble.maps.height_map import HeightMap, blocks
 from roughmdr.ensemble.maps.raw_map import RawMap, Size, SizeReader, check_points, spacings, spacings_of_sides
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import unit_factor
+from roughmdr.storage.files import NETCDF_ENDINGS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -238,7 +239,7 @@ def _read_channel(reader: Any, name: str | None) -> RawMap:
 
 
 _READER_OF_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
-    **dict.fromkeys((".nc", ".nc4", ".cdf", ".netcdf"), _read_netcdf),
+    **dict.fromkeys(NETCDF_ENDINGS, _read_netcdf),
     **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), _read_text),
     **dict.fromkeys((".npy", ".npz"), _read_numpy),
 }

@@ -8,7 +8,7 @@ from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_families import ALIASES, Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.schema.wording import close_matches
 
 _COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
@@ -41,9 +41,10 @@ class DistributionReader:
             except TypeError:  # an entry that cannot be hashed
                 distribution = self._from_table(value)
         if self.positive and not distribution.smallest > 0.0:
-            raise RoughmdrError(
-                f"can be as low as {distribution.smallest:.3g}; it must be above 0 (lognormal, for one, always is)"
-            )
+            if distribution.constant is not None:
+                raise RoughmdrError("must be above 0")
+            lowest = format_quantity(distribution.smallest, self.dimension)
+            raise RoughmdrError(f"can be as low as {lowest}; it must be above 0 (lognormal, for one, always is)")
         return distribution
 
     @lru_cache(maxsize=256)  # noqa: B019 - the cells of a sweep read the same ones over and over

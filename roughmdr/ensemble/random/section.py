@@ -19,7 +19,7 @@ from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, 
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.shapes import SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
 _Section = TypeVar("_Section", bound=Section)
@@ -64,14 +64,22 @@ class RandomAsperities(PatchSource):
     @model_validator(mode="after")
     def _check_populations(self) -> "RandomAsperities":
         names = ", ".join(self.distributions) or "none"
-        for name in _parameters_of(self.second, self.shape):
+        in_second = _parameters_of(self.second, self.shape)
+        for name in in_second:
             if name not in self.distributions:
                 raise EntryError(f"second.{name}", None, f"is not given for the first population: {names}")
-        for population, (name, floor, reason) in product(self.populations.members, SHAPES[self.shape].not_below):
+        members, bounds = enumerate(self.populations.members), SHAPES[self.shape].not_below
+        for (number, population), (name, floor, reason) in product(members, bounds):
             entry, lower = population.parameters[name], population.parameters[floor]
             if entry.smallest < lower.largest:
-                message = f"must not be below {floor}, which can be as high as {lower.largest:.3g}: {reason}"
-                raise EntryError(name, f"from {entry.smallest:.3g}", message)
+                lowest, highest = (
+                    format_quantity(end, SHAPES[self.shape].units[key])
+                    for key, end in ((name, entry.smallest), (floor, lower.largest))
+                )
+                given = lowest if entry.constant is not None else f"from {lowest}"
+                limit = highest if lower.constant is not None else f"which can be as high as {highest}"
+                key = f"second.{name}" if number > 0 and name in in_second else name
+                raise EntryError(key, given, f"must not be below {floor}, {limit}: {reason}")
         if self.correlation is None:
             return self
         correlated = self.populations.correlated

@@ -1,0 +1,156 @@
+"""The cost of one run of a cell, measured on parts of it, each larger than the one before while there is time."""
+
+import math
+import time
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath
+from roughmdr.batch.costs import seconds
+from roughmdr.batch.plan import Cell
+from roughmdr.batch.realization import simulate_ensemble, simulate_realization
+from roughmdr.ensemble import Ensemble
+from roughmdr.scene import Scene
+
+_PARTS = (
+    (20, 8),
+    (200, 40),
+    (2000, 100),
+    (10_000, 500),
+)  # asperities and steps of a part; time and memory grow in proportion
+_LONG = 0.5  # seconds of a first run that is not repeated for the sake of the clock
+_REPEATS = 10  # of the last part
+_MARGIN = 2.5  # runs of a part for which there must be time left: one with the memory traced
+
+
+class Cost(NamedTuple):
+    """Time [s] and memory [byte] of one run of a cell, and the largest part that was run to find them."""
+
+    seconds: float
+    memory: float
+    asperities: int = 0
+    steps: int = 0
+
+
+class _Time(NamedTuple):
+    """Time [s] of a part of a run."""
+
+    drawing: float
+    summing: float
+
+    @property
+    def total(self) -> float:
+        return self.drawing + self.summing
+
+
+def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
+    """Return the cost of one run of a cell, in about ``budget`` seconds; at least a small part is run.
+
+    An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``.
+    RoughmdrError where the cell cannot be computed.
+    """
+    if estimator == "expected":
+        return _expected_law(cell, variables, budget)
+    count = max(1, math.ceil(cell.scene.asperities.expected_count))
+    sizes = list(dict.fromkeys((min(most, count), min(steps, cell.steps)) for most, steps in _PARTS))
+
+    def run(size: int) -> _Time:
+        return _draw_and_sum(cell.scene, _thinned(cell, sizes[size][1]), sizes[size][0], estimator, variables)
+
+    def scaled(taken: _Time, size: int, asperities: int, steps: int) -> float:
+        more = asperities / sizes[size][0]
+        return more * (taken.drawing + taken.summing * steps / sizes[size][1])
+
+    size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, *sizes[size + 1]), len(sizes), budget)
+    taken = _Time(*np.mean(times, axis=0).tolist())
+    return Cost(scaled(taken, size, count, cell.steps), memory * count / sizes[size][0], *sizes[size])
+
+
+def _expected_law(cell: Cell, variables: list[str], budget: float) -> Cost:
+    steps = list(dict.fromkeys(min(most, cell.steps) for _, most in _PARTS))
+    parts = [Cell(cell.scene, _thinned(cell, each)) for each in steps]
+    foreseen = [seconds(part, "expected") for part in (*parts, cell)]
+    if _MARGIN * foreseen[0] > budget:
+        return Cost(foreseen[-1], 0.0)
+
+    def run(size: int) -> _Time:
+        started = time.perf_counter()
+        simulate_realization(cell.scene, parts[size].path, 0, variables, "expected")
+        return _Time(0.0, time.perf_counter() - started)
+
+    def scaled(taken: _Time, size: int, other: int) -> float:
+        return taken.total * foreseen[other] / foreseen[size]
+
+    size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, size + 1), len(parts), budget)
+    taken = _Time(*np.mean(times, axis=0).tolist())
+    return Cost(scaled(taken, size, -1), memory, 0, steps[size])
+
+
+def _grow(
+    run: Callable[[int], _Time], next_seconds: Callable[[int, _Time], float], sizes: int, budget: float
+) -> tuple[int, list[_Time], float]:
+    """Run larger and larger parts while the next one fits into the budget.
+
+    Return the number of the last one, the times of it, and its memory [byte].
+    """
+    started = time.perf_counter()
+
+    def left() -> float:
+        return budget - (time.perf_counter() - started)
+
+    taken, memory = _traced(run, 0)
+    if taken.total < _LONG:
+        taken = run(0)  # without what is loaded at its first use
+    size, times = 0, [taken]
+    while size + 1 < sizes and _MARGIN * next_seconds(size, times[0]) < left():
+        size += 1
+        times = [run(size)]
+    if size > 0:
+        _, memory = _traced(run, size)
+    while len(times) < _REPEATS and times[0].total < left():
+        times.append(run(size))
+    return size, times, memory
+
+
+def _traced(run: Callable[[int], _Time], size: int) -> tuple[_Time, float]:
+    """Run a part; return its time, longer since its memory is traced, and that memory [byte]."""
+    tracemalloc.start()
+    try:
+        return run(size), float(tracemalloc.get_traced_memory()[1])
+    finally:
+        tracemalloc.stop()
+
+
+def _thinned(cell: Cell, steps: int) -> LoadingPath:
+    """Return the path of a cell with so many of its steps, the first and the last included."""
+    path, adhesive = cell.path, cell.scene.work > 0.0
+    if steps >= cell.steps:
+        return path
+    some = np.linspace(0, cell.steps - 1, steps).astype(int)
+    return LoadingPath.along(path.separation[some], unload=False, adhesive=adhesive)
+
+
+def _draw_and_sum(scene: Scene, path: LoadingPath, count: int, estimator: str, variables: list[str]) -> _Time:
+    started = time.perf_counter()
+    section = scene.asperities.limited_to(count)
+    ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
+    drawn = time.perf_counter()
+    some = _some_of(ensemble, count)
+    began = time.perf_counter()
+    simulate_ensemble(scene, path, some, variables)
+    return _Time(drawn - started, time.perf_counter() - began)
+
+
+def _some_of(ensemble: Ensemble, count: int) -> Ensemble:
+    """Return about so many asperities of one that cannot be drawn smaller, evenly over the heights."""
+    stride = max(1, ensemble.height.size // count)
+    if stride == 1:
+        return ensemble
+    pick: Callable[[np.ndarray], np.ndarray] = partial(np.take, indices=np.arange(0, ensemble.height.size, stride))
+    parameters = {name: pick(column) for name, column in ensemble.parameters.items()}
+    return replace(ensemble, height=pick(ensemble.height), parameters=parameters, positions={})

@@ -1,0 +1,35 @@
+"""The result that a public function is given: the path of a file, or a Dataset."""
+
+import os
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roughmdr.errors import StoreError
+from roughmdr.schema.wording import short_repr
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_file import read_result
+from roughmdr.storage.result_validation import find_fault
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def given_result(result: "str | Path | xr.Dataset") -> tuple[Labelled, Path | None]:
+    """Return a result, and its file if it is in one; StoreError where it is none.
+
+    A UserWarning tells the caller of the caller where the numbers in a file cannot be trusted.
+    """
+    import xarray as xr
+
+    if isinstance(result, xr.Dataset):
+        data = Labelled.of(result)
+        if fault := find_fault(data):
+            raise StoreError(f"result: not as roughmdr.run returns it: {fault}")
+        return data, None
+    if not isinstance(result, str | os.PathLike):
+        raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
+    data = read_result(Path(result))
+    if fault := data.integrity_fault():
+        warnings.warn(f"{result}: {fault}", UserWarning, stacklevel=3)
+    return data, Path(result)

@@ -1,0 +1,66 @@
+"""The forecast of a plan: the work that it takes, counted, and whether it comes near the run."""
+
+from typing import Any
+
+import pytest
+from scenes import ASPERITIES, scene
+
+from roughmdr.batch.calibrate import measure
+from roughmdr.batch.costs import seconds
+from roughmdr.batch.estimate import estimate
+from roughmdr.batch.plan import make_plan
+from roughmdr.scene import read
+
+LARGE = {**ASPERITIES, "count": 3_000_000}
+LONG = {"separation": {"start": "3 sigma", "stop": "-1 sigma", "steps": 20_000}, "unload": True}
+FINITE_RANGE = {"model": "dugdale", "work": "50 mJ/m^2", "strength": "5 MPa"}
+FIRST_PART, LARGEST_PART = 20 * 8, 10_000 * 500
+
+
+def work(budget: float, **changes: Any) -> int:
+    """Asperities times steps of the parts that are run to foresee a scene."""
+    return estimate(make_plan(read(scene(**changes))), 2, budget).asperity_steps
+
+
+@pytest.mark.parametrize("adhesion", [None, FINITE_RANGE])
+def test_without_time_one_small_part_of_one_cell_is_run(adhesion: dict[str, Any] | None) -> None:
+    sweep = {"asperities.patch": ["1 mm", "2 mm", "3 mm"]}
+    assert work(0.0, asperities=LARGE, path=LONG, adhesion=adhesion, sweep=sweep) == FIRST_PART
+
+
+def test_a_scene_is_never_run_beyond_its_own_size() -> None:
+    small = {**ASPERITIES, "count": 30}
+    assert work(1.0, asperities=small, path={"separation": ["2 um", "1 um", "0 um"]}) == 90
+
+
+def test_with_time_the_parts_are_bounded_whatever_the_scene(tmp_path: Any) -> None:
+    assert work(60.0, asperities=LARGE, path=LONG) == LARGEST_PART
+    sweep = {"asperities.patch": {"linspace": ["1 mm", "2 mm"], "num": 30}}
+    assert work(60.0, path={"separation": ["2 um", "0 um"]}, sweep=sweep) == 12 * 1000 * 2
+
+
+def test_what_a_state_costs_bounds_the_number_of_states() -> None:
+    """At 1.5e-7 s a state, as ``costs`` has it, the largest part would take fifteen times as long."""
+    cell = make_plan(read(scene(asperities=LARGE, path=LONG, adhesion=FINITE_RANGE))).cells[0]
+    estimate(make_plan(read(scene(adhesion=FINITE_RANGE))), 1, 0.0)  # compiled
+    cost = measure(cell, "sampled", ["force"], 0.05)
+    assert cost.asperities * cost.steps < LARGEST_PART
+    assert 0.1 < cost.seconds / seconds(cell, "sampled") < 10.0
+
+
+def test_an_expected_law_that_takes_too_long_is_not_run() -> None:
+    asperities = {**ASPERITIES, "shape": "rounded_cone", "slope": ASPERITIES["radius"] | {"mean": 0.1, "std": 0.01}}
+    asperities["blend_radius"] = asperities.pop("radius")
+    batch = {"estimator": "expected", "realizations": 1}
+    cell = make_plan(read(scene(asperities=asperities, batch=batch, path=LONG))).cells[0]
+    cost = measure(cell, "expected", ["force"], 1.0)
+    assert (cost.steps, cost.seconds) == (0, seconds(cell, "expected"))
+
+
+def test_steps_that_were_not_run_are_foreseen_from_those_that_were() -> None:
+    batch = {"estimator": "expected", "realizations": 1}
+    asperities = {**ASPERITIES, "radius": "50 um"}
+    cell = make_plan(read(scene(asperities=asperities, batch=batch, path=LONG))).cells[0]
+    few, many = (measure(cell, "expected", ["force"], budget) for budget in (0.0, 30.0))
+    assert (few.steps, many.steps) == (0, 500)
+    assert 0.1 < few.seconds / many.seconds < 10.0
