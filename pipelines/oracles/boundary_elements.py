@@ -5,6 +5,7 @@ L. M. Keer, Wear 231 (1999), 206). The mean displacement is held at 0, so that s
 the deformed half-space. In the reduced problem the patch, the deepest overlap and E* are 1.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from roughmdr.numerics.arguments import Floats
 
 _RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
 _RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
-_MAX_ITERATIONS = 5000
+_MAX_ITERATIONS = 500
 
 
 class Pressed(NamedTuple):
@@ -41,14 +42,16 @@ class HeightMap:
     def press(self, separation: float) -> Pressed:
         """Return force and contact area at ``separation`` [m] of the datum plane from the deformed mean plane.
 
-        It starts from the pressures of the last call: call it with separations in order. OutOfRange where it does not
-        converge, as in full contact.
+        The force is infinite from the mean height on: no half-space whose mean plane stays fits in. It starts from the
+        pressures of the last call: call it with separations in order. OutOfRange where it does not converge.
         """
         from ContactMechanics.Optimization import constrained_conjugate_gradients
 
         deepest = float(self.height.max()) - separation
         if deepest <= 0.0:
             return Pressed(0.0, 0.0)
+        if separation <= float(self.height.mean()):
+            return Pressed(math.inf, self.size**2)
         found = constrained_conjugate_gradients(
             self._half_space,
             self.height / deepest,
@@ -60,7 +63,7 @@ class HeightMap:
             maxiter=_MAX_ITERATIONS,
         )
         if not found.success:
-            raise OutOfRange(f"separation is {separation:g} m, where boundary elements do not converge")
+            raise OutOfRange(f"separation is {separation:g} m: boundary elements do not converge")
         self._forces = found.jac * deepest
         force = self.effective_modulus * self.size * float(self._forces.sum())
         return Pressed(force, float(np.mean(self._forces > 0.0)) * self.size**2)
