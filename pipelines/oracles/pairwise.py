@@ -17,7 +17,7 @@ from roughmdr.numerics.arguments import Floats
 
 _RTOL = 1e-9
 _MAX_SWEEPS = 2000
-_RTOL_RADIUS = 1e-13
+_RTOL_RADIUS, _TINY = 1e-13, 1e-300
 _DOUBLINGS = 4  # of the radius, until it is an upper bound
 _CELLS = 4  # of images and of waves on either side; the sums of Ewald have 15 digits then
 
@@ -68,24 +68,26 @@ class Paraboloids:
         self._stretch = math.sqrt(2.0 * math.pi * work / effective_modulus)
         self._a, self._force = np.zeros_like(height), np.zeros_like(height)
         self._fold = [self._find_fold(i) for i in range(height.size)]
-        self._least = [self._indentation(a, i)[0] if a > 0.0 else 0.0 for i, a in enumerate(self._fold)]
+        self._least = [self._indentation(a, i) if a > 0.0 else 0.0 for i, a in enumerate(self._fold)]
 
     def _load(self, a: float, i: int) -> float:
         """P [N]."""
         return float((self._cubic[i] * a**1.5 - self._root) * a**1.5)
 
-    def _indentation(self, a: float, i: int) -> tuple[float, float]:
-        """Return delta_i + G_ii P_i [m] and its slope over a."""
-        g = self.green[i, i]
-        total = self._curvature[i] * a * a - self._stretch * math.sqrt(a) + g * self._load(a, i)
+    def _indentation(self, a: float, i: int) -> float:
+        """delta_i + G_ii P_i [m]."""
+        alone = self._curvature[i] * a * a - self._stretch * math.sqrt(a)
+        return float(alone + self.green[i, i] * self._load(a, i))
+
+    def _slope(self, a: float, i: int) -> float:
+        """Return the slope of ``_indentation`` over a [1]."""
         by_load = 3.0 * self._cubic[i] * a * a - 1.5 * self._root * math.sqrt(a)
-        slope = 2.0 * self._curvature[i] * a - 0.5 * self._stretch / math.sqrt(a) + g * by_load
-        return float(total), float(slope)
+        return float(2.0 * self._curvature[i] * a - 0.5 * self._stretch / math.sqrt(a) + self.green[i, i] * by_load)
 
     def _find_fold(self, i: int) -> float:
         """Return the radius at which contact i detaches while the others keep their forces; 0 without adhesion."""
         alone = float((0.25 * self._stretch / self._curvature[i]) ** (2.0 / 3.0))
-        return float(brentq(lambda a: self._indentation(a, i)[1], 0.1 * alone, 10.0 * alone)) if alone else 0.0
+        return float(brentq(lambda a: self._slope(a, i), 0.1 * alone, 10.0 * alone)) if alone else 0.0
 
     def _equilibrium(self, target: float, i: int) -> float:
         """Return the stable radius at which delta_i + G_ii P_i is ``target``, 0 if the contact is lost or not made."""
@@ -93,8 +95,11 @@ class Paraboloids:
             return 0.0
         high = 2.0 * max(self._fold[i], math.sqrt(max(target, 0.0) / self._curvature[i]))
         for _ in range(_DOUBLINGS):
-            if self._indentation(high, i)[0] >= target:
-                return float(brentq(lambda a: self._indentation(a, i)[0] - target, self._fold[i], high, xtol=1e-300, rtol=_RTOL_RADIUS))
+            if self._indentation(high, i) >= target:
+                low = self._fold[i]
+                return float(
+                    brentq(lambda a: self._indentation(a, i) - target, low, high, xtol=_TINY, rtol=_RTOL_RADIUS)
+                )
             high *= 2.0
         raise OutOfRange("a contact grows without end: its neighbours are nearer than their radii")
 

@@ -21,7 +21,7 @@ class Case(NamedTuple):
     """random, hexagonal, square, or hard_core with the smallest distance over the mean spacing: "hard_core 0.7"."""
     shape: str
     """paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, or quartic (r^4)."""
-    count: int
+    asperities: int
     roughness: float
     """Standard deviation of the heights over how far the flank of an asperity falls over the mean spacing."""
     points: int
@@ -41,7 +41,7 @@ class Case(NamedTuple):
     @property
     def spacing(self) -> float:
         """The mean spacing [m], the side of the area for each asperity."""
-        return SIZE / math.sqrt(self.count)
+        return SIZE / math.sqrt(self.asperities)
 
     def generate(self) -> xr.Dataset:
         """Return the ensemble, with positions."""
@@ -60,14 +60,14 @@ class Case(NamedTuple):
         if distance:
             shape["min_distance"] = float(distance) * self.spacing
         section = {
-            "source": "random", "count": self.count, "patch": SIZE, **shape,
+            "source": "random", "count": self.asperities, "patch": SIZE, **shape,
             "placement": "random" if placement == "square" else placement,
             "height": {"distribution": "normal", "std": self.roughness * drop},
         }  # fmt: skip
         ensemble = rm.generate(section, seed=self.seed)
         if placement == "square":
-            along = (np.arange(math.isqrt(self.count)) + 0.5) * self.spacing
-            order = np.random.default_rng(self.seed).permutation(self.count)
+            along = (np.arange(math.isqrt(self.asperities)) + 0.5) * self.spacing
+            order = np.random.default_rng(self.seed).permutation(self.asperities)
             for axis, values in zip("xy", np.meshgrid(along, along), strict=True):
                 ensemble[axis] = ("asperity", values.ravel()[order], {"units": "m"})
         return ensemble
@@ -110,4 +110,4 @@ def distances(ensemble: xr.Dataset) -> Floats:
              for p in (ensemble["x"].to_numpy(), ensemble["y"].to_numpy())]  # fmt: skip
     result = np.hypot(*apart)
     np.fill_diagonal(result, np.inf)
-    return result
+    return np.asarray(result)

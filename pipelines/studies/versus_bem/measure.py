@@ -1,4 +1,4 @@
-"""Independent asperities against boundary elements at the same separations: force, overlap, and the grid's own error."""
+"""Independent asperities against boundary elements at the same separations: forces, and contacts that overlap."""
 
 import math
 import warnings
@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
-
-import roughmdr as rm
-from roughmdr.numerics.arguments import Floats
 from studies.study import named
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
 from studies.versus_bem.maps import MapCase
+
+import roughmdr as rm
+from roughmdr.numerics.arguments import Floats
 
 MODULUS = 1e9  # [Pa], E*
 FRACTIONS = np.array([0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5])
@@ -70,7 +70,7 @@ def separations(ensemble: xr.Dataset, fractions: Floats) -> Floats:
     deep = 2.0 * float(np.ptp(height)) + 1e-7
     tried = height.max() - deep * np.linspace(0.0, 1.0, _SEARCHED)[1:] ** 3
     law = rm.load_separation(ensemble, separation=tried, effective_modulus=MODULUS, variables="contact_fraction")
-    return np.interp(fractions, law["contact_fraction"].to_numpy(), tried, right=np.nan)
+    return np.asarray(np.interp(fractions, law["contact_fraction"].to_numpy(), tried, right=np.nan))
 
 
 def overlaps(radius: Floats, distance: Floats) -> tuple[float, float]:
@@ -108,12 +108,18 @@ def compare(case: Case | MapCase) -> list[Step]:
     steps = []
     for i, h in enumerate(along.tolist()):
         radius = contact_radii(ensemble, h)
+        force, fraction = force_on(fine, h)
+        share, expected_share = overlaps(radius, distance)
         step = Step(
-            *(float(law[name][i]) for name in ("contact_fraction", "contact_count", "force")),
-            *force_on(fine, h),
-            force_on(coarse, h)[0],
-            *overlaps(radius, distance),
-            float(np.sqrt(np.mean(radius[radius > 0.0] ** 2))) * case.points / SIZE,
+            contact_fraction=float(law["contact_fraction"][i]),
+            contact_count=float(law["contact_count"][i]),
+            force=float(law["force"][i]),
+            force_bem=force,
+            contact_fraction_bem=fraction,
+            force_coarse=force_on(coarse, h)[0],
+            overlap=share,
+            overlap_poisson=expected_share,
+            radius_points=float(np.sqrt(np.mean(radius[radius > 0.0] ** 2))) * case.points / SIZE,
         )
         steps.append(step)
     return steps
