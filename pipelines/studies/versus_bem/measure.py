@@ -18,21 +18,20 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 
 MODULUS = 1e9  # [Pa], E*
-FRACTIONS = np.array([0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5])
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.3])
 PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
 CASES: list[Case | MapCase] = [
-    *(Case(where, "paraboloid", 100, rough, 384, seed)
-      for where, rough, seed in product(PLACEMENTS, (0.02, 0.2, 1.0), (1, 2))),
-    *(Case(where, shape, 100, 0.2, 384, seed)
-      for where, shape, seed in product(PLACEMENTS[::2], ("lognormal", "cone", "quartic"), (3, 4))),
+    *(Case(where, "paraboloid", 64, rough, 256, seed)
+      for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),
+    *(Case(where, shape, 64, 0.2, 256, 3)
+      for shape, where in product(("lognormal", "cone", "quartic"), PLACEMENTS[::2])),
+    *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
     *(Case(where, "paraboloid", count, 0.1, points, 5)
-      for where, (count, points) in product(PLACEMENTS[::2], ((50, 256), (200, 512), (500, 768)))),
-    *(MapCase(hurst, long, short, 512, 6)
-      for hurst, (long, short) in product((0.3, 0.8), ((0.5, 0.0625), (0.25, 0.0625), (0.0626, 0.0625)))),
+      for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),
 ]  # fmt: skip
 QUICK: list[Case | MapCase] = [
-    Case("random", "paraboloid", 25, 0.2, 128, 1),
-    Case("square", "paraboloid", 25, 0.02, 128, 1),
+    Case("random", "paraboloid", 25, 0.2, 96, 1),
+    Case("square", "paraboloid", 25, 0.02, 96, 1),
     MapCase(0.8, 0.25, 0.125, 128, 2),
 ]
 _WORKERS = 2
