@@ -13,7 +13,7 @@ FEW_CONTACTS = 4.0
 GROUPS = ("few contacts", "random", "separated", "square", "map")
 FACTOR = 3.0
 """Within which the estimate is to be."""
-_MIN_POINTS = 2.0  # of the grid a contact radius; below, boundary elements are off by a per cent and more
+_MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more
 _CELLS = {"hexagonal": "separated", "hard_core 0.5": "separated", "hard_core 0.7": "separated"}
 
 
@@ -26,14 +26,15 @@ class Estimate(NamedTuple):
 
 
 def interaction_error(contact_fraction: ArrayLike) -> Estimate:
-    """Return how much too low the force of independent asperities is, by their summed contact fraction.
+    """Return how much too low the force of independent asperities is, by their summed contact fraction f.
 
-    A lattice of equal paraboloids has 1.40 sqrt(f) + 0.44 f to first order, asperities at random places half of it;
-    from 0.3 to 0.5 on boundary elements are in full contact.
+    A square lattice of equal contacts of any shape has 1.40 sqrt(f) to first order: each feels its periodic images,
+    -3.90 P/(pi E* L), with its stiffness 2 E* a. Asperities at random places have half of it and more. At f from 0.3
+    to 0.5 boundary elements are in full contact, and the error is 1.
     """
     fraction = np.asarray(contact_fraction, dtype=np.float64)
     root = np.sqrt(fraction)
-    parts = (1.2 * root + fraction, 0.55 * root, 1.5 * root + 2.0 * fraction)
+    parts = (1.4 * root + fraction, 0.5 * root, 1.6 * root + 2.0 * fraction)
     return Estimate(*(np.minimum(part, 1.0) for part in parts))
 
 
@@ -51,15 +52,16 @@ def errors(result: xr.Dataset) -> Floats:
 def grid_errors(result: xr.Dataset) -> Floats:
     """Return how far forces on half as many points are off; NaN where the error is not known, or in full contact."""
     with np.errstate(invalid="ignore"):
-        off = np.abs(1.0 - result["force_coarse"] / result["force_bem"])
-    return np.asarray(off.where(resolved(result)))
+        off = np.abs(1.0 - result["force_coarse"].to_numpy() / result["force_bem"].to_numpy())
+    return np.where(resolved(result), off, np.nan)
 
 
 def groups(result: xr.Dataset) -> NDArray[np.str_]:
     """Return the group of each case and step."""
     placed = np.array([_CELLS.get(name, name) for name in result["placement"].to_numpy().tolist()])
     whole = np.broadcast_to(placed[:, None], result["force"].shape)
-    return np.where(result["contact_count"].to_numpy() <= FEW_CONTACTS, "few contacts", whole)
+    few = (result["contact_count"].to_numpy() <= FEW_CONTACTS) & (whole != "map")
+    return np.where(few, "few contacts", whole)
 
 
 class Judged(NamedTuple):

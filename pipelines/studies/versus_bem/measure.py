@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import product
 from multiprocessing import get_context
@@ -128,7 +129,11 @@ def measure(quick: bool) -> xr.Dataset:
     """Compare all cases, or a few of them on coarse grids."""
     cases = QUICK if quick else CASES
     with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
-        compared = list(pool.map(compare, cases))
+        return collect(cases, list(pool.map(compare, cases)))
+
+
+def collect(cases: Sequence[Case | MapCase], compared: Sequence[list[Step]]) -> xr.Dataset:
+    """Return all numbers, NaN for steps that a case does not reach."""
     numbers = np.full((len(cases), FRACTIONS.size, len(Step._fields)), np.nan)
     for row, steps in zip(numbers, compared, strict=True):
         row[: len(steps)] = np.reshape(steps, (-1, len(Step._fields)))
