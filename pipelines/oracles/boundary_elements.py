@@ -1,0 +1,69 @@
+"""A rigid height map on an elastic half-space by boundary elements: periodic, without adhesion.
+
+ContactMechanics solves it (fast Fourier transform, and the constrained conjugate gradients of I. A. Polonsky and
+L. M. Keer, Wear 231 (1999), 206). The mean displacement is held at 0, so that separations count from the mean plane of
+the deformed half-space. In the reduced problem the patch, the deepest overlap and E* are 1.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import OutOfRange
+from roughmdr.numerics.arguments import Floats
+
+_RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
+_RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
+_MAX_ITERATIONS = 200
+
+
+class Pressed(NamedTuple):
+    """The state at one separation."""
+
+    force: float
+    """[N]"""
+    contact_area: float
+    """[m2], of all grid cells under pressure"""
+
+
+class HeightMap:
+    """Heights [m] on a periodic square grid over ``size`` [m], pressed into a half-space of ``effective_modulus``."""
+
+    def __init__(self, height: Floats, size: float, effective_modulus: float = 1.0) -> None:
+        from ContactMechanics import PeriodicFFTElasticHalfSpace
+
+        self.height = np.asarray(height, dtype=np.float64)
+        self.size = size
+        self.effective_modulus = effective_modulus
+        self._half_space = PeriodicFFTElasticHalfSpace(self.height.shape, 1.0, (1.0, 1.0), stiffness_q0=0.0)
+        self._forces = np.zeros_like(self.height)  # [E* size m] of the grid cells, at the last separation
+
+    def press(self, separation: float) -> Pressed:
+        """Return force and contact area at ``separation`` [m] of the datum plane from the deformed mean plane.
+
+        The force is infinite from the mean height on: no half-space whose mean plane stays fits in. It starts from the
+        pressures of the last call: call it with separations in order. OutOfRange where it does not converge.
+        """
+        from ContactMechanics.Optimization import constrained_conjugate_gradients
+
+        deepest = float(self.height.max()) - separation
+        if deepest <= 0.0:
+            return Pressed(0.0, 0.0)
+        if separation <= float(self.height.mean()):
+            return Pressed(math.inf, self.size**2)
+        found = constrained_conjugate_gradients(
+            self._half_space,
+            self.height / deepest,
+            offset=-separation / deepest,
+            initial_forces=-self._forces / deepest if self._forces.any() else None,
+            thermotol=_RTOL_FORCE,
+            pentol=_RTOL_OVERLAP,
+            forcetol=_RTOL_OVERLAP / self.height.size,
+            maxiter=_MAX_ITERATIONS,
+        )
+        if not found.success:
+            raise OutOfRange(f"separation is {separation:g} m: boundary elements do not converge")
+        self._forces = found.jac * deepest
+        force = self.effective_modulus * self.size * float(self._forces.sum())
+        return Pressed(force, float(np.mean(self._forces > 0.0)) * self.size**2)

@@ -1,0 +1,152 @@
+"""Independent asperities against boundary elements at the same separations: forces, and contacts that overlap."""
+
+import math
+import warnings
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from itertools import product
+from multiprocessing import get_context
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from oracles.boundary_elements import HeightMap
+from studies.study import named
+from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
+from studies.versus_bem.maps import MapCase
+
+import roughmdr as rm
+from roughmdr.numerics.arguments import Floats
+
+MODULUS = 1e9  # [Pa], E*
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.3])
+PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
+CASES: list[Case | MapCase] = [
+    *(Case(where, "paraboloid", 64, rough, 256, seed)
+      for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),
+    *(Case(where, shape, 64, 0.2, 256, 3)
+      for shape, where in product(("lognormal", "cone", "quartic"), PLACEMENTS[::2])),
+    *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
+    *(Case(where, "paraboloid", count, 0.1, points, 5)
+      for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),
+]  # fmt: skip
+QUICK: list[Case | MapCase] = [
+    Case("random", "paraboloid", 25, 0.2, 96, 1),
+    Case("square", "paraboloid", 25, 0.02, 96, 1),
+    MapCase(0.8, 0.25, 0.125, 128, 2),
+]
+_WORKERS = 2
+_NAMES = {
+    "contact_fraction": ("summed contact area of independent asperities over the nominal area", "1"),
+    "contact_count": ("contacts of independent asperities", "1"),
+    "force": ("force of independent asperities", "N"),
+    "force_bem": ("force of boundary elements, infinite in full contact", "N"),
+    "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
+    "force_coarse": ("force of boundary elements with half as many points a side", "N"),
+    "overlap": ("share of contacts whose circle meets another", "1"),
+    "overlap_poisson": ("the share for these radii at random places", "1"),
+    "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
+}
+_SEARCHED = 2000  # separations in which those of given contact fractions are found
+
+
+class Step(NamedTuple):
+    """Numbers at one separation, named in ``_NAMES``."""
+
+    contact_fraction: float
+    contact_count: float
+    force: float
+    force_bem: float
+    contact_fraction_bem: float
+    force_coarse: float
+    overlap: float
+    overlap_poisson: float
+    radius_points: float
+
+
+def separations(ensemble: xr.Dataset, fractions: Floats) -> Floats:
+    """Return where independent asperities reach contact fractions; NaN where they do not before the lowest touches."""
+    height = ensemble["height"].to_numpy()
+    deep = 2.0 * float(np.ptp(height)) + 1e-7
+    tried = height.max() - deep * np.linspace(0.0, 1.0, _SEARCHED)[1:] ** 3
+    law = rm.load_separation(ensemble, separation=tried, effective_modulus=MODULUS, variables="contact_fraction")
+    return np.asarray(np.interp(fractions, law["contact_fraction"].to_numpy(), tried, right=np.nan))
+
+
+def overlaps(radius: Floats, distance: Floats) -> tuple[float, float]:
+    """Return the share of contacts that meet another, and 1 - exp(-n pi <(a_i + a_j)^2>) of Poisson's points."""
+    a = radius[radius > 0.0]
+    if a.size < 2:
+        return 0.0, 0.0
+    apart = distance[np.ix_(radius > 0.0, radius > 0.0)]
+    share = np.any(apart < a[:, None] + a[None, :], axis=1).mean()
+    reach = (a * a)[:, None] + 2.0 * np.outer(a, a) + (a * a)[None, :]
+    np.fill_diagonal(reach, 0.0)
+    return float(share), float(np.mean(-np.expm1(-math.pi * reach.sum(axis=1) / SIZE**2)))
+
+
+def force_on(surface: HeightMap, separation: float) -> tuple[float, float]:
+    """Return force [N] and contact fraction; NaN where boundary elements do not converge, as next to full contact."""
+    try:
+        force, area = surface.press(separation)
+    except rm.OutOfRange:
+        return math.nan, math.nan
+    return force, area / SIZE**2
+
+
+def compare(case: Case | MapCase) -> list[Step]:
+    """Return a step for each contact fraction that the ensemble reaches."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        ensemble, *maps = case.build()
+        along = separations(ensemble, FRACTIONS)
+        along = along[np.isfinite(along)]
+        names = ["force", "contact_fraction", "contact_count"]
+        law = rm.load_separation(ensemble, separation=along, effective_modulus=MODULUS, variables=names)
+    fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
+    distance = distances(ensemble)
+    steps = []
+    for i, h in enumerate(along.tolist()):
+        radius = contact_radii(ensemble, h)
+        force, fraction = force_on(fine, h)
+        share, expected_share = overlaps(radius, distance)
+        step = Step(
+            contact_fraction=float(law["contact_fraction"][i]),
+            contact_count=float(law["contact_count"][i]),
+            force=float(law["force"][i]),
+            force_bem=force,
+            contact_fraction_bem=fraction,
+            force_coarse=force_on(coarse, h)[0],
+            overlap=share,
+            overlap_poisson=expected_share,
+            radius_points=float(np.sqrt(np.mean(radius[radius > 0.0] ** 2))) * case.points / SIZE,
+        )
+        steps.append(step)
+    return steps
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Compare all cases, or a few of them on coarse grids."""
+    cases = QUICK if quick else CASES
+    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
+        return collect(cases, list(pool.map(compare, cases)))
+
+
+def collect(cases: Sequence[Case | MapCase], compared: Sequence[list[Step]]) -> xr.Dataset:
+    """Return all numbers, NaN for steps that a case does not reach."""
+    numbers = np.full((len(cases), FRACTIONS.size, len(Step._fields)), np.nan)
+    for row, steps in zip(numbers, compared, strict=True):
+        row[: len(steps)] = np.reshape(steps, (-1, len(Step._fields)))
+    placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
+    return xr.Dataset(
+        {
+            name: (("case", "step"), numbers[..., i], named(long_name, units))
+            for i, (name, (long_name, units)) in enumerate(_NAMES.items())
+        },
+        {
+            "placement": ("case", list(placement)),
+            "shape": ("case", list(shape)),
+            "roughness": ("case", list(roughness), named("heights over the drop at a spacing; of maps, of the waves")),
+            "seed": ("case", [case.seed for case in cases]),
+        },
+    )

@@ -1,0 +1,10 @@
+"""Independent asperities against boundary elements: python pipelines/versus_bem.py."""
+
+from studies.study import Study
+from studies.versus_bem.measure import measure
+from studies.versus_bem.report import draw, report
+
+STUDY = Study("versus_bem", "What independence costs: against boundary elements", measure, draw, report)
+
+if __name__ == "__main__":
+    STUDY.command()

@@ -1,0 +1,86 @@
+"""The study of independent asperities against boundary elements."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import xarray as xr
+
+pytest.importorskip("ContactMechanics")
+from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances, height_map
+from studies.versus_bem.judge import errors, grid_errors, groups, interaction_error
+from studies.versus_bem.measure import QUICK, overlaps, separations
+from versus_bem import STUDY
+
+import roughmdr as rm
+
+
+class Studied(NamedTuple):
+    text: str
+    folder: Path
+    result: xr.Dataset
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studied]:
+    folder = tmp_path_factory.mktemp("versus_bem")
+    text = STUDY.carry_out(folder, quick=True)
+    with xr.open_dataset(folder / "versus_bem.nc") as result:
+        yield Studied(text, folder, result)
+
+
+@pytest.mark.slow
+def test_every_case_is_compared_drawn_and_reported(studied: Studied) -> None:
+    assert studied.result.sizes["case"] == len(QUICK)
+    assert all(f"| {name} |" in studied.text for name in ("random", "square", "map"))
+    assert (studied.folder / "versus_bem.png").stat().st_size > 5000
+
+
+@pytest.mark.slow
+def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: Studied) -> None:
+    error, grid = errors(studied.result), grid_errors(studied.result)
+    known = np.isfinite(error)
+    assert known.sum() > 8
+    assert (error[known] > 0.0).all()
+    assert (grid[np.isfinite(grid)] < 0.1 * error[np.isfinite(grid)]).all()
+
+
+@pytest.mark.slow
+def test_the_high_estimate_bounds_and_the_estimate_is_within_a_factor_of_3(studied: Studied) -> None:
+    error = errors(studied.result)
+    known = np.isfinite(error)
+    fraction, error = studied.result["contact_fraction"].to_numpy()[known], error[known]
+    found = interaction_error(fraction)
+    assert np.mean(error <= found.high) >= 0.9
+    assert np.mean((found.estimate <= 3.0 * error) & (error <= 3.0 * found.estimate)) >= 0.9
+    assert set(groups(studied.result).ravel()) == {"few contacts", "random", "square", "map"}
+
+
+@pytest.mark.parametrize("shape", ["paraboloid", "lognormal", "cone", "quartic"])
+def test_contact_radii_and_separations_are_those_of_the_law(shape: str) -> None:
+    asperities = Case("hard_core 0.5", shape, 30, 0.3, 64, 1).generate()
+    along = separations(asperities, np.array([0.01, 0.1]))
+    law = rm.load_separation(asperities, separation=along, effective_modulus=1e9, variables="contact_area")
+    for h, area in zip(along.tolist(), law["contact_area"].to_numpy().tolist(), strict=True):
+        assert math.pi * np.sum(contact_radii(asperities, h) ** 2) == pytest.approx(area, rel=1e-9)
+    np.testing.assert_allclose(law["contact_area"] / SIZE**2, [0.01, 0.1], rtol=0.02)
+    assert distances(asperities).min() >= 0.5 * SIZE / math.sqrt(30) * (1.0 - 1e-12)
+
+
+def test_the_map_is_periodic_and_as_high_as_its_asperities() -> None:
+    asperities = Case("random", "paraboloid", 5, 0.3, 64, 1).generate()
+    found = height_map(asperities, 64)
+    moved = asperities.assign(x=(asperities["x"] + 16.0 * SIZE / 64) % SIZE)
+    np.testing.assert_allclose(height_map(moved, 64), np.roll(found, 16, axis=0), rtol=0.0, atol=1e-9 * np.ptp(found))
+    top = float(asperities["height"].max())
+    assert top - (SIZE / 64) ** 2 <= found.max() <= top
+
+
+def test_overlaps_at_random_places_are_poissons() -> None:
+    asperities = Case("random", "paraboloid", 2000, 0.3, 64, 1).generate()
+    share, expected = overlaps(np.full(2000, 0.1 * SIZE / math.sqrt(2000)), distances(asperities))
+    assert expected == pytest.approx(-math.expm1(-0.04 * math.pi), rel=1e-3)
+    assert share == pytest.approx(expected, rel=0.2)
