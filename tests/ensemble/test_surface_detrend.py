@@ -266,7 +266,7 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
     assert (over.attrs["periodic"], over.attrs["detrend"]) == (0, "plane")
     with CliRunner().isolation():
         done = CliRunner().invoke(main, ["generate", "s.toml", "-o", "e.nc", "--set", 'asperities.cutoff="8 um"'])
-    assert "detrended: quadratic, without waves below 8e-06 m" in done.stdout
+    assert "detrended: quadratic, without waves below 8 um" in done.stdout
 
 
 @pytest.mark.parametrize(
