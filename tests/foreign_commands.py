@@ -46,11 +46,11 @@ OF_RESULT = (
     "info changed.nc --cells",
     "plot changed.nc -o picture.png",
     "plot changed.nc -o picture.png --with-expected --with-theory",
-    "generate changed.nc -o made.nc",
+    "generate changed.nc -o made.nc --fresh",
     "run {}.toml -o changed.nc",
     "run changed.nc -o again.nc",
 )
-OF_INPUT = ("generate {}.toml -o made.nc", "run {}.toml -o again.nc")
+OF_INPUT = ("generate {}.toml -o made.nc --fresh", "run {}.toml -o again.nc")
 
 
 @contextmanager

@@ -131,10 +131,10 @@ def test_what_is_no_ordinary_file_is_not_read(folder: Path, special: dict[str, P
         name, "not a regular"
     )
     assert says in checked(f"info {path}").output
-    assert says in checked(f"generate {path} -o made.nc").output
+    assert says in checked(f"generate {path} -o made.nc --fresh").output
     assert says in checked(f"plot {path} -o picture.png").output
     for source in ("ensemble", "map"):
-        done = checked(f"generate {source}.toml -o made.nc --set asperities.file={path}")
+        done = checked(f"generate {source}.toml -o made.nc --fresh --set asperities.file={path}")
         assert done.exit_code == 2
         assert says in done.output
 
