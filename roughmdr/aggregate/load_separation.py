@@ -127,6 +127,7 @@ def compute(
         ensemble.validity_limits(radius),
         validity.jkr_error if adhesion.model == "jkr" else 0.0,
         float(ensemble.attrs.get("radius_uncertainty", 0.0)),
+        bool(ensemble.attrs.get("of_surface", 0)),
         _overlap(ensemble, radius),
     )
     result = LoadSeparation.of(

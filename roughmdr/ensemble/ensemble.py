@@ -106,7 +106,7 @@ class Ensemble:
         if not isinstance(warnings, str):
             raise SceneError(f"ensemble: attribute warnings is {short_repr(warnings)}; it must be a text")
         area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
-        attrs = {**sides, **_radius_uncertainty(dataset.attrs)}
+        attrs = {**sides, **_of_map(dataset.attrs)}
         return cls(shape, height, parameters, area, positions, attrs, shared_profile, texts).sorted()
 
 
@@ -121,15 +121,16 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
     return None
 
 
-def _radius_uncertainty(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return the uncertainty of the radii of summits of a map, where the attributes have it; SceneError if it is no
-    number.
+def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
+    """Return whether the asperities are summits of a surface, and the uncertainty of their radii, as far as attributes
+    have them; SceneError if these are no numbers.
     """
-    name = "radius_uncertainty"
-    if name not in attrs:
-        return {}
     try:
-        return {name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)}
+        return {
+            name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)
+            for name in ("of_surface", "radius_uncertainty")
+            if name in attrs
+        }
     except OutOfRange as error:
         raise SceneError(str(error)) from None
 

@@ -27,6 +27,9 @@ class Source(Section):
     is_random: ClassVar[bool] = True
     """Whether realisations differ."""
 
+    of_surface: ClassVar[bool] = False
+    """Whether the asperities are the summits of a continuous surface."""
+
     source: str
 
     @property

@@ -1,29 +1,42 @@
 """The error of the force of asperities that do not feel each other, and how many of their contacts overlap."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
-TYPICAL, LOW = 0.85, 0.5
-"""Error of the force at given separation from the deformed mean plane, over the force of boundary elements and over the
-square root of the contact fraction: of many randomly placed asperities, and the least (``pipelines/versus_bem.py``)."""
-
-_SELF, _SELF_AREA = 1.40, 0.44
 _NEIGHBOURS = 6  # of a hexagonal lattice
 
 
-def interaction_error(contact_fraction: Floats) -> Floats:
-    """Return by how much the force of independent asperities is too low at most, over the true force [1].
-
-    ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). The estimate is exact for equal
-    contacts on a square lattice of spacing L: against the deformed mean plane each is pressed 3.9003 P/(pi E* L) deeper
-    than alone, by the periodic Green's function at the origin without its singular part. With f = pi a^2/L^2 that gives
-    1.40 sqrt(f) + 0.44 f. Many random contacts are off by less. From f = 0.4 on it is the whole force: there boundary
-    elements find full contact.
+class Coefficients(NamedTuple):
+    """The error of the force at given separation from the deformed mean plane, over the force of boundary elements and
+    over the square root of the contact fraction (``pipelines/versus_bem.py``).
     """
-    return np.minimum(_SELF * np.sqrt(contact_fraction) + _SELF_AREA * contact_fraction, 1.0)
+
+    low: float
+    """Next to the least."""
+    typical: float
+    estimate: float
+    """Bounds most errors; a term that is linear in the contact fraction is added."""
+
+
+ASPERITIES = Coefficients(0.5, 0.85, 1.4)
+"""Of asperities on a plane: at random, separated, or on a lattice, for which the first order is exact: with L the
+spacing of equal contacts of load P each is pressed 3.9003 P/(pi E* L) deeper than alone against the deformed mean plane.
+"""
+SUMMITS = Coefficients(1.5, 1.9, 2.0)
+"""Of the summits of a continuous surface, whose flanks are no paraboloids."""
+
+
+def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASPERITIES) -> Floats:
+    """Return by how much the force of independent asperities is too low, over the true force [1].
+
+    ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). From 0.3 to 0.5 on, where boundary
+    elements find full contact, it is the whole force.
+    """
+    return np.minimum(coefficients.estimate * np.sqrt(contact_fraction) + contact_fraction, 1.0)
 
 
 def poisson_overlap(radius: Floats, nominal_area: float) -> float:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.asperity.validity import ValidityLimits
-from roughmdr.model_error.interaction import interaction_error
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
 
 TRUSTED_FRACTION = 0.02
@@ -32,6 +32,8 @@ class Assumptions(NamedTuple):
     """About the error of JKR, over the largest force; 0 where it is not used."""
     radius_uncertainty: float = 0.0
     """Relative uncertainty of the radii of a map's summits."""
+    of_surface: bool = False
+    """Whether the asperities are the summits of a continuous surface."""
     overlap: float = math.nan
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
 
@@ -84,7 +86,7 @@ class ModelError(NamedTuple):
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
-        interaction = interaction_error(contact_fraction)
+        interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
         beyond = separation[contact_fraction > TRUSTED_FRACTION]
         lowest = int(np.argmin(force))

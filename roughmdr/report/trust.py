@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.model_error.interaction import LOW, TYPICAL, interaction_error
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, Coefficients, interaction_error
 from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -14,6 +14,7 @@ from roughmdr.storage.labelled import Labelled
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
+_MORE = 1.0 + 1e-9
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _NAMES = {
@@ -43,11 +44,12 @@ def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
     if tension.size:
         places.insert(0, (tension, "at the largest tension"))
     shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
-    errors = [f"{_interaction(float(fraction.max()))} {place}" for fraction, place in places]
+    coefficients = _coefficients(known)
+    errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
     yield "contact", f"summed contact area {', '.join(shares)}"
     yield "model error", f"asperities are independent: force at given separation off by {', '.join(errors)}"
     yield from _several("", others)
-    yield "trust", _trust(known)
+    yield "trust", _trust(known, coefficients)
 
 
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
@@ -58,14 +60,14 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 
 
-def _trust(known: dict[str, Floats]) -> str:
+def _trust(known: dict[str, Floats], coefficients: Coefficients) -> str:
     """Return within which error the force holds, and up to where."""
     if not (known["model_error"] > 0.0).any():
         return "no contact along the whole path"
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
-        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION)))
+        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients))
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
         rest = "; below, asperities interact, which is left out"
     error = sum(parts.values())
@@ -74,11 +76,17 @@ def _trust(known: dict[str, Floats]) -> str:
     return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
 
 
-def _interaction(fraction: float) -> str:
-    """Return the error by interaction at a contact fraction: of many random contacts, and its range."""
-    most = float(interaction_error(np.array(fraction)))
-    low, middle, high = (100.0 * min(part, 1.0) for part in (*np.array([LOW, TYPICAL]) * math.sqrt(fraction), most))
-    return f"about {middle:.2g} % ({low:.2g} to {high:.2g})"
+def _coefficients(known: dict[str, Floats]) -> Coefficients:
+    """Return the coefficients that the error by interaction was estimated with."""
+    as_asperities = interaction_error(known["largest_contact_fraction"].max())
+    return SUMMITS if known["interaction_error"].max() > _MORE * as_asperities else ASPERITIES
+
+
+def _interaction(fraction: float, coefficients: Coefficients) -> str:
+    """Return the error by interaction at a contact fraction, as it is typically, and its range."""
+    root, most = math.sqrt(fraction), float(interaction_error(np.array(fraction), coefficients))
+    low, middle = (min(part * root, 1.0) for part in (coefficients.low, coefficients.typical))
+    return f"about {100.0 * middle:.2g} % ({100.0 * low:.2g} to {100.0 * most:.2g})"
 
 
 def _known(values: Any) -> Floats:

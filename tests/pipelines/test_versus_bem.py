@@ -11,7 +11,7 @@ import xarray as xr
 
 pytest.importorskip("ContactMechanics")
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances, height_map
-from studies.versus_bem.judge import errors, grid_errors, groups, interaction_error
+from studies.versus_bem.judge import errors, estimates, grid_errors, groups
 from studies.versus_bem.measure import QUICK, overlaps, separations
 from versus_bem import STUDY
 
@@ -49,13 +49,13 @@ def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: St
 
 
 @pytest.mark.slow
-def test_the_high_estimate_bounds_and_the_estimate_is_within_a_factor_of_3(studied: Studied) -> None:
+def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: Studied) -> None:
     error = errors(studied.result)
     known = np.isfinite(error)
-    fraction, error = studied.result["contact_fraction"].to_numpy()[known], error[known]
-    found = interaction_error(fraction)
-    assert np.mean(error <= found.high) >= 0.9
-    assert np.mean((found.estimate <= 3.0 * error) & (error <= 3.0 * found.estimate)) >= 0.9
+    found = estimates(studied.result["contact_fraction"].to_numpy(), groups(studied.result))[known]
+    error = error[known]
+    assert np.mean(error <= found) >= 0.75
+    assert np.mean((found <= 3.0 * error) & (error <= 3.0 * found)) >= 0.9
     assert set(groups(studied.result).ravel()) == {"few contacts", "random", "square", "map"}
 
 

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from studies.study import table
-from studies.versus_bem.judge import FACTOR, GROUPS, errors, grid_errors, groups, interaction_error, judge
+from studies.versus_bem.judge import FACTOR, GROUPS, errors, estimates, grid_errors, groups, judge
+
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,9 +25,8 @@ def draw(result: xr.Dataset) -> "Figure":
     left, right = figure.subplots(1, 2)
     fraction, error, group = result["contact_fraction"].to_numpy(), errors(result), groups(result)
     along = np.geomspace(5e-4, 1.0, 200)
-    found = interaction_error(along)
-    left.fill_between(along, found.low, found.high, color="0.92", lw=0, label="low to high")
-    left.loglog(along, found.estimate, color="k", lw=1.2, label="estimate")
+    for name, kind, style in (("estimate", ASPERITIES, "-"), ("estimate for maps", SUMMITS, "--")):
+        left.loglog(along, interaction_error(along, kind), color="k", lw=1.2, ls=style, label=name)
     for name, colour in _COLOURS.items():
         own = group == name
         left.plot(fraction[own], error[own], "o", color=colour, ms=4, mec="w", mew=0.3, label=name)
@@ -57,13 +58,13 @@ def report(result: xr.Dataset) -> str:
             cells.append(middle)
         coefficients.append(cells)
         if own.any():
-            judged = judge(fraction[own], error[own])
-            percent = (f"{100.0 * share:.0f} %" for share in (judged.bounded, judged.below_high, judged.within))
+            judged = judge(fraction[own], error[own], estimates(fraction, group)[own])
+            percent = (f"{100.0 * share:.0f} %" for share in (judged.bounded, judged.within))
             shares.append([name, str(judged.number), *percent])
     grid = grid_errors(result)
     grid = grid[np.isfinite(grid)]
     bins = [f"f from {low:g} to {high:g}" for low, high in _BINS]
-    head = ["placement", "errors", "below the estimate", "below the high one", f"within a factor of {FACTOR:g}"]
+    head = ["placement", "errors", "below the estimate", f"within a factor of {FACTOR:g}"]
     return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
 
 {table(["placement", *bins], coefficients)}

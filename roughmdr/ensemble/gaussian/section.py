@@ -31,6 +31,8 @@ class NayakAsperities(PatchSource):
     Their number is density times area, rounded; their heights are from the mean plane of the surface.
     """
 
+    of_surface: ClassVar[bool] = True
+
     source: Literal["nayak"]
     shape: Literal["paraboloid"] = "paraboloid"
     m0: Annotated[float, BeforeValidator(Quantity("m2", above=0.0))] | None = None
@@ -146,7 +148,7 @@ class NayakAsperities(PatchSource):
         summits = self.summits.draw(*(streams(stream, self.count) for stream in _STREAMS))
         positions = self.positions(streams, self.count) if with_positions else {}
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
-        attrs |= {"density": self.summits.density, "alpha": self.summits.moments.alpha}
+        attrs |= {"of_surface": 1, "density": self.summits.density, "alpha": self.summits.moments.alpha}
         attrs |= self.summits.moments._asdict()
         radii = {"radius": summits.radius}
         return Ensemble(self.shape, summits.height, radii, self.nominal_area, positions, attrs).sorted()

@@ -39,6 +39,8 @@ class SurfaceAsperities(FromFile):
     ``radius_uncertainty`` [1] (``resolution``).
     """
 
+    of_surface: ClassVar[bool] = True
+
     source: Literal["surface"]
     shape: Literal["paraboloid"] = "paraboloid"
     size: Annotated[Size | None, BeforeValidator(SizeReader())] = None

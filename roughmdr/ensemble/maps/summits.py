@@ -46,6 +46,7 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     defined = surface.defined
     positions = {"x": x % nx * dx, "y": y % ny * dy}  # a top may lie across the edge of a periodic map
     attrs: dict[str, float | int | str] = {
+        "of_surface": 1,
         "patch_x": nx * dx,
         "patch_y": ny * dy,
         "points_per_summit": defined / height.size,
