@@ -23,8 +23,9 @@ class Coefficients(NamedTuple):
 
 
 ASPERITIES = Coefficients(0.5, 0.85, 1.4)
-"""Of asperities on a plane: at random, separated, or on a lattice, for which the first order is exact: with L the
-spacing of equal contacts of load P each is pressed 3.9003 P/(pi E* L) deeper than alone against the deformed mean plane.
+"""Of asperities on a plane: at random, separated, or on a lattice, for which the first order is exact. There each of
+equal contacts at a spacing L, under a load P, is pressed 3.9003 P/(pi E* L) deeper against the deformed mean plane than
+alone.
 """
 SUMMITS = Coefficients(1.5, 1.9, 2.0)
 """Of the summits of a continuous surface, whose flanks are no paraboloids."""
@@ -33,8 +34,8 @@ SUMMITS = Coefficients(1.5, 1.9, 2.0)
 def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASPERITIES) -> Floats:
     """Return by how much the force of independent asperities is too low, over the true force [1].
 
-    ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). From 0.3 to 0.5 on, where boundary
-    elements find full contact, it is the whole force.
+    ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). Where boundary elements find full
+    contact, from 0.3 to 0.5 on, the error is the whole force.
     """
     return np.minimum(coefficients.estimate * np.sqrt(contact_fraction) + contact_fraction, 1.0)
 

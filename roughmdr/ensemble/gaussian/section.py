@@ -2,7 +2,7 @@
 
 import math
 from functools import cached_property, partial
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
