@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
+from roughmdr.aggregate.pull_off import prepare as prepare_pull_off
+from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
@@ -18,13 +20,14 @@ from roughmdr.kernels.adhesion import Adhesion, Model
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, PULL_OFF_NUMBERS, RUN_VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,6 +52,8 @@ class LoadSeparation(NamedTuple):
     """The adhesion model that was used."""
     warnings: tuple[str, ...] = ()
     """Warnings that concern the ensemble itself."""
+    pull_off: PullOff = PullOff()
+    """The largest tension of the unloadings."""
 
     @classmethod
     def of(
@@ -103,7 +108,8 @@ def compute(
     )
     extremes = ensemble.validity_limits(max_radius)
     result = LoadSeparation.of(total, names, ensemble.nominal_area, extremes, visits, validity.tabor, adhesion.model)
-    return result._replace(warnings=ensemble.warnings)
+    pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
+    return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
 
 
 def prepare(shape: str, adhesion: Adhesion) -> None:
@@ -116,6 +122,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        prepare_pull_off(law, columns, one)
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
@@ -156,7 +163,8 @@ def load_separation(
     Returns
     -------
     xarray.Dataset
-        The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1].
+        The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1]; with an
+        unloading pull_off_force [N], pull_off_separation [m] and pull_off_contacts [1], NaN where it ends in contact.
 
     Raises
     ------
@@ -203,6 +211,9 @@ def load_separation(
     )
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     data["numerical_error"] = Array((), np.array(result.numerical_error), RUN_VARIABLES["numerical_error"].attrs)
+    if (np.diff(path.separation) > 0.0).any():
+        for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
+            data[variable.name] = Array((), np.array(number), variable.attrs)
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
     return Labelled(data, {"separation": distance, "branch": path.branch()}, warn_limits(warnings)).to_xarray()

@@ -35,6 +35,12 @@ def _compiled(kernels: Kernels) -> Callable[[Columns, Material, Floats], None]:
     return specialise(_fill_depths, kernels)
 
 
+def prepare(kernels: Kernels, columns: Columns, adhesion: Adhesion) -> None:
+    """Compile what the pull-off of adhesive contacts needs."""
+    if kernels.adhesive:
+        _compiled(kernels)(columns, Material(1.0, adhesion.work, adhesion.strength), np.empty(1))
+
+
 def pull_off_of(
     kernels: Kernels,
     height: Floats,

@@ -18,6 +18,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of, undecided_of
+from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
@@ -68,7 +69,8 @@ def compute(
     extremes = _as_ensemble(source, source.nodes(rule)).validity_limits(_largest_radii(nodes, closest, count))
     model = problem.adhesion.model
     law = LoadSeparation.of(total, names, source.nominal_area, extremes, products, validity.tabor, model)
-    return law._replace(warnings=_warnings(law.numerical_error, error_of_others))
+    warnings = _warnings(law.numerical_error, error_of_others)
+    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, rule, nodes, total[FORCE]))
 
 
 @np.errstate(all="ignore")  # its numbers are not used
