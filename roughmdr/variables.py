@@ -154,7 +154,7 @@ PULL_OFF_NUMBERS = _declare(
     (
         "pull_off_force",
         "N",
-        "largest tension of the unloading, located between its steps; none where it ends in contact",
+        "largest tension of the unloading, between its steps; none where it ends in contact",
     ),
     ("pull_off_separation", "m", "separation at the largest tension of the unloading"),
     ("pull_off_contacts", "1", "number of contacts that carry the largest tension of the unloading"),

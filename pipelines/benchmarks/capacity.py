@@ -20,6 +20,7 @@ from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import ResultRow, TaskResult, row_of
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.loading.pull_off import PullOff
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; workers of one thread."""

@@ -66,7 +66,7 @@ def _turns(separation: Floats) -> Floats:
     """Return the lowest and highest points of a path in turn; it comes from infinity and ends in one of them."""
     distinct = separation[np.append(True, np.diff(separation) != 0.0)]
     down = np.append(True, np.diff(distinct) < 0.0)
-    return distinct[np.append(down[1:] != down[:-1], True)]
+    return np.asarray(distinct[np.append(down[1:] != down[:-1], True)])
 
 
 def locate(rises: list[Unloading], evaluate: Evaluate, detachments: Floats = _NONE) -> PullOff:

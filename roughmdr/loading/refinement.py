@@ -32,18 +32,18 @@ def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
         left = (low - force[k - 1]) / (h[k] - h[k - 1]) if from_left else 0.0
         right = (force[k + 2] - high) / (h[k + 2] - h[k + 1]) if from_right else 0.0
         if not from_right:
-            return min(least, low + left * width)
+            return float(min(least, low + left * width))
         if not from_left:
-            return min(least, high - right * width)
+            return float(min(least, high - right * width))
         if left < 0.0 < right:
-            return min(least, low + left * (high - right * width - low) / (left - right))
-        return least
+            return float(min(least, low + left * (high - right * width - low) / (left - right)))
+        return float(least)
     change = abs(high - low)
     if before:
         change = max(change, abs(low - force[k - 1]))
     if after:
         change = max(change, abs(force[k + 2] - high))
-    return least - change
+    return float(least - change)
 
 
 @njit
@@ -68,7 +68,7 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
     filled = 0
     for k in chosen:
         last = h[k]
-        inside = count[k + 1] - count[k]
+        inside = int(count[k + 1] - count[k])
         used = min(inside, points) if inside else points
         for j in range(used):
             if inside:

@@ -80,12 +80,10 @@ def lowest_of_mean(separation: Floats, force: Floats) -> float:
         at = int(np.argmin(values))
         least = float(values[at])
         if 0 < at < values.size - 1:
-            before, after = (
-                (values[at] - values[at - 1]) / (h[at] - h[at - 1]),
-                (values[at + 1] - values[at]) / (h[at + 1] - h[at]),
-            )
-            bend = (after - before) / (h[at + 1] - h[at - 1])
-            slope = before + bend * (h[at] - h[at - 1])
+            left, right = h[at] - h[at - 1], h[at + 1] - h[at]
+            before, after = (values[at] - values[at - 1]) / left, (values[at + 1] - values[at]) / right
+            bend = (after - before) / (left + right)
+            slope = before + bend * left
             least -= float(0.25 * slope * slope / bend) if bend > 0.0 else 0.0
         lowest = min(lowest, least)
     return lowest
