@@ -17,6 +17,7 @@ from roughmdr.loading.staircase import risen
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ROUNDS = 24
+_COARSE = 16  # intervals of a rise: from fewer its largest tension may not show at all
 _NONE = np.zeros(0)
 
 Evaluate = Callable[[LoadingPath], tuple[Floats, Floats]]
@@ -86,8 +87,12 @@ def _locate(rise: Unloading, evaluate: Evaluate, detachments: Floats, limit: flo
     h, force, contacts = rise.separation, rise.force, np.full_like(rise.force, math.nan)
     farthest = max(float(np.abs(h).max()), float(np.abs(detachments[[0, -1]]).max()) if detachments.size else 0.0)
     beside = BESIDE * float(np.spacing(farthest))
-    for _ in range(_MAX_ROUNDS):
-        added = next_separations(h, force, detachments, min(limit, float(force.min())), beside)
+    for number in range(_MAX_ROUNDS):
+        if number == 0 and h.size <= _COARSE:
+            parts = -(-_COARSE // (h.size - 1))
+            added = (h[:-1, None] + np.diff(h)[:, None] * (np.arange(1, parts) / parts)).ravel()
+        else:
+            added = next_separations(h, force, detachments, min(limit, float(force.min())), beside)
         if not added.size:
             break
         values = evaluate(rise.path(added))

@@ -54,8 +54,8 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
     """
     count = np.searchsorted(detachments, h)
     smooth, bounds = np.empty(h.size - 1), np.empty(h.size - 1)
-    for k in range(h.size - 1):
-        smooth[k] = 1.0 if count[k] == count[k + 1] else 0.0
+    for k in range(h.size - 1):  # a slope across a few roundings is none
+        smooth[k] = 1.0 if count[k] == count[k + 1] and h[k + 1] - h[k] > _NARROW * beside else 0.0
     limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * np.max(np.abs(force)))
     for k in range(h.size - 1):
         wide = h[k + 1] - h[k] > _NARROW * beside
@@ -66,12 +66,13 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
     points = min(max(_POINTS // max(chosen.size, 1), _MIN_POINTS), _MAX_POINTS)
     found = np.empty(2 * points * chosen.size)
     filled = 0
-    for k in chosen:
-        last = h[k]
-        inside = int(count[k + 1] - count[k])
-        used = min(inside, points) if inside else points
+    for number in range(chosen.size):
+        k = int(chosen[number])
+        last = float(h[k])
+        inside = count[k + 1] - count[k]
+        used = min(inside, points) if inside > 0 else points
         for j in range(used):
-            if inside:
+            if inside > 0:
                 at = detachments[count[k] + ((2 * j + 1) * inside) // (2 * used)]
                 sides = (at - beside, at + beside)
             else:  # denser towards the end, where a contact may be about to detach
