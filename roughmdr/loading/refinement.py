@@ -1,8 +1,8 @@
 """Where to look for the lowest force of a rise of the flat, between separations at which it is known.
 
 In an interval without detachments the force lies above the chords of its neighbours, carried on, since it is convex
-there. In one with detachments, or between two of them, it is taken to fall no further below its ends than it changes
-from one end to the other, here or next to here.
+there. In one with detachments, or between two of them, it is taken to fall no further below its ends than twice what
+it changes from one end to the other, here or next to here.
 """
 
 import math
@@ -14,6 +14,7 @@ from roughmdr.numerics.jit import njit
 
 _TOLERANCE = 1e-7  # of the lowest force
 _NEGLIGIBLE = 1e-12  # of the largest force: it may be compression, and cancels where the lowest is
+_SAFETY = 2.0  # on how much the force changes beside an interval with detachments
 _INTERVALS, _POINTS = 12, 24  # refined at a time, and points in all of them
 _MIN_POINTS, _MAX_POINTS = 2, 6  # in an interval
 BESIDE = 4.0  # roundings from a detachment to either side
@@ -43,7 +44,7 @@ def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
         change = max(change, abs(low - force[k - 1]))
     if after:
         change = max(change, abs(force[k + 2] - high))
-    return float(least - change)
+    return float(least - _SAFETY * change)
 
 
 @njit

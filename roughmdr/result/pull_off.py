@@ -30,7 +30,11 @@ def pull_off_numbers(
     found, done = collected.pull_offs, collected.diagnostics["status"] == DONE
     if plan.keeps_statistics:
         mean_force, dims = collected.values["mean"][:, force], swept
-        count, all_done = found[:, COUNT, 0], np.array([float(each.realizations) for each in methods])
+        mean_lowest, count, all_done = (
+            found[:, MEAN, 0],
+            found[:, COUNT, 0],
+            np.array([float(each.realizations) for each in methods]),
+        )
         numbers = {
             f"{name}_{statistic}": values
             for number, name in enumerate(PULL_OFF_NUMBERS)
@@ -39,6 +43,7 @@ def pull_off_numbers(
     else:
         mean_force, _ = mean_and_error(collected.values["curves"][:, :, force], done)
         dims, all_done = (*swept, "realization"), done.sum(axis=1).astype(float)
+        mean_lowest, _ = mean_and_error(found[..., 0], np.isfinite(found[..., 0]))
         count = np.isfinite(found[..., 0]).sum(axis=1).astype(float)
         numbers = {name: found[..., number] for number, name in enumerate(PULL_OFF_NUMBERS)}
     of_mean = np.array(
@@ -47,6 +52,8 @@ def pull_off_numbers(
             for cell, curve, each, total in zip(plan.cells, mean_force, count, all_done, strict=True)
         ]
     )
+    # The mean law is nowhere lower than the mean of the lowest forces; a parabola through few steps may be.
+    of_mean = np.where(count == all_done, np.maximum(of_mean, mean_lowest), of_mean)
     for cell, method in enumerate(methods):
         if method.estimator == "expected":
             of_mean[cell] = found[cell, MEAN if plan.keeps_statistics else 0, 0]

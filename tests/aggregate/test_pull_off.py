@@ -1,6 +1,7 @@
 """The pull-off of ensembles: against the plain way, a force at every detachment and at many separations between."""
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -54,7 +55,7 @@ def plain(asperities: xr.Dataset, path: np.ndarray, law: dict[str, Any]) -> floa
         ends = np.concatenate([[low], inside, [high]])
         tiny = 4.0 * np.spacing(np.abs(path).max())
         points = [np.array([ends[1:] - tiny, ends[:-1] + tiny]).ravel(), [high]]
-        points += [q - (q - p) * FINE * FINE for p, q in zip(ends[:-1], ends[1:], strict=True)]
+        points += [q - (q - p) * FINE * FINE for p, q in pairwise(ends)]
         for _ in range(4):
             more = np.unique(np.concatenate(points))
             more = more[(more > low) & (more <= high)]
