@@ -161,6 +161,25 @@ RUN_DIAGNOSTICS = _diagnostics(
 )
 """Diagnostics of a run: from here task results, checkpoints, resumed files and results have them."""
 
+PULL_OFF_NUMBERS = _declare(
+    (
+        "pull_off_force",
+        "N",
+        "largest tension of the unloading, between its steps; none where it ends in contact",
+    ),
+    ("pull_off_separation", "m", "separation at the largest tension of the unloading"),
+    ("pull_off_contacts", "1", "number of contacts that carry the largest tension of the unloading"),
+)
+"""Numbers of the pull-off of each realisation, in the order of ``PullOff``."""
+
+PULL_OFF = PULL_OFF_NUMBERS | _declare(
+    ("pull_off_pressure", "Pa", "largest tension of the unloading over nominal area"),
+    ("pull_off_count", "1", "number of realizations with a pull-off: whose unloading does not end in contact"),
+    ("pull_off_force_of_mean", "N", "largest tension of the mean force during unloading"),
+    ("pull_off_pressure_of_mean", "Pa", "largest tension of the mean force during unloading, over nominal area"),
+)
+"""Variables of a result with an unloading."""
+
 RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | _declare(
     ("realization_count", "1", "number of realizations of the statistics"),
     ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),

@@ -20,7 +20,6 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
-from roughmdr.result.pull_off import pull_off_force
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
 
@@ -307,12 +306,6 @@ def test_a_fault_is_told_alone(key: str, value: object, says: str) -> None:
     (fault,) = caught.value.faults
     assert fault.key == f"asperities.{key}"
     assert fault.message.startswith(says)
-
-
-def test_the_resolution_of_a_pull_off_counts_the_step_before_the_first_on_the_way_back() -> None:
-    result = rm.run(scene(path={"separation": ["4 sigma", "-1 sigma", "2 sigma"]}, batch=None))
-    force = result.force[0].to_numpy()
-    assert pull_off_force(result).change == pytest.approx(abs(force[2] - force[1]), rel=1e-14)
 
 
 @pytest.mark.parametrize("title", ["\ud800", "a\x00b", "\x1b[31mred", "two\nlines", 3])

@@ -13,12 +13,14 @@ import xarray as xr
 from studies.study import table
 
 from benchmarks.child import small_scene
+from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.task_result import TaskResult, row_of
+from roughmdr.batch.task_result import ResultRow, TaskResult, row_of
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.loading.pull_off import PullOff
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
 """Of a cell; cells; workers of one thread."""
@@ -34,7 +36,9 @@ def writing() -> tuple[float, float]:
     steps, variables = 400, ("force", "contact_area", "contact_count", "stiffness")
     values = np.random.default_rng(1).normal(size=(2, len(variables), steps))
     moments = Moments.of(values[0]).merged(Moments.of(values[1]))
-    result = TaskResult.of(["0" * 32], variables, [(0, 0, moments, row_of(run_time=1.0))], steps)
+    pull_off = KnownMoments.of(np.array(PullOff()))
+    pull_off = pull_off.merged(pull_off)
+    result = TaskResult.of(["0" * 32], variables, [ResultRow(0, 0, moments, pull_off, row_of(run_time=1.0))], steps)
     times = []
     with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as store:
         store.begin("", "", "")

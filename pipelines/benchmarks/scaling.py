@@ -126,7 +126,10 @@ def by_brentq(ensemble: Ensemble) -> tuple[float, int]:
     """Return the cost of a root finder on delta = g(a) - dl(a) of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
     shape: Shape = ensemble.shared_profile or SHAPE_OF[ensemble.shape](**first)
-    fold, g = float(rm.pull_off(shape, effective_modulus=MODULUS, work=WORK).contact_radius), scalar_g(shape)
+    fold, g = (
+        float(rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="displacement").contact_radius),
+        scalar_g(shape),
+    )
     g(fold)  # compiled before the clock runs
     top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
     depths = np.linspace(1e-8, 1e-6, _BRENTQ[1])

@@ -53,7 +53,7 @@ def pull_off(points: int) -> xr.Dataset:
 
 def rough(count: int) -> xr.Dataset:
     """Return how far the force of JKR is from Dugdale's, over the largest."""
-    depth = -float(rm.pull_off(TIP, **_MATERIAL).indentation)
+    depth = -float(rm.pull_off(TIP, **_MATERIAL, control="displacement").indentation)
     quantiles = norm.ppf((np.arange(count) + 0.5) / count)
     error = np.empty((len(RATIOS), len(STOPS), ROUGH_NUMBERS.size))
     for i, j, k in np.ndindex(error.shape):
@@ -89,10 +89,10 @@ def draw(result: xr.Dataset) -> Figure:
     """Draw curves, pull-off forces, and the error of JKR."""
     figure = Figure(figsize=(15, 4.6), layout="constrained")
     curves, off, error = figure.subplots(1, 3)
-    scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL).indentation)
+    scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL, control="displacement").indentation)
     for i, mu in enumerate((*SHOWN, math.inf)):
         color, label = ("k", "JKR") if math.isinf(mu) else (f"C{i}", f"Tabor number {mu:g}")
-        lowest = float(rm.pull_off(TIP, **material(mu)).indentation)
+        lowest = float(rm.pull_off(TIP, **material(mu), control="displacement").indentation)
         delta = lowest + (2.0 * depth - lowest) * np.linspace(0.0, 1.0, 400) ** 2
         force = rm.indent(TIP, **material(mu), indentation=delta).force / scale
         curves.plot(delta / depth, force, color=color, label=label)

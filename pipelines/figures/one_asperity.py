@@ -55,7 +55,7 @@ def two_steps() -> xr.Dataset:
     states = {
         "pressed": rm.indent(cone, effective_modulus=MODULUS, contact_radius=radius),
         "lifted": rm.indent(cone, **_MATERIAL, contact_radius=radius),
-        "pull-off": rm.pull_off(cone, **_MATERIAL),
+        "pull-off": rm.pull_off(cone, **_MATERIAL, control="displacement"),
     }
     radii, depths, force = (
         np.array([float(state[name]) for state in states.values()])
@@ -150,7 +150,7 @@ def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
     ), -1, 0)  # fmt: skip
     worst = np.array([[_worst(exponents, force[i, j], rise, control) for j, control in enumerate(CONTROLS)]
                       for i, rise in enumerate(rises)])  # fmt: skip
-    flat = rm.pull_off(rm.FlatPunch(radius=WIDTH), **_MATERIAL)
+    flat = rm.pull_off(rm.FlatPunch(radius=WIDTH), **_MATERIAL, control="displacement")
     over = ("relative_stretch", "control", "exponent")
     return xr.Dataset(
         {

@@ -57,7 +57,9 @@ _STAGES = {
 def row_of_springs(points: int = 2401) -> xr.Dataset:
     """Return a paraboloid on a coarse row, loading and unloading, beside the exact force; the row at three points."""
     tip = rm.Paraboloid(radius=RADIUS)
-    loading = -float(rm.pull_off(tip, **_MATERIAL).indentation) * np.linspace(-1.45, 2.2, points)
+    loading = -float(rm.pull_off(tip, **_MATERIAL, control="displacement").indentation) * np.linspace(
+        -1.45, 2.2, points
+    )
     path = np.append(loading, loading[-2::-1])
     contact = Springs.of(tip, MODULUS, WORK, DRAWN)
     state = contact.follow(path)
@@ -94,7 +96,7 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
 
 def errors_of(shape: Shape, work: float, counts: NDArray[np.int64]) -> Floats:
     """Return the errors of force and radius for each number of springs."""
-    off = rm.pull_off(shape, **_MATERIAL)
+    off = rm.pull_off(shape, **_MATERIAL, control="displacement")
     depth = -float(off.indentation) * (DEPTHS - (1.0 if work else 0.0))
     given: Any = {"effective_modulus": MODULUS, "work": work, "indentation": depth}
     exact = rm.indent(shape, **given)

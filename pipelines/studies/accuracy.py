@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.batch.moments import MomentTree
+from roughmdr.batch.moments import Moments, MomentTree, add_curves
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
@@ -65,9 +65,14 @@ class ForceSamples(NamedTuple):
 
     def stop_as_a_batch(self, draws: np.ndarray, error: float) -> int:
         """Return how many of these draws a batch makes before it stops at ``error``."""
-        accuracy, moments, count, target = Accuracy(relative=error, max_realizations=len(draws)), MomentTree(), 0, FIRST
+        accuracy, moments, count, target = (
+            Accuracy(relative=error, max_realizations=len(draws)),
+            MomentTree[Moments](),
+            0,
+            FIRST,
+        )
         while count < target:
-            moments.add_curves(count, self.force[draws[count:target]])
+            add_curves(moments, count, self.force[draws[count:target]])
             total = moments.total(target)
             assert total is not None
             count, target = target, next_count(target, relative_error(total), accuracy)

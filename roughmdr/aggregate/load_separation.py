@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
+from roughmdr.aggregate.pull_off import prepare as prepare_pull_off
+from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
@@ -18,6 +20,7 @@ from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction, fraction_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
@@ -26,7 +29,7 @@ from roughmdr.schema.arguments import check_values
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, RUN_VARIABLES
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, PULL_OFF_NUMBERS, RUN_VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,6 +56,8 @@ class LoadSeparation(NamedTuple):
     """The adhesion model that was used."""
     warnings: tuple[str, ...] = ()
     """Warnings that concern the ensemble itself."""
+    pull_off: PullOff = PullOff()
+    """The largest tension of the unloadings."""
 
     @classmethod
     def of(
@@ -133,7 +138,8 @@ def compute(
     result = LoadSeparation.of(
         total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
     )
-    return result._replace(warnings=ensemble.warnings)
+    pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
+    return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:
@@ -160,6 +166,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        prepare_pull_off(law, columns, one)
     if adhesion.tabor_known:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
@@ -199,7 +206,8 @@ def load_separation(
     xarray.Dataset
         The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1];
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
-        where there is no nominal area).
+        where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m] and
+        pull_off_contacts [1], NaN where it ends in contact.
 
     Raises
     ------
@@ -247,6 +255,9 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
+    if (np.diff(path.separation) > 0.0).any():
+        for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
+            data[variable.name] = Array((), np.array(number), variable.attrs)
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
     warnings = [*result.warnings, *result.extremes.warnings, *fraction_warnings(result.model_error.largest_fraction)]
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})

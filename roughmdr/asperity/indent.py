@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     from roughmdr.springs import Springs
 
+_PULL_OFFS = {"force": "at the largest tension", "displacement": "at the point of detachment under fixed grips"}
+"""The two ends of a slow retraction, by its control."""
+
 
 def indent(
     shape: Shape | Callable[[Floats], Floats],
@@ -112,23 +115,26 @@ def pull_off(
     shape: Shape,
     *,
     work: float | str,
-    control: Literal["displacement", "force"] = "displacement",
+    control: Literal["force", "displacement"] = "force",
     **material: Unpack[AdhesiveMaterial],
 ) -> xr.Dataset:
-    """Find where a slow retraction ends: the least indentation, or the least force, at which there is a contact.
+    """Find the pull-off of one asperity: the largest tension that its contact bears.
+
+    With ``control="displacement"`` find the point of detachment under fixed grips, which is something else: the least
+    indentation at which there is a contact. The tension there is mostly less, since it has passed its largest.
 
     Parameters
     ----------
     shape, work, **material
         Profile, work of adhesion [J/m^2], and E*, adhesion, strength, range and error as in ``indent``.
-    control : {"displacement", "force"}, optional
-        Retraction under fixed grips, or under dead load.
+    control : {"force", "displacement"}, optional
+        Slow retraction under dead load, which ends at the pull-off force, or under fixed grips.
 
     Returns
     -------
     xarray.Dataset
         Scalars: force [N], indentation [m], contact_radius [m] and, with "dugdale", cohesive_radius [m]; all 0 without
-        adhesion.
+        adhesion. Their long_name and the attribute ``control`` say which of the two points it is.
 
     Raises
     ------
@@ -143,19 +149,23 @@ def pull_off(
     Examples
     --------
     >>> import roughmdr as rm
-    >>> off = rm.pull_off(rm.Paraboloid(radius=1e-6), effective_modulus="1 GPa", work="50 mJ/m^2", control="force")
+    >>> tip = rm.Paraboloid(radius=1e-6)
+    >>> off = rm.pull_off(tip, effective_modulus="1 GPa", work="50 mJ/m^2")
     >>> f"{float(off.force):.4g}"  # -3/2 pi w R
     '-2.356e-07'
+    >>> grips = rm.pull_off(tip, effective_modulus="1 GPa", work="50 mJ/m^2", control="displacement")
+    >>> f"{float(grips.force / off.force):.4g}"  # 5/9
+    '0.5556'
     """
-    if control not in ("displacement", "force"):
-        raise RoughmdrError(f"control is {control!r}; it must be 'displacement' or 'force'")
+    if control not in _PULL_OFFS:
+        raise RoughmdrError(f"control is {control!r}; it must be 'force' or 'displacement'")
     wanted = Adhesion.from_arguments(work, material)
     effective_modulus = effective_modulus_of(pull_off, material)
     asked = _resolved(shape, effective_modulus, wanted)
     contact = Contact.of(shape, effective_modulus, asked)
     names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if asked.model == "dugdale" else [])]
     if not contact.law.adhesive:
-        return _dataset({name: np.zeros(()) for name in names}, None, {})
+        return _at_pull_off({name: np.zeros(()) for name in names}, control, {})
     with np.errstate(all="ignore"):
         results = contact.pull_off(control)
     radius = results["contact_radius"]
@@ -165,7 +175,7 @@ def pull_off(
             raise OutOfRange(f"{name} at pull-off is not representable: {given}")
     attrs = warn_limits(_warnings(shape, radius, contact.effective_modulus, asked))
     attrs |= {"adhesion": asked.model} if wanted.model == "auto" else {}
-    return _dataset({name: results[name].reshape(()) for name in names}, None, attrs)
+    return _at_pull_off({name: results[name].reshape(()) for name in names}, control, attrs)
 
 
 def tabor(
@@ -269,6 +279,14 @@ def _warnings(shape: object, radius: Floats, effective_modulus: float, adhesion:
     if adhesion.model == "jkr" and adhesion.tabor_known:
         limits = limits._replace(tabor=_tabor(shape, effective_modulus, adhesion))
     return limits.warnings
+
+
+def _at_pull_off(results: Results, control: str, attrs: dict[str, str]) -> xr.Dataset:
+    """Return scalars as a dataset that says which point they are of."""
+    dataset = _dataset(results, None, {"control": control, **attrs})
+    for array in dataset.values():
+        array.attrs["long_name"] += f", {_PULL_OFFS[control]}"
+    return dataset
 
 
 def _dataset(results: Results, control: str | None, attrs: dict[str, str]) -> xr.Dataset:

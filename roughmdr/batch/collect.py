@@ -5,8 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.known_moments import MEAN, ROWS, KnownMoments
 from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import FAILED, NOT_RUN
 
@@ -16,6 +18,8 @@ class CollectedResults(NamedTuple):
 
     values: dict[str, Floats]
     """"curves" [cell, realization, variable, step], or "mean", "sem", "min" and "max" [cell, variable, step]."""
+    pull_offs: Floats
+    """[cell, realization, number of ``PullOff``], or its ``KnownMoments`` [cell, row of the table, number]."""
     diagnostics: Columns
 
 
@@ -29,7 +33,8 @@ class Collector:
         self._shape, self._keep_moments = (len(variables), steps), keep_moments
         self._watched = None if watched is None else tuple(variables).index(watched)
         self._results: list[TaskResult] = []
-        self._trees: dict[str, MomentTree] = {}
+        self._trees: dict[str, MomentTree[Moments]] = {}
+        self._pull_offs: dict[str, MomentTree[KnownMoments]] = {}
         self._diagnostics: dict[str, Row] = {}
         self._remarks: dict[str, tuple[int, str]] = {}
 
@@ -47,6 +52,7 @@ class Collector:
             rows_of.setdefault(key, []).append(row)
             if status != FAILED:
                 self._trees.setdefault(key, MomentTree()).add(first, result.moments_of(row).select(part))
+                self._pull_offs.setdefault(key, MomentTree()).add(first, result.pull_off_of(row))
             if remark:  # of the realisation that comes first, whichever is done first
                 self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
         for key, rows in rows_of.items():
@@ -82,6 +88,7 @@ class Collector:
         count = np.array([count for _, count in cells])
         shape = len(cells), int(count.max())
         curves, diagnostics = np.full((*shape, *self._shape), np.nan), not_run(shape)
+        pull_offs = np.full((*shape, len(PullOff._fields)), np.nan)
         while self._results:
             result = self._results.pop()
             rows = zip(result.cell.tolist(), result.first.tolist(), strict=True)
@@ -94,18 +101,22 @@ class Collector:
             if selected:
                 row, cell, first = np.array(selected).T
                 curves[cell, first] = result.moments[0][row]
+                pull_offs[cell, first] = result.pull_offs[row, MEAN]
                 for name, array in diagnostics.items():
                     array[cell, first] = result.diagnostics[name][row]
         if ((diagnostics["status"] == NOT_RUN) & (np.arange(shape[1]) < count[:, None])).any():
             raise AssertionError("a realisation was neither computed nor did it fail")
-        return CollectedResults({"curves": curves}, diagnostics)
+        return CollectedResults({"curves": curves}, pull_offs, diagnostics)
 
     def _collect_moments(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
         statistics = {name: np.full((len(cells), *self._shape), np.nan) for name in ("mean", "sem", "min", "max")}
         diagnostics = not_run((len(cells),))
+        pull_offs = np.full((len(cells), len(ROWS), len(PullOff._fields)), np.nan)
         for cell, (key, count) in enumerate(cells):
             total = self._total(key, count)
-            if total is not None:
+            known = self._pull_offs[key].total(count) if key in self._pull_offs else None
+            if total is not None and known is not None:
+                pull_offs[cell] = known.table
                 statistics["mean"][cell], statistics["sem"][cell] = total.mean, total.standard_error
                 statistics["min"][cell], statistics["max"][cell] = total.minimum, total.maximum
             elif key not in self._diagnostics or self._diagnostics[key]["status"] != FAILED:
@@ -114,4 +125,4 @@ class Collector:
             row = {**self._diagnostics[key], "remark": f"realisation {first}: {remark}" if first else remark}
             for name, array in diagnostics.items():
                 array[cell] = row[name]
-        return CollectedResults(statistics, diagnostics)
+        return CollectedResults(statistics, pull_offs, diagnostics)

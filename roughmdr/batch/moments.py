@@ -7,7 +7,7 @@ the result does not depend on who computed which of them, or when.
 import math
 from collections.abc import Iterator
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,14 +101,28 @@ def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Flo
     return mean, error
 
 
-class MomentTree:
+class Mergeable(Protocol):
+    """Something about a number of realisations that can be merged with that about the next."""
+
+    @property
+    def size(self) -> int:
+        """Number of realisations."""
+
+    def merged(self, other: Self) -> Self:
+        """Return both together."""
+
+
+_Block = TypeVar("_Block", bound=Mergeable)
+
+
+class MomentTree(Generic[_Block]):
     """Moments of one cell, merged as far as possible: as many blocks as their number has binary digits."""
 
     def __init__(self) -> None:
-        self.blocks: dict[int, Moments] = {}
+        self.blocks: dict[int, _Block] = {}
         """By the first realisation of each block."""
 
-    def add(self, first: int, moments: Moments) -> None:
+    def add(self, first: int, moments: _Block) -> None:
         """Add a block that begins at the realisation ``first``."""
         while (neighbour := self.blocks.get(first ^ moments.size)) and neighbour.size == moments.size:
             del self.blocks[first ^ moments.size]
@@ -116,14 +130,15 @@ class MomentTree:
             first &= ~(moments.size >> 1)
         self.blocks[first] = moments
 
-    def add_curves(self, first: int, values: Floats) -> None:
-        """Add single realisations along the first axis."""
-        for begin, moments in block_moments(first, values):
-            self.add(begin, moments)
-
-    def total(self, count: int) -> Moments | None:
+    def total(self, count: int) -> _Block | None:
         """Return the moments of the first ``count`` realisations; None where some are missing."""
         sizes = dict(dyadic_blocks(0, count))
         if any(first not in self.blocks or self.blocks[first].size != size for first, size in sizes.items()):
             return None
-        return reduce(Moments.merged, (self.blocks[first] for first in sizes))
+        return reduce(lambda one, other: one.merged(other), (self.blocks[first] for first in sizes))
+
+
+def add_curves(tree: MomentTree[Moments], first: int, values: Floats) -> None:
+    """Add single realisations along the first axis to a tree."""
+    for begin, moments in block_moments(first, values):
+        tree.add(begin, moments)

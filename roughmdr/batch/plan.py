@@ -53,6 +53,11 @@ class Plan(NamedTuple):
         return self.scene.output.keep == "statistics"
 
     @property
+    def unloads(self) -> bool:
+        """Whether the flat rises anywhere on its path, which is so in all cells or in none."""
+        return bool((np.diff(self.cells[0].path.separation) > 0.0).any())
+
+    @property
     def warnings(self) -> list[str]:
         """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))

@@ -10,13 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.batch.known_moments import ROWS as KNOWN_ROWS
+from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.moments import Moments
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import RUN_DIAGNOSTICS
 
 Integers = NDArray[np.int64]
 _DIAGNOSTIC = "diagnostic."  # before the name of each in a file, apart from those of the other arrays
 _MOMENTS = Moments._fields[1:]
+_ARRAYS = ("keys", "variables", "cell", "first", "size", "pull_offs")
 Row = Mapping[str, Any]  # diagnostics of one run, or of several that are merged, by name
 Columns = dict[str, NDArray[Any]]
 
@@ -31,14 +35,14 @@ class TaskResult(NamedTuple):
     size: Integers  # number of realisations of a row
     moments: tuple[Floats, ...]
     """Means [row, variable, step] and, where a row has several realisations, spreads, minima and maxima."""
+    pull_offs: Floats
+    """Tables of ``KnownMoments`` of the numbers of ``PullOff``: [row, row of the table, number]."""
     diagnostics: Columns
 
     @classmethod
-    def of(
-        cls, keys: Sequence[str], variables: Sequence[str], rows: Sequence[tuple[int, int, Moments, Row]], steps: int
-    ) -> "TaskResult":
-        """Make the table of rows: index of the key, first realisation, moments [variable, step] and diagnostics."""
-        cell, first, moments, diagnostics = zip(*rows, strict=True) if rows else ((), (), (), ())
+    def of(cls, keys: Sequence[str], variables: Sequence[str], rows: Sequence["ResultRow"], steps: int) -> "TaskResult":
+        """Make the table of rows with moments [variable, step]."""
+        cell, first, moments, known, diagnostics = zip(*rows, strict=True) if rows else ((), (), (), (), ())
         size = np.array([each.size for each in moments], dtype=np.int64)
         shape = (len(rows), len(variables), steps)
         arrays = tuple(
@@ -46,7 +50,8 @@ class TaskResult(NamedTuple):
             for name in (_MOMENTS if (size > 1).any() else _MOMENTS[:1])
         )
         cells, firsts = (np.array(each, dtype=np.int64) for each in (cell, first))
-        return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, columns_of(diagnostics))
+        pull_offs = np.array([each.table for each in known]).reshape(len(rows), len(KNOWN_ROWS), len(PullOff._fields))
+        return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, pull_offs, columns_of(diagnostics))
 
     @property
     def realizations(self) -> int:
@@ -59,12 +64,16 @@ class TaskResult(NamedTuple):
             return Moments.of(self.moments[0][row])
         return Moments(int(self.size[row]), *(array[row] for array in self.moments))
 
+    def pull_off_of(self, row: int) -> KnownMoments:
+        """Return the moments of the pull-offs of a row."""
+        return KnownMoments(int(self.size[row]), self.pull_offs[row])
+
     def select_rows(self, rows: Integers) -> "TaskResult":
         """Return the table of some of the rows."""
         cell, first, size = (array[rows] for array in (self.cell, self.first, self.size))
         diagnostics = {name: column[rows] for name, column in self.diagnostics.items()}
         moments = tuple(array[rows] for array in self.moments)
-        return TaskResult(self.keys, self.variables, cell, first, size, moments, diagnostics)
+        return TaskResult(self.keys, self.variables, cell, first, size, moments, self.pull_offs[rows], diagnostics)
 
     def with_variables(self, names: Sequence[str]) -> "TaskResult | None":
         """Return the table with these variables in this order; None where one is missing."""
@@ -77,7 +86,7 @@ class TaskResult(NamedTuple):
 
     def to_bytes(self) -> bytes:
         """Return the table as the content of a file."""
-        arrays = {name: np.asarray(getattr(self, name)) for name in ("keys", "variables", "cell", "first", "size")}
+        arrays = {name: np.asarray(getattr(self, name)) for name in _ARRAYS}
         arrays |= dict(zip(_MOMENTS, self.moments, strict=False))
         arrays |= {_DIAGNOSTIC + name: column for name, column in self.diagnostics.items()}
         buffer = io.BytesIO()
@@ -89,10 +98,20 @@ class TaskResult(NamedTuple):
         """Read the table that the content of a file holds; ValueError, KeyError or OSError where it holds none."""
         with np.load(io.BytesIO(content), allow_pickle=False) as file:
             keys, variables = (tuple(file[name].tolist()) for name in ("keys", "variables"))
-            cell, first, size = (file[name] for name in ("cell", "first", "size"))
+            cell, first, size, pull_offs = (file[name] for name in _ARRAYS[2:])
             moments = tuple(file[name] for name in _MOMENTS if name in file)
             stated = {name.removeprefix(_DIAGNOSTIC): file[name] for name in file if name.startswith(_DIAGNOSTIC)}
-        return cls(keys, variables, cell, first, size, moments, complete(stated, size.size))
+        return cls(keys, variables, cell, first, size, moments, pull_offs, complete(stated, size.size))
+
+
+class ResultRow(NamedTuple):
+    """A realisation, or several that were merged."""
+
+    cell: int  # index of the key
+    first: int  # first realisation
+    moments: Moments
+    pull_off: KnownMoments  # of the numbers of ``PullOff``
+    diagnostics: Row
 
 
 def row_of(**known: Any) -> Row:

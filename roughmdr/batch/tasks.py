@@ -11,12 +11,14 @@ import numpy as np
 from roughmdr import errors
 from roughmdr.aggregate import LoadingPath, LoadSeparation, prepare
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.known_moments import KnownMoments
+from roughmdr.batch.moments import Moments, MomentTree, add_curves
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions
-from roughmdr.batch.task_result import Row, TaskResult, merge_rows, row_of
+from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED
@@ -47,8 +49,8 @@ class Task(NamedTuple):
     keep_moments: bool  # whether moments are kept, not curves
     versions: str
 
-    def result_of(self, rows: Sequence[tuple[int, int, Moments, Row]]) -> TaskResult:
-        """Make the result of rows: index of the range, first realisation, moments and diagnostics."""
+    def result_of(self, rows: Sequence[ResultRow]) -> TaskResult:
+        """Make the result of rows, whose cells are indices of the ranges."""
         return TaskResult.of([runs.key for runs in self.ranges], self.variables, rows, self.ranges[0].cell.steps)
 
 
@@ -105,50 +107,53 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
 def compute(task: Task) -> TaskResult:
     """Compute a task; a run that cannot be computed is marked as failed, and its remark says why."""
     check_versions(task.versions)
-    rows: list[tuple[int, int, Moments, Row]] = []
+    rows: list[ResultRow] = []
     for number, runs in enumerate(task.ranges):
         results = _moments(runs, task.variables) if task.keep_moments else _curves(runs, task.variables)
-        rows += [(number, *result) for result in results]
+        rows += [result._replace(cell=number) for result in results]
     return task.result_of(rows)
 
 
-def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
+def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
     for realization in range(runs.first, runs.last):
-        values, diagnostics = _run(runs, realization, names)
-        yield realization, Moments.of(values), diagnostics
+        values, pull_off, diagnostics = _run(runs, realization, names)
+        yield ResultRow(0, realization, Moments.of(values), pull_off, diagnostics)
 
 
-def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[tuple[int, Moments, Row]]:
-    """Yield blocks of merged realisations: the first, moments and diagnostics; realisations that fail stand alone."""
-    tree, rows = MomentTree(), dict[int, Row]()
+def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
+    """Yield blocks of merged realisations; those that fail stand alone."""
+    tree, pull_offs, rows = MomentTree[Moments](), MomentTree[KnownMoments](), dict[int, Row]()
     for first in range(runs.first, runs.last, BLOCK_SIZE):
         begin, curves = first, list[Floats]()
         for realization in range(first, min(first + BLOCK_SIZE, runs.last)):
-            values, rows[realization] = _run(runs, realization, names)
+            values, pull_off, rows[realization] = _run(runs, realization, names)
             if rows[realization]["status"] == FAILED:
-                yield realization, Moments.of(values), rows[realization]
-                tree.add_curves(begin, np.array(curves).reshape(-1, *values.shape))
+                yield ResultRow(0, realization, Moments.of(values), pull_off, rows[realization])
+                add_curves(tree, begin, np.array(curves).reshape(-1, *values.shape))
                 begin, curves = realization + 1, []
             else:
                 curves.append(values)
+                pull_offs.add(realization, pull_off)
         if curves:
-            tree.add_curves(begin, np.array(curves))
+            add_curves(tree, begin, np.array(curves))
     for first, moments in tree.blocks.items():
-        yield first, moments, merge_rows([rows[realization] for realization in range(first, first + moments.size)])
+        merged = merge_rows([rows[realization] for realization in range(first, first + moments.size)])
+        yield ResultRow(0, first, moments, pull_offs.blocks[first], merged)
 
 
-def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats, Row]:
-    """Return the variables [variable, step] and the diagnostics of one realisation."""
+def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats, KnownMoments, Row]:
+    """Return the variables [variable, step], the pull-off and the diagnostics of one realisation."""
     (scene, path), started = runs.cell, time.perf_counter()
     try:
         result = simulate_realization(scene, path, realization, list(names), runs.estimator)
     except Exception as error:  # whatever it is, the other runs go on
         values = np.full((len(names), runs.cell.steps), math.nan)
         remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        return values, row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
-    values = np.array([result.variables[name] for name in names])
+        row = row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
+        return values, KnownMoments.of(np.array(PullOff())), row
+    values, pull_off = np.array([result.variables[name] for name in names]), KnownMoments.of(np.array(result.pull_off))
     known = diagnostics_of(result, scene)
-    return values, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
+    return values, pull_off, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
 
 
 def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
@@ -167,9 +172,9 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
 def failed(task: Task, remark: str) -> TaskResult:
     """Return the result of a task that could not be computed at all."""
     moments = Moments.of(np.full((len(task.variables), task.ranges[0].cell.steps), math.nan))
-    diagnostics = row_of(run_time=0.0, status=FAILED, remark=remark)
+    pull_off, diagnostics = KnownMoments.of(np.array(PullOff())), row_of(run_time=0.0, status=FAILED, remark=remark)
     runs = [(number, each) for number, runs in enumerate(task.ranges) for each in range(runs.first, runs.last)]
-    return task.result_of([(number, realization, moments, diagnostics) for number, realization in runs])
+    return task.result_of([ResultRow(*run, moments, pull_off, diagnostics) for run in runs])
 
 
 def first_error(remark: str) -> Exception:

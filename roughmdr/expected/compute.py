@@ -18,6 +18,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of, undecided_of
+from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.interaction import poisson_overlap
@@ -78,7 +79,8 @@ def compute(
     jkr_error = validity.jkr_error if model == "jkr" else 0.0
     assumptions = Assumptions(limits, jkr_error, of_surface=source.of_surface, overlap=overlap)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
-    return law._replace(warnings=_warnings(law.numerical_error, error_of_others))
+    warnings = _warnings(law.numerical_error, error_of_others)
+    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, rule, nodes, total[FORCE]))
 
 
 @np.errstate(all="ignore")  # its numbers are not used

@@ -47,3 +47,24 @@ def staircase(separation: Floats) -> Staircase:
 def no_memory(separation: Floats) -> Staircase:
     """Return the staircase of contacts without memory: only the present position of the flat counts."""
     return Staircase(np.arange(separation.size + 1), separation, separation)
+
+
+def risen(turns: Floats, separation: Floats) -> Staircase:
+    """Return the staircase along a path by some turning points [m], the last of which is the lowest of a rise.
+
+    After them it goes through the ascending separations of the rise [m].
+    """
+    before = staircase(turns)
+    last = slice(before.first[-2], before.first[-1])
+    bottom, top = before.bottom[last], before.top[last]  # the bottoms ascend, the tops descend
+    if bottom.size == 1:
+        count = np.ones(separation.size, dtype=np.int64)
+        more_bottom, more_top = np.full(separation.size, bottom[0]), np.maximum(top[0], separation)
+    else:
+        higher = (top > separation[:, None]).sum(axis=1)  # pairs that the flat does not reach
+        count = np.minimum(higher + 1, bottom.size)
+        kept = np.arange(bottom.size) < count[:, None]
+        more_bottom = np.broadcast_to(bottom, kept.shape)[kept]
+        more_top = np.maximum(top, separation[:, None])[kept]
+    first = np.concatenate([before.first, before.first[-1] + np.cumsum(count)])
+    return Staircase(first, np.concatenate([before.bottom, more_bottom]), np.concatenate([before.top, more_top]))

@@ -1,6 +1,5 @@
 """Summaries of plans, results and ensembles, for the command line."""
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
@@ -8,9 +7,9 @@ import numpy as np
 
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.prospect import prospect_lines
+from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
-from roughmdr.result.pull_off import PullOff, pull_off_force
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, FAILED
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from roughmdr.batch.foresee import Prospect
     from roughmdr.batch.plan import Plan
 
-_MAX_CELLS = 30
 _NOT_KNOWN = "not known: no run was computed"
 _HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 
@@ -73,7 +71,7 @@ def describe_result(result: Labelled, elapsed: float | None = None, *, left_out:
         ("variables", ", ".join(layout.stored_variables(result))),
         *_indent("path", attrs.get("path", "").splitlines()),
         *_indent("map", attrs.get("map", "").splitlines()),
-        *_pull_off(result),
+        *describe_pull_off(result, _NOT_KNOWN),
         *_contacts_at_ends(result),
         *trust_of_result(result),
         *_adhesion(result),
@@ -132,42 +130,6 @@ def _values(result: Labelled, name: str) -> np.ndarray:
 def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
     parts = [f"{size} {name}" for name, size in swept.items()]
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
-
-
-def _pull_off(result: Labelled) -> Iterator[tuple[str, str]]:
-    """Yield the pull-off force of each cell, and how it is defined."""
-    if "force" not in layout.stored_variables(result):
-        return
-    if "unloading" not in result.coordinates["branch"].values:
-        yield "pull-off", "none: the path has no unloading"
-        return
-    pull_off = pull_off_force(result)
-    cells = layout.cells_of(result)
-    forces = [_force(pull_off, cell) for cell in cells[:_MAX_CELLS]]
-    width = max(map(len, forces))
-    for number, (force, cell) in enumerate(zip(forces, cells, strict=False)):
-        yield "" if number else "pull-off", f"{force:<{width}}  {layout.cell_label(result, cell)}".rstrip()
-    if len(cells) > _MAX_CELLS:
-        yield "", f"... and {len(cells) - _MAX_CELLS} more cells"
-    if "force" not in result.variables:
-        definition = "largest tension of the mean curve during unloading ± its standard error there"
-    elif layout.estimator_of(result) == "expected":
-        definition = "lowest point of the expected law; realisations detach contact by contact and go a little deeper"
-    elif layout.realizations_of(result) == 1:
-        definition = "largest tension during unloading; one realisation has no standard error"
-    else:
-        definition = "largest tension of each realisation during unloading, or 0: mean ± standard error"
-    yield "", f"({definition}; in brackets: its change between steps of the path)"
-
-
-def _force(pull_off: PullOff, cell: tuple[int, ...]) -> str:
-    mean, error = float(pull_off.mean[cell]), float(pull_off.standard_error[cell])
-    tensile = int(pull_off.tensile[cell])
-    if tensile == 0:
-        return "none: never tensile" if pull_off.curves[cell] else _NOT_KNOWN
-    spread = "" if math.isnan(error) else f" ± {error:.2g} N"
-    share = "" if tensile == pull_off.curves[cell] else f", {tensile} of {pull_off.curves[cell]} tensile"
-    return f"{mean:.4g} N{spread} [{pull_off.change[cell]:.1g} N]{share}"
 
 
 def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:

@@ -14,6 +14,7 @@ from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.model_error import fraction_warnings
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.pull_off import pull_off_numbers
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
@@ -45,6 +46,9 @@ def assemble(
     swept, sizes = tuple(plan.sizes), tuple(plan.sizes.values())
     runs = swept if plan.keeps_statistics else (*swept, "realization")
     data, coordinates = _curves(plan, collected.values, variables, runs), plan.coordinates()
+
+    if plan.unloads:
+        data |= pull_off_numbers(plan, methods, collected, list(variables).index("force"))
 
     def of_cells(name: str, values: list[Any]) -> Array:
         return _array(

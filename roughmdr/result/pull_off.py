@@ -1,56 +1,111 @@
-"""The pull-off force of a result."""
+"""The pull-off of a batch: the largest tension of each unloading, its statistics, and that of the mean law."""
 
-from typing import TYPE_CHECKING, NamedTuple
+import math
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roughmdr.batch.collect import CollectedResults
+from roughmdr.batch.known_moments import COUNT, MAXIMUM, MEAN, MINIMUM, SPREAD
 from roughmdr.batch.moments import mean_and_error
-from roughmdr.errors import StoreError
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.rounds import CellMethod
+from roughmdr.loading.pull_off import unloadings
 from roughmdr.numerics.arguments import Floats
-from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import DONE
+from roughmdr.storage.labelled import Array
+from roughmdr.variables import DONE, PULL_OFF, PULL_OFF_NUMBERS
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
-class PullOff(NamedTuple):
-    """The pull-off force [N] of each cell of a result: the largest tension while the flat retracts, 0 where none is."""
-
-    mean: Floats  # over the realisations; of the mean curve, where the realisations were not kept
-    standard_error: Floats  # NaN for a single realisation, which has none
-    change: Floats  # mean change of the force there from step to step of the path: how well the path resolves it
-    tensile: NDArray[np.int64]  # number of curves that are tensile at all
-    curves: NDArray[np.int64]  # number of curves: the realisations that were computed, or one
+_STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
+_FORCE, _PRESSURE = "pull_off_force", "pull_off_pressure"
 
 
-def pull_off_force(result: "Labelled | xr.Dataset") -> PullOff:
-    """Return the pull-off force of a result, over its swept dimensions.
+def pull_off_numbers(
+    plan: Plan, methods: Sequence[CellMethod], collected: CollectedResults, force: int
+) -> dict[str, Array]:
+    """Return the variables of ``PULL_OFF``, of a batch with an unloading; ``force`` is its index among the variables.
 
-    StoreError where the result holds no force, or where its flat never retracts.
+    The mean law has no pull-off, and NaN, where half of the realisations or more end in contact.
     """
-    data = result if isinstance(result, Labelled) else Labelled.of(result)
-    arrays = data.coordinates | data.variables
-    retracting = np.flatnonzero(arrays["branch"].values == "unloading")
-    if not retracting.size:
-        raise StoreError("the flat never retracts, so that nothing is pulled off: add path.unload = true")
-    if "force" in arrays:
-        curves = arrays["force"].values
-    elif "force_mean" in arrays:
-        curves = arrays["force_mean"].values[..., None, :]
+    swept, sizes = tuple(plan.sizes), tuple(plan.sizes.values())
+    found, done = collected.pull_offs, collected.diagnostics["status"] == DONE
+    if plan.keeps_statistics:
+        mean_force, dims = collected.values["mean"][:, force], swept
+        mean_lowest, count, all_done = (
+            found[:, MEAN, 0],
+            found[:, COUNT, 0],
+            np.array([float(each.realizations) for each in methods]),
+        )
+        numbers = {
+            f"{name}_{statistic}": values
+            for number, name in enumerate(PULL_OFF_NUMBERS)
+            for statistic, values in _statistics(found[..., number]).items()
+        }
     else:
-        raise StoreError("the result holds no force: add it to output.variables")
-    force = curves[..., retracting]
-    step = np.argmin(force, axis=-1)[..., None]
-    lowest = np.take_along_axis(force, step, axis=-1)[..., 0]
-    done = arrays["status"].values == DONE
-    done = done if "force" in arrays else done[..., None]
-    mean, error = mean_and_error(np.minimum(lowest, 0.0), done)
-    if "force" not in arrays:
-        at_lowest = np.take_along_axis(arrays["force_sem"].values[..., None, retracting], step, axis=-1)
-        error = np.where(mean < 0.0, at_lowest[..., 0, 0], np.where(np.isnan(mean), np.nan, 0.0))
-    steps = np.abs(np.diff(curves, axis=-1, append=curves[..., -1:], prepend=curves[..., :1]))
-    neighbours = np.maximum(*(np.take_along_axis(steps, retracting[step] + i, axis=-1)[..., 0] for i in (0, 1)))
-    change, _ = mean_and_error(neighbours, done)
-    return PullOff(mean, error, change, (lowest < 0.0).sum(axis=-1), done.sum(axis=-1))
+        mean_force, _ = mean_and_error(collected.values["curves"][:, :, force], done)
+        dims, all_done = (*swept, "realization"), done.sum(axis=1).astype(float)
+        mean_lowest, _ = mean_and_error(found[..., 0], np.isfinite(found[..., 0]))
+        count = np.isfinite(found[..., 0]).sum(axis=1).astype(float)
+        numbers = {name: found[..., number] for number, name in enumerate(PULL_OFF_NUMBERS)}
+    of_mean = np.array(
+        [
+            lowest_of_mean(cell.path.separation, curve) if 2.0 * each > total else math.nan
+            for cell, curve, each, total in zip(plan.cells, mean_force, count, all_done, strict=True)
+        ]
+    )
+    # The mean law is nowhere lower than the mean of the lowest forces; a parabola through few steps may be.
+    of_mean = np.where(count == all_done, np.maximum(of_mean, mean_lowest), of_mean)
+    for cell, method in enumerate(methods):
+        if method.estimator == "expected":
+            of_mean[cell] = found[cell, MEAN if plan.keeps_statistics else 0, 0]
+    area = np.array([cell.scene.asperities.nominal_area or math.nan for cell in plan.cells])
+    if np.isfinite(area).any():
+        of_force = {name: values for name, values in numbers.items() if name.startswith(_FORCE)}
+        numbers |= {name.replace(_FORCE, _PRESSURE): (values.T / area).T for name, values in of_force.items()}
+
+    def array(name: str, own: tuple[str, ...], values: Floats) -> Array:
+        shape = (*sizes, *values.shape[1:])
+        return Array(own, values.reshape(shape), _attributes(name))
+
+    data = {name: array(name, dims, values) for name, values in numbers.items()}
+    data["pull_off_count"] = array("pull_off_count", swept, np.where(np.isnan(count), 0.0, count))
+    data[f"{_FORCE}_of_mean"] = array(f"{_FORCE}_of_mean", swept, of_mean)
+    if np.isfinite(area).any():
+        data[f"{_PRESSURE}_of_mean"] = array(f"{_PRESSURE}_of_mean", swept, of_mean / area)
+    return data
+
+
+def lowest_of_mean(separation: Floats, force: Floats) -> float:
+    """Return the largest tension [N] of a curve while the flat rises; 0 without tension, NaN for a curve of NaN.
+
+    It is the lowest point of a parabola through the lowest step and its neighbours.
+    """
+    lowest = 0.0
+    for rise in unloadings(separation, force):
+        h, values = rise.separation, rise.force
+        if np.isnan(values).any():
+            return math.nan
+        at = int(np.argmin(values))
+        least = float(values[at])
+        if 0 < at < values.size - 1:
+            left, right = h[at] - h[at - 1], h[at + 1] - h[at]
+            before, after = (values[at] - values[at - 1]) / left, (values[at + 1] - values[at]) / right
+            bend = (after - before) / (left + right)
+            slope = before + bend * left
+            least -= float(0.25 * slope * slope / bend) if bend > 0.0 else 0.0
+        lowest = min(lowest, least)
+    return lowest
+
+
+def _statistics(table: Floats) -> dict[str, Floats]:
+    """Return mean, standard error and so on from a table of ``KnownMoments``: [cell, row]."""
+    count = table[:, COUNT]
+    error = np.where(count > 1.0, table[:, SPREAD] / np.sqrt(np.maximum(count - 1.0, 1.0)), math.nan)
+    return {"mean": table[:, MEAN], "sem": error, "min": table[:, MINIMUM], "max": table[:, MAXIMUM]}
+
+
+def _attributes(name: str) -> dict[str, str]:
+    if name in PULL_OFF:
+        return PULL_OFF[name].attrs
+    base, _, statistic = name.rpartition("_")
+    attrs = PULL_OFF[base].attrs
+    return attrs | {"long_name": f"{_STATISTICS[statistic]} of the {attrs['long_name']}"}

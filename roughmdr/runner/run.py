@@ -160,9 +160,10 @@ def execute(
 
 
 def _computed_variables(plan: Plan) -> tuple[str, ...]:
-    """Return the variables that are computed: those asked for and, where an error is asked for, the force."""
+    """Return the variables that are computed: those asked for and, for an error asked for or a pull-off, the force."""
     asked = plan.scene.output.variables
-    return tuple(asked if plan.scene.accuracy is None or _FORCE in asked else [*asked, _FORCE])
+    needed = plan.scene.accuracy is not None or plan.unloads
+    return tuple([*asked, _FORCE] if needed and _FORCE not in asked else asked)
 
 
 @dataclass

@@ -9,7 +9,15 @@ import numpy as np
 
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE, FAILED, NOT_RUN, RUN_DIAGNOSTICS
+from roughmdr.variables import (
+    AUXILIARY_COORDINATES,
+    CURVE_VARIABLES,
+    DONE,
+    FAILED,
+    NOT_RUN,
+    PULL_OFF_NUMBERS,
+    RUN_DIAGNOSTICS,
+)
 
 _REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
 _OPTIONAL_TEXTS = ("accuracy", "warnings", "versions", "checksum")
@@ -24,7 +32,7 @@ _BRANCHES = ("loading", "unloading")
 
 def find_fault(data: Labelled) -> str:
     """Return why these arrays are no result; empty if they are one."""
-    checks = (_missing, _attributes, _dimensions, _arrays, _curves, _numbers)
+    checks = (_missing, _attributes, _dimensions, _arrays, _curves, _pull_offs, _numbers)
     return next((fault for check in checks for fault in check(data)), "")
 
 
@@ -105,6 +113,26 @@ def _curves(data: Labelled) -> Iterator[str]:
                 yield from _mismatches(part, data.variables[part], dims, "f")
     if not found:
         yield f"it has none of {', '.join(CURVE_VARIABLES)}"
+
+
+def _pull_offs(data: Labelled) -> Iterator[str]:
+    """Find a pull-off that lacks a part, or one of the wrong kind; a result without any is older than they are."""
+    runs = data.variables["status"].dims
+    cells = tuple(dim for dim in runs if dim != "realization")
+    suffixes = [""] if "realization" in runs else [f"_{statistic}" for statistic in _STATISTICS]
+    needed = {name + suffix: runs for name in PULL_OFF_NUMBERS for suffix in suffixes}
+    needed |= dict.fromkeys(("pull_off_count", "pull_off_force_of_mean"), cells)
+    per_area = {f"pull_off_pressure{suffix}": runs for suffix in suffixes} | {"pull_off_pressure_of_mean": cells}
+    for group in (needed, per_area):
+        present = [name for name in group if name in data.variables]
+        if present and len(present) < len(group):
+            yield f"it has {present[0]} but no {', '.join(name for name in group if name not in present)}"
+        for name in present:
+            yield from _mismatches(name, data.variables[name], group[name], "f")
+    if "pull_off_count" in data.variables:
+        count = data.variables["pull_off_count"].values
+        if not ((count >= 0.0) & (count < np.inf)).all():
+            yield "pull_off_count must be at least 0, and finite"
 
 
 def _numbers(data: Labelled) -> Iterator[str]:

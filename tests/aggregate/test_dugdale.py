@@ -81,7 +81,7 @@ def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
 def test_attraction_begins_before_touch_and_ends_at_the_fold() -> None:
     tip, strength = rm.Paraboloid(5e-5), strength_of(2.0)
     law = {"effective_modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
-    off, on = float(rm.pull_off(tip, **law).indentation), -W / strength
+    off, on = float(rm.pull_off(tip, **law, control="displacement").indentation), -W / strength
     assert off < on
     path = -np.array([on * 1.0001, on * 0.9999, 0.0, on, off * 0.9999, off * 1.0001])
     forces = rm.load_separation(ensemble([0.0], radius=5e-5), separation=path, **law).force.to_numpy()
@@ -120,7 +120,7 @@ def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> No
     for tabor in numbers:
         strength = tabor / rm.tabor(shape, effective_modulus=E, work=W, strength=1.0)
         law = {"effective_modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
-        far, reach = -float(rm.pull_off(shape, **law).indentation), W / strength
+        far, reach = -float(rm.pull_off(shape, **law, control="displacement").indentation), W / strength
         out = np.linspace(-0.5 * far, reach, 6001)
         before, after = reach * (1.0 + 1e-9), far * (1.0 + 1e-9)
         back = np.linspace(-0.5 * far, far * (1.0 - 1e-9), 9001)
@@ -329,7 +329,7 @@ def test_next_to_the_fold_every_float_has_its_contact(radius: float) -> None:
     """There the indentation is all roundings, along which Newton's method would creep."""
     tip, law = rm.Paraboloid(radius), {"effective_modulus": 251837.4456117847, "work": 0.09166012584432522}
     cohesion = {"adhesion": "dugdale", "strength": 240.14722117573052}
-    fold = rm.pull_off(tip, **law, **cohesion)
+    fold = rm.pull_off(tip, **law, **cohesion, control="displacement")
     near = float(fold.indentation) + np.arange(3000) * np.spacing(abs(float(fold.indentation)))
     force = rm.indent(tip, **law, **cohesion, indentation=near).force
     np.testing.assert_allclose(force, float(fold.force), rtol=1e-4)

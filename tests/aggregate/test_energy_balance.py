@@ -33,7 +33,9 @@ def folds(data: xr.Dataset) -> np.ndarray:
     kind = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw}[data.attrs["shape"]]
     names = [name for name in data.data_vars if name != "height"]
     shapes = [kind(**{name: float(data[name][i]) for name in names}) for i in range(data.sizes["asperity"])]
-    return -np.array([float(rm.pull_off(shape, effective_modulus=E, work=W).indentation) for shape in shapes])
+    return -np.array(
+        [float(rm.pull_off(shape, effective_modulus=E, work=W, control="displacement").indentation) for shape in shapes]
+    )
 
 
 def down(stops: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -92,7 +94,9 @@ def test_every_jump_is_counted_once_on_any_path(path: list[int], heights: list[i
     data = ensemble((np.array(heights) + 0.5) * unit, radius=50.0 * unit)
     way, work = np.array(path) * unit, W * unit / 1e-6
     law = rm.load_separation(data, separation=way, effective_modulus=E, work=work, variables=VARIABLES)
-    fold = -float(rm.pull_off(rm.Paraboloid(50.0 * unit), effective_modulus=E, work=work).indentation)
+    fold = -float(
+        rm.pull_off(rm.Paraboloid(50.0 * unit), effective_modulus=E, work=work, control="displacement").indentation
+    )
     a0 = (2.0 * np.pi * work * (50.0 * unit) ** 2 / E) ** (1.0 / 3.0)
     on, off = 0.6 * np.pi * work * a0**2, 0.4 * 4.0 ** (-4.0 / 3.0) * np.pi * work * a0**2
     spent, held, expected = 0.0, np.zeros(data.sizes["asperity"], dtype=bool), []

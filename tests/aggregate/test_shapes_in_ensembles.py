@@ -82,7 +82,7 @@ def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
     rng = np.random.default_rng(47)
     for omega in omegas:
         work = tension(shape, omega)
-        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work).indentation)
+        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work, control="displacement").indentation)
         path = -depth * np.concatenate([[-1.5, 0.3], rng.uniform(-1.05, 0.6, 60), [-1.5]])
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
@@ -103,7 +103,7 @@ def test_their_energy_balance_closes(case: str) -> None:
     shape, omegas = BRANCHED[case]
     for omega in omegas:
         work = tension(shape, omega)
-        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work).indentation)
+        depth = -float(rm.pull_off(shape, effective_modulus=E, work=work, control="displacement").indentation)
         way = depth * np.concatenate([np.linspace(0.5, -0.5, 2001), np.linspace(-0.5, 1.1, 20_001)])
         data = xr.Dataset({"height": ("asperity", [0.0])}, attrs={"shape": shape.name})
         columns = getattr(shape, "columns", None)
@@ -158,7 +158,7 @@ def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
     for _ in range(20):
         shape, effective_modulus = any_shape(kind, rng), 10.0 ** rng.uniform(5.0, 12.0)
         work = tension(shape, 10.0 ** rng.uniform(-4.0, 2.5)) * effective_modulus / E
-        off = rm.pull_off(shape, effective_modulus=effective_modulus, work=work)
+        off = rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement")
         depth, holds = (
             -float(off.indentation),
             -float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="force").force),

@@ -32,7 +32,9 @@ def twin(data: xr.Dataset, path: np.ndarray, effective_modulus: float, work: flo
     for i in range(data.sizes["asperity"]):
         z, shape = float(data.height[i]), shape_of(data, i)
         contacts = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=z - path)
-        fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).indentation)
+        fold = float(
+            rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement").indentation
+        )
         held = False
         for m, delta in enumerate(z - path):
             held = (delta >= 0.0 or (held and delta > fold)) if work else delta > 0.0
@@ -149,7 +151,7 @@ def test_the_parts_of_an_ensemble_add_up_to_the_whole() -> None:
 def test_only_asperities_within_reach_are_visited(work: float) -> None:
     rng = np.random.default_rng(17)
     data = ensemble(rng.normal(0.0, 1e-6, 5000), radius=5e-5)
-    fold = -float(rm.pull_off(rm.Paraboloid(5e-5), effective_modulus=E, work=work).indentation)
+    fold = -float(rm.pull_off(rm.Paraboloid(5e-5), effective_modulus=E, work=work, control="displacement").indentation)
     way_in = np.linspace(4e-6, 0.0, 50)
     route = LoadingPath.along(way_in, unload=True, adhesive=work > 0.0)
     asperities = Ensemble.from_dataset(data)

@@ -52,7 +52,7 @@ def test_two_branches(case: str) -> None:
     one = min(inner, outer) + 0.5 * (max(inner, outer) - min(inner, outer))
     left = rm.equilibria(shape, effective_modulus=E, work=work, indentation=one)
     assert left.stable_displacement.values.sum() == 1
-    off = rm.pull_off(shape, effective_modulus=E, work=work)
+    off = rm.pull_off(shape, effective_modulus=E, work=work, control="displacement")
     assert float(off.indentation) == pytest.approx(min(inner, outer), rel=1e-6)
     still = rm.indent(shape, effective_modulus=E, work=work, indentation=one)
     assert float(still.contact_radius) == pytest.approx(left.contact_radius[left.stable_displacement].item(), rel=1e-13)
@@ -72,7 +72,7 @@ ONE_BRANCH = [
 @pytest.mark.parametrize("shape", [*ONE_BRANCH, rm.FlatPunch(b)], ids=str)
 def test_between_pull_off_and_touch_there_are_two(shape: rm.Paraboloid) -> None:
     work = 1e-3
-    off = rm.pull_off(shape, effective_modulus=E, work=work)
+    off = rm.pull_off(shape, effective_modulus=E, work=work, control="displacement")
     dead = rm.pull_off(shape, effective_modulus=E, work=work, control="force")
     for part in (0.999, 0.7, 0.01):
         found = rm.equilibria(shape, effective_modulus=E, work=work, indentation=part * float(off.indentation))
@@ -91,7 +91,7 @@ def test_between_pull_off_and_touch_there_are_two(shape: rm.Paraboloid) -> None:
 
 def test_beyond_pull_off_there_is_none_and_pressed_there_is_one() -> None:
     for shape in (*ONE_BRANCH, rm.FlatPunch(b)):
-        off = rm.pull_off(shape, effective_modulus=E, work=1e-3)
+        off = rm.pull_off(shape, effective_modulus=E, work=1e-3, control="displacement")
         assert rm.equilibria(
             shape, effective_modulus=E, work=1e-3, indentation=1.001 * float(off.indentation)
         ).sizes == {"equilibrium": 0}
@@ -118,7 +118,7 @@ def test_a_table_of_any_convex_form_has_its_equilibria_in_turn(seed: int, tensio
     shape = steps_of_table(np.random.default_rng(seed))
     width, rise, _ = shape.nondimensional()
     work = (10.0**tension * rise) ** 2 * E / (2.0 * math.pi * width)
-    off = rm.pull_off(shape, effective_modulus=E, work=work)
+    off = rm.pull_off(shape, effective_modulus=E, work=work, control="displacement")
     found: xr.Dataset = rm.equilibria(
         shape, effective_modulus=E, work=work, indentation=(1.0 - place) * float(off.indentation)
     )

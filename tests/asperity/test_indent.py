@@ -64,10 +64,14 @@ def test_pull_off_gives_scalars(shape: rm.PowerLaw, control: str) -> None:
     assert all(float(without[name]) == 0.0 for name in without.variables)
 
 
-def test_pull_off_is_under_fixed_grips_unless_told() -> None:
+def test_pull_off_is_the_largest_tension_unless_told() -> None:
     off = rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05)
-    assert off.identical(rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="displacement"))
-    assert not off.equals(rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="force"))
+    assert off.identical(rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="force"))
+    grips = rm.pull_off(SHAPES[0], effective_modulus=1e9, work=0.05, control="displacement")
+    assert off.force < grips.force < 0.0
+    assert (off.attrs["control"], grips.attrs["control"]) == ("force", "displacement")
+    assert off.force.attrs["long_name"].endswith("at the largest tension")
+    assert grips.force.attrs["long_name"].endswith("at the point of detachment under fixed grips")
 
 
 @pytest.mark.parametrize(

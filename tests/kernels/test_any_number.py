@@ -87,7 +87,7 @@ def test_pull_off(
 @settings(deadline=None, max_examples=100)
 def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> None:
     shape = KINDS[kind]((1.5, 1.6, 0.2))
-    off = rm.pull_off(shape, effective_modulus=1e6, work=0.05)
+    off = rm.pull_off(shape, effective_modulus=1e6, work=0.05, control="displacement")
     contact = rm.indent(shape, effective_modulus=1e6, work=0.05, indentation=np.array(values) * -float(off.indentation))
     assert ((contact.contact_radius > 0.0) == (np.array(values) >= -1.0)).all()
 

@@ -69,7 +69,7 @@ def test_stiffness_is_the_slope_of_the_force(shape: rm.PowerLaw, work: float) ->
 
 @every_shape
 def test_the_fold_itself_is_finite_with_a_steep_fall(shape: rm.PowerLaw) -> None:
-    off = rm.pull_off(shape, effective_modulus=E, work=W)
+    off = rm.pull_off(shape, effective_modulus=E, work=W, control="displacement")
     at_fold = indent(shape, W, indentation=float(off.indentation))
     assert all(np.isfinite(at_fold[name]) for name in at_fold.variables)
     assert float(at_fold.force) == pytest.approx(float(off.force), rel=1e-12)
@@ -141,7 +141,7 @@ def test_more_load_more_contact(shape: rm.PowerLaw, work: float, control: str) -
 
 @pytest.mark.parametrize("shape", [shape for shape in SHAPES if not getattr(shape, "flat_radius", 0.0)], ids=str)
 def test_a_given_radius_below_the_fold_is_the_unstable_equilibrium(shape: rm.PowerLaw) -> None:
-    fold = rm.pull_off(shape, effective_modulus=E, work=W)
+    fold = rm.pull_off(shape, effective_modulus=E, work=W, control="displacement")
     inner = indent(shape, W, contact_radius=np.array([0.2, 0.9]) * float(fold.contact_radius))
     outer = indent(shape, W, indentation=inner.indentation.values)
     assert (inner.indentation > float(fold.indentation)).all()

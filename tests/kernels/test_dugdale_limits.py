@@ -112,7 +112,9 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
     for part in (0.3, 0.9, 1.0 - 1e-6):
         strength = part * border
         beta = 2.0 * strength / E
-        off = rm.pull_off(SPHERE, effective_modulus=E, work=W, strength=strength, adhesion="dugdale")
+        off = rm.pull_off(
+            SPHERE, effective_modulus=E, work=W, strength=strength, adhesion="dugdale", control="displacement"
+        )
         c = 2.0 * beta * R / math.pi
         assert float(off.contact_radius) == 0.0
         assert float(off.cohesive_radius) == pytest.approx(c, rel=1e-12)
@@ -120,7 +122,9 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
         assert float(off.indentation) == pytest.approx(-(c**2) / (2.0 * R) - W / strength, rel=1e-12)
     radii = []
     for part in (1.0 + 1e-6, 1.01, 1.1, 2.0):
-        off = rm.pull_off(SPHERE, effective_modulus=E, work=W, strength=part * border, adhesion="dugdale")
+        off = rm.pull_off(
+            SPHERE, effective_modulus=E, work=W, strength=part * border, adhesion="dugdale", control="displacement"
+        )
         radii.append(float(off.contact_radius / off.cohesive_radius))
     assert 0.0 < radii[0] < 1e-4
     assert (np.diff(radii) > 0.0).all()
@@ -137,7 +141,7 @@ def test_other_units_give_the_same_contact(length: float, pressure: float, tabor
         "strength": here["strength"] * pressure,
         "work": W * pressure * length,
     }
-    depth = -float(rm.pull_off(ROUNDED, **here).indentation)
+    depth = -float(rm.pull_off(ROUNDED, **here, control="displacement").indentation)
     delta = depth * np.array([-0.9, -0.2, 0.0, 0.7, 30.0])
     one = rm.indent(ROUNDED, **here, indentation=delta)
     other = rm.indent(there_shape, **there, indentation=delta * length)
@@ -202,7 +206,7 @@ def test_the_equations_hold(asperity: tuple[Shape, float, float], tabor: float, 
     shape, effective_modulus, work = asperity
     mine = law(shape, tabor, effective_modulus, work)
     strength, beta = mine["strength"], 2.0 * mine["strength"] / effective_modulus
-    depth = -float(rm.pull_off(shape, **mine).indentation)
+    depth = -float(rm.pull_off(shape, **mine, control="displacement").indentation)
     delta = depth * (distance - 1.0)
     contact = rm.indent(shape, **mine, indentation=delta)
     a, c = float(contact.contact_radius), float(contact.cohesive_radius)
@@ -224,4 +228,6 @@ def test_an_attraction_that_reaches_around_a_sphere_is_refused() -> None:
     with pytest.raises(
         rm.OutOfRange, match=r"strength is 1000 Pa: its range, 7e-05 m, reaches beyond the end of Sphere"
     ):
-        rm.pull_off(rm.Sphere(radius=R), effective_modulus=E, work=W, adhesion="dugdale", strength=1e3)
+        rm.pull_off(
+            rm.Sphere(radius=R), effective_modulus=E, work=W, adhesion="dugdale", strength=1e3, control="displacement"
+        )

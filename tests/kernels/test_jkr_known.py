@@ -72,7 +72,7 @@ def rescaled(shape: rm.PowerLaw | rm.Paraboloid | rm.Cone, length: float) -> rm.
     ids=str,
 )
 def test_other_units_give_the_same_contact(shape: rm.PowerLaw, length: float, newton: float) -> None:
-    onset = float(rm.pull_off(shape, effective_modulus=E, work=W).indentation)
+    onset = float(rm.pull_off(shape, effective_modulus=E, work=W, control="displacement").indentation)
     delta = np.array([0.9, 0.3, -0.4, -50.0]) * onset
     here = rm.indent(shape, effective_modulus=E, work=W, indentation=delta)
     there = rm.indent(
@@ -102,7 +102,7 @@ def test_other_units_give_the_same_contact(shape: rm.PowerLaw, length: float, ne
     ids=["coefficient", "rise", "cone"],
 )
 def test_a_power_law_is_the_shape_it_describes(power: rm.PowerLaw, named: rm.Cone, work: float) -> None:
-    onset = float(rm.pull_off(named, effective_modulus=E, work=W).indentation)
+    onset = float(rm.pull_off(named, effective_modulus=E, work=W, control="displacement").indentation)
     for control in ({"indentation": np.array([0.9, -0.5, -20.0]) * onset}, {"force": [0.0, 1e-8, 1e-3]}):
         got = rm.indent(power, effective_modulus=E, work=work, **control)
         xr.testing.assert_allclose(
@@ -139,7 +139,7 @@ def test_weak_adhesion_tends_to_no_adhesion(shape: rm.PowerLaw) -> None:
 def test_a_truncated_cone_lets_go_at_its_corner_as_a_flat_punch_does(slope: float, unit: float) -> None:
     effective_modulus, work = 1e9, 0.05 * unit / 1e-7 * (slope / 0.05) ** 2
     off, punch = (
-        rm.pull_off(shape, effective_modulus=effective_modulus, work=work)
+        rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement")
         for shape in (rm.TruncatedCone(slope, unit), rm.FlatPunch(unit))
     )
     assert float(off.contact_radius) == unit

@@ -1,15 +1,20 @@
 """keep = "statistics": the same numbers as from the curves, without them."""
 
-from pathlib import Path
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from scenes import scene
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.result.pull_off import pull_off_force
+from roughmdr.batch.known_moments import KnownMoments
+from roughmdr.batch.moments import MomentTree
+from roughmdr.report.summary import describe_result
+from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CURVE_VARIABLES
 
 EVERY = list(CURVE_VARIABLES)
@@ -78,26 +83,121 @@ def test_the_bits_do_not_depend_on_workers() -> None:
     assert one.drop_vars("run_time").equals(three.drop_vars("run_time"))
 
 
-def test_the_pull_off_force_of_curves_and_of_the_mean_curve(tmp_path: Path) -> None:
+PULL_OFF = ("force", "separation", "contacts", "pressure")
+
+
+def test_the_pull_off_of_curves_and_of_statistics() -> None:
     curves, statistics = kept("curves", sweep=SWEEP), kept("statistics", sweep=SWEEP)
-    lowest = curves.force.min("step").clip(max=0.0)
-    found = pull_off_force(curves)
-    np.testing.assert_allclose(found.mean, lowest.mean("realization"), rtol=1e-14)
-    np.testing.assert_allclose(found.standard_error, lowest.std("realization", ddof=1) / 4.0, rtol=1e-12)
-    assert (found.mean[0] == 0.0).all()
-    assert (found.mean[1] < 0.0).all()
-    np.testing.assert_array_equal(found.tensile, (curves.force.min("step") < 0.0).sum("realization"))
-    of_mean = pull_off_force(statistics)
-    assert (found.curves == 16).all()
-    assert (of_mean.curves == 1).all()
-    np.testing.assert_allclose(of_mean.mean, curves.force.mean("realization").min("step").clip(max=0.0), rtol=1e-12)
-    at = curves.force[1, 1, :, 40:]
-    change = [
-        max(abs(run[m] - run[m - 1]) if m else 0.0, abs(run[m + 1] - run[m]) if m < 39 else 0.0)
-        for run, m in zip(at.to_numpy(), at.argmin("step").to_numpy(), strict=True)
-    ]
-    assert found.change[1, 1] == pytest.approx(np.mean(change), rel=1e-12)
-    with pytest.raises(rm.StoreError, match="never retracts"):
-        pull_off_force(kept("curves", path={"separation": ["3 um", "0 um"]}))
-    with pytest.raises(rm.StoreError, match="holds no force"):
-        pull_off_force(curves.drop_vars("force"))
+    unloading = curves.force.isel(step=curves.branch == "unloading")
+    own = curves.pull_off_force[1].notnull()
+    assert own.any()
+    assert (curves.pull_off_force[1] <= unloading.min("step")[1]).where(own, True).all()
+    assert (curves.pull_off_force[0] == 0.0).all()  # no adhesion
+    assert np.isnan(curves.pull_off_separation[0]).all()
+    for what in PULL_OFF:
+        each = curves[f"pull_off_{what}"]
+        with np.testing.suppress_warnings() as quiet:
+            quiet.filter(RuntimeWarning)
+            numbers = {"mean": each.mean, "min": each.min, "max": each.max}
+            for name, function in numbers.items():
+                np.testing.assert_allclose(statistics[f"pull_off_{what}_{name}"], function("realization"), rtol=1e-12)
+            sem = each.std("realization", ddof=1) / 4.0
+            np.testing.assert_allclose(statistics[f"pull_off_{what}_sem"], sem, rtol=1e-9)
+    np.testing.assert_array_equal(statistics.pull_off_count, curves.pull_off_count)
+    of_mean = unloading.mean("realization").min("step").clip(max=0.0).where(2 * curves.pull_off_count > 16)
+    np.testing.assert_allclose(curves.pull_off_force_of_mean, of_mean, rtol=0.05)
+    np.testing.assert_allclose(statistics.pull_off_force_of_mean, curves.pull_off_force_of_mean, rtol=1e-12)
+    area = 1e-6
+    np.testing.assert_allclose(curves.pull_off_pressure * area, curves.pull_off_force, rtol=1e-12)
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_unloadings_that_end_in_contact_do_not_enter(keep: str) -> None:
+    path = {"separation": {"start": "2.9 sigma", "stop": "1 sigma", "steps": 30}, "unload": True}
+    found = kept(keep, path=path, asperities={**ASPERITIES, "count": 60})
+    ends = kept("curves", path=path, asperities={**ASPERITIES, "count": 60}).contact_count[:, -1] > 0
+    assert 0 < int(ends.sum()) < 16
+    assert int(found.pull_off_count) == 16 - int(ends.sum())
+    if keep == "curves":
+        np.testing.assert_array_equal(found.pull_off_force.isnull(), ends)
+    text = describe_result(Labelled.of(found))
+    assert f"{int(ends.sum())} of 16 unloadings end in contact and have none" in text
+    pressed = kept(keep, path={"separation": ["3 um", "0 um", "0.1 um"]})
+    assert int(pressed.pull_off_count) == 0
+    assert np.isnan(pressed.pull_off_force_of_mean)
+    assert "none: all 16 unloadings end in contact" in describe_result(Labelled.of(pressed))
+
+
+def test_a_path_without_unloading_has_no_pull_off() -> None:
+    found = kept("curves", path={"separation": ["3 um", "0 um"]})
+    assert not [name for name in found if str(name).startswith("pull_off")]
+    assert "none: the path has no unloading" in describe_result(Labelled.of(found))
+
+
+def test_it_is_there_where_the_force_is_not_asked_for() -> None:
+    area_only = {"keep": "curves", "variables": ["contact_area"]}
+    table = scene(output=area_only)
+    found = rm.run(table)
+    assert "force" not in found
+    np.testing.assert_array_equal(found.pull_off_force, kept("curves").pull_off_force)
+
+
+@settings(deadline=None, max_examples=100)
+@given(st.lists(st.floats(-1e3, 1e3) | st.just(math.nan), min_size=1, max_size=40), st.randoms())
+def test_moments_of_numbers_that_some_lack_have_the_same_bits_in_any_order(values: list[float], order: Any) -> None:
+    tables = []
+    for _ in range(2):
+        tree, numbers = MomentTree[KnownMoments](), list(enumerate(values))
+        order.shuffle(numbers)
+        for number, value in numbers:
+            tree.add(number, KnownMoments.of(np.array([value])))
+        total = tree.total(len(values))
+        assert total is not None
+        tables.append(total.table)
+    assert tables[0].tobytes() == tables[1].tobytes()
+    known = np.array([value for value in values if not math.isnan(value)])
+    assert tables[0][0, 0] == known.size
+    if known.size:
+        expected = [known.mean(), known.std(), known.min(), known.max()]
+        np.testing.assert_allclose(tables[0][1:, 0], expected, rtol=1e-9, atol=1e-10)
+    else:
+        assert np.isnan(tables[0][1:]).all()
+
+
+STICKY = {
+    "material": {"modulus": "2 GPa", "poisson": 0.3},
+    "adhesion": {"model": "jkr", "work": "60 mJ/m^2"},
+    "asperities": {
+        "source": "random",
+        "shape": "paraboloid",
+        "count": 1500,
+        "patch": "5 um",
+        "radius": "120 nm",
+        "height": {"distribution": "normal", "std": "1 nm"},
+    },
+    "path": {"separation": {"start": "14 nm", "stop": "1 nm", "steps": 60}, "unload": True},
+    "batch": {"realizations": 60},
+}
+
+
+@pytest.mark.filterwarnings("ignore::roughmdr.errors.LimitWarning")
+def test_curves_statistics_and_the_expected_law_give_one_pull_off_of_a_sticky_film() -> None:
+    curves, statistics = rm.run(STICKY), rm.run({**STICKY, "output": {"keep": "statistics"}})
+    expected = rm.run({**STICKY, "batch": {"estimator": "expected"}})
+    exact = float(expected.pull_off_force[0])
+    assert float(expected.pull_off_force_of_mean) == exact < float(expected.force.min())
+    assert exact == pytest.approx(float(expected.force.min()), rel=1e-2)
+    sem = float(statistics.pull_off_force_sem)
+    for found in (curves, statistics):
+        assert abs(float(found.pull_off_force_of_mean) - exact) < 5.0 * sem
+        assert float(found.pull_off_force_of_mean) >= float(statistics.pull_off_force_mean) * (1.0 + 1e-12)
+    fine = {"separation": {"start": "14 nm", "stop": "1 nm", "steps": 6000}, "unload": True}
+    lowest = float(rm.run({**STICKY, "batch": {"estimator": "expected"}, "path": fine}).force.min())
+    assert exact == pytest.approx(lowest, rel=1e-6)
+    rough = {**STICKY["asperities"], "height": {"distribution": "normal", "std": "20 nm"}}  # type: ignore[dict-item]
+    path = {"separation": {"start": "120 nm", "stop": "20 nm", "steps": 60}, "unload": True}
+    few = rm.run({**STICKY, "asperities": rough, "path": path})
+    assert float(few.pull_off_contacts.mean()) < 3.0
+    said = "contacts carry it: a patch this small does not show the pull-off of a surface"
+    assert said in describe_result(Labelled.of(few))
+    assert said not in describe_result(Labelled.of(curves))

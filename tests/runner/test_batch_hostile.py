@@ -218,13 +218,11 @@ def test_a_result_in_the_classic_format_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_failed_cell_has_no_pull_off_force() -> None:
-    from roughmdr.result.pull_off import pull_off_force
-
     with pytest.warns(UserWarning, match="1 of 2 failed"):
         found = rm.run(few(3, output={"keep": "statistics"}, sweep={"asperities.radius": ["50 um", "1e300 m"]}))
-    pull_off = pull_off_force(found)
-    assert np.isfinite(pull_off.standard_error[0])
-    assert np.isnan([pull_off.mean[1], pull_off.standard_error[1]]).all()
+    assert np.isfinite(found.pull_off_force_sem[0])
+    assert np.isnan([found.pull_off_force_mean[1], found.pull_off_force_sem[1], found.pull_off_force_of_mean[1]]).all()
+    assert found.pull_off_count.values.tolist() == [3.0, 0.0]
 
 
 def test_a_plan_goes_on_where_a_cell_cannot_run(tmp_path: Path) -> None:

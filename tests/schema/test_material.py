@@ -147,8 +147,8 @@ def test_units_are_read_wherever_a_number_is_taken() -> None:
         ("contact_radius", ["30 nm", 4e-8], [3e-8, 4e-8]),
     ):
         assert rm.indent(tip, **named, **{control: texts}).identical(rm.indent(TIP, **plain, **{control: values}))
-    dugdale = rm.pull_off(tip, **named, adhesion="dugdale", strength="5 MPa")
-    assert dugdale.identical(rm.pull_off(TIP, **plain, adhesion="dugdale", strength=5e6))
+    dugdale = rm.pull_off(tip, **named, adhesion="dugdale", strength="5 MPa", control="displacement")
+    assert dugdale.identical(rm.pull_off(TIP, **plain, adhesion="dugdale", strength=5e6, control="displacement"))
     assert rm.tabor(tip, **named, strength="5 MPa") == rm.tabor(TIP, **plain, strength=5e6)
     assert rm.equilibria(tip, **named, indentation="-1 nm").identical(rm.equilibria(TIP, **plain, indentation=-1e-9))
     field = rm.pressure(tip, r=["0 nm", "10 nm"], contact_radius="50 nm", **named)
@@ -174,7 +174,7 @@ def test_units_are_read_wherever_a_number_is_taken() -> None:
             "indentation is '1 N': 'N' is a unit of N; expected a unit of m",
         ),
         (
-            lambda: rm.pull_off(TIP, effective_modulus=1e9, work="5 mJ"),
+            lambda: rm.pull_off(TIP, effective_modulus=1e9, work="5 mJ", control="displacement"),
             rm.OutOfRange,
             "work is '5 mJ': unknown unit 'mJ'; expected a unit of J/m",
         ),

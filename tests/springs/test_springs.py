@@ -86,7 +86,9 @@ def test_the_order_of_convergence(
 def test_a_given_radius_is_the_length_of_the_row(
     shape: rm.Paraboloid, effective_modulus: float, work: float, order: float, adhesive: bool
 ) -> None:
-    fold = float(rm.pull_off(shape, effective_modulus=effective_modulus, work=work).contact_radius)
+    fold = float(
+        rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement").contact_radius
+    )
     radii = fold * np.array([1.07, 1.9, 0.0, 1.3])
     law = {"effective_modulus": effective_modulus, "work": work if adhesive else 0.0, "contact_radius": radii}
     exact, coarse = rm.indent(shape, **law), rm.indent(shape, **law, method=METHOD, springs=3000)
@@ -124,7 +126,7 @@ def test_the_springs_let_go_where_the_fold_is() -> None:
         (rm.Paraboloid(radius=3.7e-8), 1.9, 2.0),
         (rm.FlatPunch(radius=2.3e-9), 1.0, 1.0),
     ):
-        off = rm.pull_off(shape, effective_modulus=6.1e10, work=0.8)
+        off = rm.pull_off(shape, effective_modulus=6.1e10, work=0.8, control="displacement")
         errors = []
         for count in counts:
             coarse = Springs.of(shape, 6.1e10, 0.8, int(count)).row(length * float(off.contact_radius))
@@ -162,7 +164,9 @@ def test_a_function_is_as_good_as_a_shape(
 ) -> None:
     for control in ("indentation", "contact_radius", *(("force",) if shape is SERIES else ())):
         if control == "contact_radius":
-            values = float(rm.pull_off(shape, effective_modulus=3e6, work=0.05).contact_radius) * np.array([1.2, 2.3])
+            values = float(
+                rm.pull_off(shape, effective_modulus=3e6, work=0.05, control="displacement").contact_radius
+            ) * np.array([1.2, 2.3])
         else:
             values = onset(shape, 3e6, 0.05, control) * np.array([0.3, 3.7])
         law = {"effective_modulus": 3e6, "work": work, control: values}

@@ -39,12 +39,16 @@ class Tip(NamedTuple):
     @property
     def fold(self) -> float:
         """Radius [m] of pull-off under fixed grips."""
-        return float(rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK).contact_radius)
+        return float(
+            rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK, control="displacement").contact_radius
+        )
 
     @property
     def indentation(self) -> Floats:
         """The path [m]."""
-        depth = -float(rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK).indentation)
+        depth = -float(
+            rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK, control="displacement").indentation
+        )
         return depth * (DEPTHS - 1.0)
 
 

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from roughmdr.batch.known_moments import ROWS as KNOWN_ROWS
+from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
 from roughmdr.batch.resume.reusable import ReusableRows
@@ -14,7 +16,7 @@ from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
-from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED, RUN_DIAGNOSTICS
+from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
 
 _MAX_CHANGES = 5  # in a message
 _LAYOUT_PARTS = ("title", "output", "batch", "accuracy", "sweep")
@@ -69,7 +71,7 @@ def reuse(
         matches = True
         if lost := _what_would_be_lost(old, plan, reusable):
             raise StoreError(f"{target}: holds {lost}, which this scene does not ask for: {_REMEDY}")
-        if "realization" in old.sizes:
+        if "realization" in old.sizes and (not plan.unloads or set(PULL_OFF_NUMBERS) <= set(old.variables)):
             result = _task_result_of(old)
             reusable.add(lambda: result)
     elif old is not None:  # stored task results that match do not allow to replace a result that does not
@@ -142,6 +144,10 @@ def _task_result_of(old: Labelled) -> TaskResult:
     arrays = old.variables | old.coordinates
     names = [name for name in CURVE_VARIABLES if name in old.variables]
     curves = [arrays[name].values.reshape(-1, *arrays[name].values.shape[-2:])[cell, first] for name in names]
+    pull_offs = np.full((cell.size, len(KNOWN_ROWS), len(PULL_OFF_NUMBERS)), np.nan)
+    if set(PULL_OFF_NUMBERS) <= set(arrays):
+        numbers = np.stack([arrays[name].values.reshape(shape)[cell, first] for name in PULL_OFF_NUMBERS], axis=1)
+        pull_offs = np.array([KnownMoments.of(each).table for each in numbers]).reshape(pull_offs.shape)
     stated = {name: arrays[name].values.reshape(shape)[cell, first] for name in RUN_DIAGNOSTICS if name in arrays}
     return TaskResult(
         keys=tuple(_keys(old)),
@@ -150,5 +156,6 @@ def _task_result_of(old: Labelled) -> TaskResult:
         first=first,
         size=np.ones(cell.size, dtype=np.int64),
         moments=(np.stack(curves, axis=1),),
+        pull_offs=pull_offs,
         diagnostics=complete(stated, cell.size),
     )

@@ -1,0 +1,107 @@
+"""The pull-off: the largest tension of the unloadings of a path, located between its steps.
+
+While the flat rises, the force of an ensemble is smooth and mostly convex between the detachments of its contacts, and
+jumps towards zero at each. Intervals between known separations are refined where a lower force is possible
+(``refinement.py``), and known detachments are met from both sides.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.refinement import BESIDE, merged, next_separations
+from roughmdr.loading.staircase import risen
+from roughmdr.numerics.arguments import Floats
+
+_MAX_ROUNDS = 24
+_COARSE = 16  # intervals of a rise: from fewer its largest tension may not show at all
+_NONE = np.zeros(0)
+
+Evaluate = Callable[[LoadingPath], tuple[Floats, Floats]]
+"""Returns the force [N] and the number of contacts at each step of a path."""
+
+
+class PullOff(NamedTuple):
+    """The largest tension of the unloadings of a path; NaN where they end in contact."""
+
+    force: float = math.nan
+    """[N], negative; 0 where contacts part without tension."""
+    separation: float = math.nan
+    """Where it is [m]; NaN without tension, as the next."""
+    contacts: float = math.nan
+    """How many contacts carry it."""
+
+
+WITHOUT_TENSION = PullOff(0.0)
+
+
+class Unloading(NamedTuple):
+    """A rise of the flat, with the force at its separations."""
+
+    turns: Floats
+    """Turning points of the path up to the rise, its lowest included [m]."""
+    separation: Floats
+    force: Floats
+    last: int
+    """The step at which it ends."""
+
+    def path(self, separation: Floats) -> LoadingPath:
+        """Return the path by the turning points to ascending separations [m] of the rise."""
+        return LoadingPath(np.concatenate([self.turns, separation]), risen(self.turns, separation))
+
+
+def unloadings(separation: Floats, force: Floats) -> list[Unloading]:
+    """Return the rises of a path with its force [N] at each step."""
+    rises = np.concatenate([[False], np.diff(separation) > 0.0, [False]]).astype(int)
+    first, last = (np.flatnonzero(np.diff(rises) == sign) for sign in (1, -1))
+    return [
+        Unloading(_turns(separation[: begin + 1]), separation[begin : end + 1], force[begin : end + 1], end)
+        for begin, end in zip(first.tolist(), last.tolist(), strict=True)
+    ]
+
+
+def _turns(separation: Floats) -> Floats:
+    """Return the lowest and highest points of a path in turn; it comes from infinity and ends in one of them."""
+    distinct = separation[np.append(True, np.diff(separation) != 0.0)]
+    down = np.append(True, np.diff(distinct) < 0.0)
+    return np.asarray(distinct[np.append(down[1:] != down[:-1], True)])
+
+
+def locate(rises: list[Unloading], evaluate: Evaluate, detachments: Floats = _NONE) -> PullOff:
+    """Return the largest tension of unloadings.
+
+    ``detachments`` [m] ascend: the separations at which contacts are lost.
+    """
+    lowest = PullOff(0.0)
+    for rise in sorted(rises, key=lambda each: float(each.force.min())):
+        found = _locate(rise, evaluate, detachments, lowest.force)
+        lowest = found if found.force < lowest.force else lowest
+    return lowest
+
+
+def _locate(rise: Unloading, evaluate: Evaluate, detachments: Floats, limit: float) -> PullOff:
+    """Return the largest tension of one unloading, unless its force is not below ``limit`` [N]."""
+    h, force, contacts = rise.separation, rise.force, np.full_like(rise.force, math.nan)
+    farthest = max(float(np.abs(h).max()), float(np.abs(detachments[[0, -1]]).max()) if detachments.size else 0.0)
+    beside = BESIDE * float(np.spacing(farthest))
+    for number in range(_MAX_ROUNDS):
+        if number == 0 and h.size <= _COARSE:
+            parts = -(-_COARSE // (h.size - 1))
+            added = (h[:-1, None] + np.diff(h)[:, None] * (np.arange(1, parts) / parts)).ravel()
+        else:
+            added = next_separations(h, force, detachments, min(limit, float(force.min())), beside)
+        if not added.size:
+            break
+        values = evaluate(rise.path(added))
+        found = (each[rise.turns.size :] for each in values)
+        h, force, contacts = merged(h, force, contacts, added, *found)
+    at = int(np.argmin(force))
+    if not force[at] < limit:
+        return WITHOUT_TENSION
+    carrying = contacts[at]
+    if math.isnan(carrying):
+        carrying = evaluate(rise.path(h[at : at + 1]))[1][-1]
+    return PullOff(float(force[at]), float(h[at]), float(carrying))

@@ -1,0 +1,105 @@
+"""Where to look for the lowest force of a rise of the flat, between separations at which it is known.
+
+In an interval without detachments the force lies above the chords of its neighbours, carried on, since it is convex
+there. In one with detachments, or between two of them, it is taken to fall no further below its ends than twice what
+it changes from one end to the other, here or next to here.
+"""
+
+import math
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
+
+_TOLERANCE = 1e-7  # of the lowest force
+_NEGLIGIBLE = 1e-12  # of the largest force: it may be compression, and cancels where the lowest is
+_SAFETY = 2.0  # on how much the force changes beside an interval with detachments
+_INTERVALS, _POINTS = 12, 24  # refined at a time, and points in all of them
+_MIN_POINTS, _MAX_POINTS = 2, 6  # in an interval
+BESIDE = 4.0  # roundings from a detachment to either side
+_NARROW = 4.0  # of that: an interval across a detachment
+
+
+@njit
+def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
+    """Return how low the force may be in the interval k."""
+    low, high = force[k], force[k + 1]
+    least = min(low, high)
+    before, after = k > 0, k + 2 < h.size
+    from_left, from_right = before and smooth[k - 1] > 0.0, after and smooth[k + 1] > 0.0
+    if smooth[k] > 0.0 and (from_left or from_right):
+        width = h[k + 1] - h[k]
+        left = (low - force[k - 1]) / (h[k] - h[k - 1]) if from_left else 0.0
+        right = (force[k + 2] - high) / (h[k + 2] - h[k + 1]) if from_right else 0.0
+        if not from_right:
+            return float(min(least, low + left * width))
+        if not from_left:
+            return float(min(least, high - right * width))
+        if left < 0.0 < right:
+            return float(min(least, low + left * (high - right * width - low) / (left - right)))
+        return float(least)
+    change = abs(high - low)
+    if before:
+        change = max(change, abs(low - force[k - 1]))
+    if after:
+        change = max(change, abs(force[k + 2] - high))
+    return float(least - _SAFETY * change)
+
+
+@njit
+def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: float, beside: float) -> Floats:
+    """Return more separations [m], ascending, where the force may be below ``lowest`` [N]; none where it cannot be.
+
+    h [m] ascends with the force there [N], and so do the ``detachments``, which are met ``beside`` [m] them.
+    """
+    count = np.searchsorted(detachments, h)
+    smooth, bounds = np.empty(h.size - 1), np.empty(h.size - 1)
+    for k in range(h.size - 1):  # a slope across a few roundings is none
+        smooth[k] = 1.0 if count[k] == count[k + 1] and h[k + 1] - h[k] > _NARROW * beside else 0.0
+    limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * np.max(np.abs(force)))
+    for k in range(h.size - 1):
+        wide = h[k + 1] - h[k] > _NARROW * beside
+        bounds[k] = _bound(h, force, smooth, k) if wide else math.inf
+    chosen = np.flatnonzero(bounds < limit)
+    if chosen.size > _INTERVALS:
+        chosen = np.sort(chosen[np.argsort(bounds[chosen])[:_INTERVALS]])
+    points = min(max(_POINTS // max(chosen.size, 1), _MIN_POINTS), _MAX_POINTS)
+    found = np.empty(2 * points * chosen.size)
+    filled = 0
+    for number in range(chosen.size):
+        k = int(chosen[number])
+        last = float(h[k])
+        inside = count[k + 1] - count[k]
+        used = min(inside, points) if inside > 0 else points
+        for j in range(used):
+            if inside > 0:
+                at = detachments[count[k] + ((2 * j + 1) * inside) // (2 * used)]
+                sides = (at - beside, at + beside)
+            else:  # denser towards the end, where a contact may be about to detach
+                part = (used - j) / (used + 1.0)
+                at = h[k + 1] - (h[k + 1] - h[k]) * part * part
+                sides = (at, at)
+            for side in sides:
+                if last < side < h[k + 1]:
+                    found[filled] = last = side
+                    filled += 1
+    return found[:filled]
+
+
+@njit
+def merged(
+    h: Floats, force: Floats, contacts: Floats, more: Floats, more_force: Floats, more_contacts: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return two tables over ascending separations [m] as one."""
+    size = h.size + more.size
+    all_h, all_force, all_contacts = np.empty(size), np.empty(size), np.empty(size)
+    i, j = 0, 0
+    for k in range(size):
+        if j == more.size or (i < h.size and h[i] <= more[j]):
+            all_h[k], all_force[k], all_contacts[k] = h[i], force[i], contacts[i]
+            i += 1
+        else:
+            all_h[k], all_force[k], all_contacts[k] = more[j], more_force[j], more_contacts[j]
+            j += 1
+    return all_h, all_force, all_contacts
