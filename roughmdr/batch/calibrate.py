@@ -23,6 +23,7 @@ _PARTS = (
     (2000, 100),
     (10_000, 500),
 )  # asperities and steps of a part; time and memory grow in proportion
+_RIGHT_TO = 3.0  # factor to which the costs of ``costs`` are right: small parts may be lost in the noise of the clock
 _LONG = 0.5  # seconds of a first run that is not repeated for the sake of the clock
 _REPEATS = 10  # of the last part
 _MARGIN = 2.5  # runs of a part for which there must be time left: one with the memory traced
@@ -59,16 +60,25 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     count = max(1, math.ceil(cell.scene.asperities.expected_count))
     sizes = list(dict.fromkeys((min(most, count), min(steps, cell.steps)) for most, steps in _PARTS))
 
+    def run_part(asperities: int, steps: int) -> _Time:
+        return _draw_and_sum(cell.scene, _thinned(cell, steps), asperities, estimator, variables)
+
     def run(size: int) -> _Time:
-        return _draw_and_sum(cell.scene, _thinned(cell, sizes[size][1]), sizes[size][0], estimator, variables)
+        return run_part(*sizes[size])
 
     def scaled(taken: _Time, size: int, asperities: int, steps: int) -> float:
+        """Return the time of so many asperities and steps: what one of each takes, and the rest in proportion."""
         more = asperities / sizes[size][0]
-        return more * (taken.drawing + taken.summing * steps / sizes[size][1])
+        drawing, summing = max(taken.drawing - least.drawing, 0.0), max(taken.summing - least.summing, 0.0)
+        return least.total + more * (drawing + summing * steps / sizes[size][1])
 
+    run_part(1, 1)  # what is loaded at its first use does not count
+    least = run_part(1, 1)
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, *sizes[size + 1]), len(sizes), budget)
     taken = _Time(*np.mean(times, axis=0).tolist())
-    return Cost(scaled(taken, size, count, cell.steps), memory * count / sizes[size][0], *sizes[size])
+    least_known = seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
+    whole = max(scaled(taken, size, count, cell.steps), least_known)
+    return Cost(whole, memory * count / sizes[size][0], *sizes[size])
 
 
 def _expected_law(cell: Cell, variables: list[str], budget: float) -> Cost:
