@@ -1,4 +1,4 @@
-"""How far from an ensemble a rigid flat touches and attracts no asperity."""
+"""Where the contacts of an ensemble detach under fixed grips, and from where on the flat touches and attracts none."""
 
 import math
 from collections.abc import Callable
@@ -17,26 +17,29 @@ from roughmdr.numerics.summation import BLOCK
 _MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
 
 
-def _last_detachment(z: Floats, columns: Columns, material: Material, least_depth: float) -> float:
-    """Return where [m] the last contact has detached under fixed grips; NaN where a depth is not representable."""
-    last = -math.inf
-    for start in range(0, z.size, BLOCK):
-        stop = min(start + BLOCK, z.size)
+def _fill_depths(columns: Columns, material: Material, depths: Floats) -> None:
+    """Fill in how far below first touch [m] each contact detaches."""
+    for start in range(0, depths.size, BLOCK):
+        stop = min(start + BLOCK, depths.size)
         params = law.prepare(material, columns, start, stop, 0.0)
         for i in range(start, stop):
             own = law.params_of(params, i - start)
             (depth, _), _, _, _ = law.scales(
                 material.effective_modulus, material.work, columns.width[i], columns.rise[i], own
             )
-            if not 0.0 < depth < math.inf:
-                return math.nan
-            last = max(last, z[i] + (1.0 + _MARGIN) * max(depth, least_depth))
-    return last
+            depths[i] = depth
 
 
 @cache
-def _compiled(kernels: Kernels) -> Callable[..., float]:
-    return specialise(_last_detachment, kernels)
+def _compiled(kernels: Kernels) -> Callable[[Columns, Material, Floats], None]:
+    return specialise(_fill_depths, kernels)
+
+
+def detachment_depths(kernels: Kernels, columns: Columns, effective_modulus: float, adhesion: Adhesion) -> Floats:
+    """Return how far below first touch [m] each adhesive contact detaches; E* [Pa]."""
+    depths = np.empty(columns.width.size)
+    _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, adhesion.strength), depths)
+    return depths
 
 
 def clear_separation(ensemble: Ensemble, effective_modulus: float, adhesion: Adhesion) -> float:
@@ -44,15 +47,17 @@ def clear_separation(ensemble: Ensemble, effective_modulus: float, adhesion: Adh
 
     There a flat that rises has left all of them. NaN where the contact of an asperity is not representable.
     """
-    highest = float(ensemble.height.max())
+    height = ensemble.height
+    highest = float(height.max())
     if adhesion.work == 0.0:
         return highest
     columns, last = ensemble.nondimensional(), highest
     for model in adhesion.candidates:
         one = adhesion._replace(model=model)
-        kernels = choose(ensemble.shape, one, columns.params)
-        material = Material(effective_modulus, one.work, one.strength)
-        with np.errstate(all="ignore"):
-            found = _compiled(kernels)(ensemble.height, columns, material, one.range)
+        with np.errstate(all="ignore"):  # what no float can hold is NaN
+            depths = detachment_depths(choose(ensemble.shape, one, columns.params), columns, effective_modulus, one)
+            if not ((depths > 0.0) & (depths < math.inf)).all():
+                return math.nan
+            found = float(np.max(height + (1.0 + _MARGIN) * np.maximum(depths, one.range)))
         last = max(last, found) if found < math.inf else math.nan
     return math.nextafter(last, math.inf)

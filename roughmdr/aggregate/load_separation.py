@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.pull_off import prepare as prepare_pull_off
+from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.asperity.validity import ValidityLimits
@@ -166,8 +166,9 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
-        prepare_pull_off(law, columns, one)
-    if adhesion.tabor_known:
+        if law.adhesive:
+            detachment_depths(law, columns, 1.0, one)
+    if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
 

@@ -6,6 +6,7 @@ from roughmdr.errors import Fault, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import CLEAR
+from roughmdr.schema.units import format_quantity
 
 
 class PathEnds(NamedTuple):
@@ -51,8 +52,8 @@ def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
     assert begin is not None
     if stop is not None:
         if not stop < begin:
-            message = f"must be below {begin:.6g} m, where a path that starts {CLEAR} begins"
-            raise SceneError.of([Fault("path.separation.stop", f"{stop:g} m", message)])
+            message = f"must be below {format_quantity(begin, 'm')}, where a path that starts {CLEAR} begins"
+            raise SceneError.of([Fault("path.separation.stop", format_quantity(stop, "m"), message)])
         return PathEnds(clear)
     assert cell.path.target is not None
     return PathEnds(clear, target_stop(cell, cell.path.target, begin))
@@ -60,4 +61,4 @@ def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
 
 def _range(values: list[float]) -> str:
     lowest, highest = min(values), max(values)
-    return f"{lowest:.6g} m" if lowest == highest else f"{lowest:.6g} to {highest:.6g} m"
+    return format_quantity(lowest, "m") if lowest == highest else format_quantity(lowest, "m", to=highest)

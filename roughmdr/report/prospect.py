@@ -38,7 +38,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     if tabor < math.inf:
         yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
     names = cells[0].law.model_error.named
-    yield from trust_lines({name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names})
+    numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
+    yield from trust_lines(numbers, unloads=returns)
 
 
 def _pressure_at_closest(cell: "Foreseen") -> float:

@@ -29,7 +29,6 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
     lines = [
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
-        *_indent("path", plan.path_notes),
         *_required_accuracy(plan),
         ("output", f"{', '.join(output.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),

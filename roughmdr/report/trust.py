@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, Coefficients, interaction_error
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, TENSION, Coefficients, interaction_error
 from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -25,7 +25,7 @@ Numbers = Mapping[str, Any]
 """``ModelError.named``, numbers or arrays over the runs."""
 
 
-def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
+def trust_lines(numbers: Numbers, *, unloads: bool) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several."""
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -41,13 +41,15 @@ def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
         return
     tension = known["tension_contact_fraction"]
     places = [(largest, "at closest approach")]
-    if tension.size:
-        places.insert(0, (tension, "at the largest tension"))
+    if tension.size and unloads:
+        places.insert(0, (tension, "at pull-off"))
     shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
     coefficients = _coefficients(known)
     errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
     yield "contact", f"summed contact area {', '.join(shares)}"
     yield "model error", f"asperities are independent: force at given separation off by {', '.join(errors)}"
+    if len(places) > 1:
+        yield "", f"the pull-off force itself: typically by {_percent(TENSION * math.sqrt(float(tension.max())))}"
     yield from _several("", others)
     yield "trust", _trust(known, coefficients)
 
@@ -55,7 +57,8 @@ def trust_lines(numbers: Numbers) -> Iterator[tuple[str, str]]:
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
     if set(result.variables) >= _NAMES:
-        yield from trust_lines({name: result.variables[name].values for name in _NAMES})
+        unloads = "unloading" in result.coordinates["branch"].values
+        yield from trust_lines({name: result.variables[name].values for name in _NAMES}, unloads=unloads)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 

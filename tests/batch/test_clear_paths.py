@@ -14,6 +14,7 @@ import roughmdr as rm
 from roughmdr.batch.clear_start import clear_start
 from roughmdr.errors import SceneError
 from roughmdr.scene import read
+from roughmdr.schema.units import format_quantity
 
 JKR = {"model": "jkr", "work": "50 mJ/m^2"}
 DUGDALE = {"model": "dugdale", "work": "50 mJ/m^2", "strength": "0.5 MPa"}
@@ -161,7 +162,7 @@ def test_the_stop_is_where_the_expected_law_has_the_target(adhesion: Any, target
     drawn = rm.run(table)
     np.testing.assert_array_equal(drawn.separation, result.separation)
     assert "stop" in drawn.attrs["path"]
-    assert f"{float(drawn.separation[29]):.6g} m" in drawn.attrs["path"]
+    assert format_quantity(float(drawn.separation[29]), "m") in drawn.attrs["path"]
 
 
 def test_in_other_units_the_path_scales() -> None:

@@ -72,12 +72,13 @@ class RandomAsperities(PatchSource):
         for (number, population), (name, floor, reason) in product(members, bounds):
             entry, lower = population.parameters[name], population.parameters[floor]
             if entry.smallest < lower.largest:
-                lowest, highest = (
-                    format_quantity(end, SHAPES[self.shape].units[key])
-                    for key, end in ((name, entry.smallest), (floor, lower.largest))
+                units = SHAPES[self.shape].units
+                lowest, limit = (
+                    format_quantity(entry.smallest, units[name]),
+                    format_quantity(lower.largest, units[floor]),
                 )
                 given = lowest if entry.constant is not None else f"from {lowest}"
-                limit = highest if lower.constant is not None else f"which can be as high as {highest}"
+                limit = limit if lower.constant is not None else f"which can be as high as {limit}"
                 key = f"second.{name}" if number > 0 and name in in_second else name
                 raise EntryError(key, given, f"must not be below {floor}, {limit}: {reason}")
         if self.correlation is None:
