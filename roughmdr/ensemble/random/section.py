@@ -14,12 +14,13 @@ from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.random.profile_readers import read_lengths, read_terms
 from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
+from roughmdr.schema.units import DIMENSIONLESS, format_quantity
 from roughmdr.shapes import SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
 _Section = TypeVar("_Section", bound=Section)
@@ -216,30 +217,11 @@ def _parameters_of(section: Section | None, shape: str) -> dict[str, Any]:
     return {name: entry for name, entry in entries.items() if entry is not None}
 
 
-def _read_terms(value: object) -> dict[str, float]:
-    """Read the terms of a power series, { "exponent" = coefficient }."""
-    if not isinstance(value, dict) or not value:
-        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
-    terms = {}
-    for exponent, coefficient in value.items():
-        try:
-            float(exponent)
-        except ValueError:
-            raise EntryError(exponent, coefficient, 'the exponent must be a number, as in { "2" = 1e4 }') from None
-        try:
-            terms[exponent] = quantity(coefficient, DIMENSIONLESS)
-        except RoughmdrError as error:
-            hint = '; an exponent with a point needs quotes, as "2.5"' if isinstance(coefficient, dict) else ""
-            raise EntryError(exponent, coefficient, f"{error}{hint}") from None
-    PowerSeries(terms)
-    return terms
-
-
 class RandomPowerSeries(RandomAsperities):
     """Asperities with one power series as their common profile."""
 
     shape: Literal["power_series"]
-    terms: Annotated[dict[str, float], BeforeValidator(_read_terms)]
+    terms: Annotated[dict[str, float], BeforeValidator(read_terms)]
 
     @cached_property
     def shared_profile(self) -> SharedProfile:
@@ -247,19 +229,12 @@ class RandomPowerSeries(RandomAsperities):
         return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
 
 
-def _read_lengths(value: object) -> list[float]:
-    """Read a list of lengths."""
-    if not isinstance(value, list):
-        raise RoughmdrError('must be a list of lengths, as [0, "1 um", "2 um"]')
-    return [quantity(entry, "m") for entry in value]
-
-
 class RandomTabulated(RandomAsperities):
     """Asperities with one measured profile."""
 
     shape: Literal["tabulated"]
-    r: Annotated[list[float], BeforeValidator(_read_lengths)]
-    f: Annotated[list[float], BeforeValidator(_read_lengths)]
+    r: Annotated[list[float], BeforeValidator(read_lengths)]
+    f: Annotated[list[float], BeforeValidator(read_lengths)]
 
     @field_validator("f")
     @classmethod
