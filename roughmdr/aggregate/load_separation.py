@@ -21,6 +21,7 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
+from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction, fraction_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
@@ -168,6 +169,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
         if law.adhesive:
             detachment_depths(law, columns, 1.0, one)
+            prepare_pull_off()
     if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
