@@ -38,10 +38,15 @@ class Backend(NamedTuple):
                 "tcp://HOST:PORT or tls://HOST:PORT, or in Python a Client of one"
             )
 
+    @property
+    def is_local(self) -> bool:
+        """Whether the tasks are computed on this machine, by workers that are started for them."""
+        return isinstance(self.scheduler, str) and self.scheduler in _LOCAL
+
     def pool(self) -> AbstractContextManager[Pool]:
         """Open what computes the tasks; RoughmdrError where a cluster does not answer."""
         if not isinstance(self.scheduler, str):
             return nullcontext(Cluster(self.scheduler))
-        if self.scheduler in _LOCAL:
+        if self.is_local:
             return nullcontext(_LOCAL[self.scheduler](self.workers))
         return connected(self.scheduler, self.tls)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.batch.collect import Collector
-from roughmdr.batch.costs import result_bytes
+from roughmdr.batch.costs import ensemble_bytes, result_bytes
 from roughmdr.batch.foresee import check_foreseen
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
@@ -144,6 +144,9 @@ def execute(
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
         remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
         check_memory(result_bytes(plan, runs), "the run", remedy)
+        if backend.is_local:
+            asperities = min(backend.workers, runs) * ensemble_bytes(plan)
+            check_memory(asperities, "the asperities of the runs in progress", "fewer asperities or workers take less")
         try:
             with backend.pool() as pool:
                 if not resume:
