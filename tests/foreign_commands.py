@@ -116,7 +116,7 @@ def all_failed(content: Content) -> None:
             and values.dtype.kind == "f"
             and name not in ("separation", "realization_count")
         ):
-            values[...] = np.nan
+            values[...] = 0.0 if name == "pull_off_count" else np.nan
 
 
 def remarked(content: Content) -> None:

@@ -74,6 +74,8 @@ def _reason(cell: Cell) -> str:
         _law(cell.scene, path)
     except TooMuchContact as error:
         return str(error)
+    except RoughmdrError:
+        return ""  # the runs will tell
     return ""
 
 

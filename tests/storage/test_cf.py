@@ -15,9 +15,9 @@ from roughmdr.variables import CURVE_VARIABLES
 
 SMALL: dict[str, Any] = {**ASPERITIES, "count": 30}
 _DRAWN = {key: value for key, value in SMALL.items() if key != "radius"}
-POWER = {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 10.0}
+POWER = {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 1e7}
 PRODUCT = {"adhesion.work": [0.0, 0.05, 0.02], "asperities.height.distribution": ["normal", "uniform"]}
-SIGMA = {"mode": "zip", "path.separation.start": ["3 sigma", "4 sigma"], "asperities.coefficient": [10.0, 5.0]}
+SIGMA = {"mode": "zip", "path.separation.start": ["3 sigma", "4 sigma"], "asperities.coefficient": [1e7, 5e6]}
 EVERY = {"variables": list(CURVE_VARIABLES)}
 RESULTS = {
     "curves": scene(asperities=SMALL, output=EVERY),
@@ -47,7 +47,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
             "-o",
             f"{name} asperities.nc",
             "--set",
-            "asperities.coefficient=3" if name == "zip" else "seed=1",
+            "asperities.coefficient=3e6" if name == "zip" else "seed=1",
         )
     script = SCENES.parents[1] / "data_gen" / "surface.py"
     subprocess.run([sys.executable, script, "map.nc", "--points", "64"], cwd=folder, check=True, capture_output=True)
