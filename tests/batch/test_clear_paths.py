@@ -69,7 +69,7 @@ def test_nothing_touches_or_attracts_at_both_ends(shape: str, adhesion: Any) -> 
         {"distribution": "uniform", "loc": "-1 um", "scale": "2 um"},
         {"distribution": "normal", "std": "1 um", "max": "2 um"},
         {"distribution": "exponential", "std": "1 um", "mean": 0},
-        {"distribution": "gumbel_r", "std": "0.1 um", "mean": "5 um"},
+        {"distribution": "gumbel_r", "std": "0.1 um", "mean": "0.5 um"},
     ],
     ids=str,
 )
@@ -223,7 +223,7 @@ def test_sweeps(tmp_path: Path) -> None:
         ({"stop": {"presure": "1 MPa"}}, "stop.presure: unknown key; did you mean 'pressure'?"),
         ({"stop": "clear"}, "path.separation.stop = 'clear': "),
         ({"start": "claer"}, "path.separation.start = 'claer': "),
-        ({"stop": "50 sigma"}, "path.separation.stop = 5e-05 m: must be below 6.7"),
+        ({"stop": "50 sigma"}, "path.separation.stop = 50 um: must be below 6.7"),
         ({"start": "1 sigma", "stop": {"contact_fraction": 0.001}}, "is reached above the start, 1e-06 m"),
     ],
     ids=str,
