@@ -1,0 +1,105 @@
+"""The lines on contact, model error and trust of plans, runs and results."""
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomli_w
+from click.testing import CliRunner
+from scenes import SCENE, scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.report.trust import trust_lines
+
+NUMBERS = {
+    "model_error": 0.3, "interaction_error": 0.28, "slope_error": 0.02, "profile_end_error": 0.0,
+    "adhesion_range_error": 0.0, "resolution_error": 0.0, "largest_contact_fraction": 0.035,
+    "tension_contact_fraction": 0.025, "trusted_separation": 1.1e-6,
+}  # fmt: skip
+NONE = dict.fromkeys(NUMBERS, math.nan)
+
+
+def lines(unloads: bool = True, **changes: float) -> dict[str, str]:
+    return dict(trust_lines(NUMBERS | changes, unloads=unloads))
+
+
+def test_the_block_reads_as_it_should() -> None:
+    told = lines()
+    assert told["contact"] == "summed contact area 2.5 % of the patch at pull-off, 3.5 % at closest approach"
+    assert told["model error"].startswith(
+        "asperities are independent: force at given separation off by about 13 % (7.9 to 25) at pull-off, about 16 %"
+    )
+    assert told["trust"] == (
+        "force within about 24 % down to h = 1.1 um (contact 2 %); below, asperities interact, which is left out"
+    )
+
+
+def test_a_path_with_little_contact_is_trusted_along_all_of_it() -> None:
+    told = lines(interaction_error=0.045, model_error=0.065, largest_contact_fraction=1e-3, trusted_separation=math.nan)
+    assert told["trust"] == "force within about 6.5 % along the whole path"
+
+
+def test_where_nothing_is_to_be_believed_the_cause_is_told() -> None:
+    assert lines(adhesion_range_error=1.0, model_error=1.0)["trust"].startswith(
+        "none: the force may be off by all of it"
+    )
+    assert "JKR, where adhesion reaches further" in lines(adhesion_range_error=1.0, model_error=1.0)["trust"]
+
+
+def test_a_path_without_contact_has_nothing_to_trust() -> None:
+    told = lines(**{name: 0.0 for name in NUMBERS if name != "trusted_separation"}, trusted_separation=math.nan)
+    assert told["trust"] == "no contact along the whole path"
+
+
+def test_without_a_nominal_area_nothing_is_known() -> None:
+    told = dict(trust_lines({**NONE, "slope_error": 0.0}, unloads=False))
+    assert "not known" in told["contact"]
+    assert "no nominal area" in told["trust"]
+
+
+SPARSE = {**SCENE["asperities"], "count": 50}
+CASES: list[tuple[dict[str, Any], str]] = [
+    ({"asperities": SPARSE}, "within about"),
+    ({"adhesion": None, "path": {"separation": ["9 um", "8 um"]}}, "no contact"),
+    ({"batch": {"estimator": "expected", "realizations": 1}}, "down to h = "),
+    ({"output": {"keep": "statistics"}}, "down to h = "),
+    ({"sweep": {"adhesion.work": [0.01, 0.02]}}, "down to h = "),
+]
+
+
+@pytest.mark.parametrize(("changes", "says"), CASES)
+def test_plan_run_and_info_tell_how_far_the_force_can_be_trusted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changes: dict[str, Any], says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("s.toml").write_text(tomli_w.dumps(scene(**changes)))
+    for command in (["plan", "s.toml"], ["run", "s.toml", "-o", "out.nc"], ["info", "out.nc"]):
+        done = CliRunner().invoke(main, command, catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+        trust = re.findall(r"^trust +(.*)$", done.stdout, re.MULTILINE)
+        assert len(trust) == 1
+        assert says in trust[0]
+        assert re.search(r"^contact ", done.stdout, re.MULTILINE)
+
+
+def test_the_plan_foresees_what_the_run_finds(tmp_path: Path) -> None:
+    from roughmdr.batch.foresee import foresee_cells
+    from roughmdr.batch.plan import make_plan
+    from roughmdr.scene import read
+
+    table = scene(batch={"realizations": 32})
+    foreseen = foresee_cells(make_plan(read(table))).foreseen[0].law.model_error
+    made = rm.run(table)
+    assert foreseen.largest_fraction == pytest.approx(float(made.largest_contact_fraction.mean()), rel=0.05)
+    assert foreseen.named["model_error"] == pytest.approx(float(made.model_error.mean()), rel=0.05)
+
+
+def test_the_title_of_a_picture_tells_it_and_the_band_is_drawn() -> None:
+    made = rm.run(scene(output={"variables": ["force", "model_error_curve"]}))
+    figure = rm.plot(made, variables="force")
+    assert "model: force within about" in figure.get_suptitle()
+    plain = rm.plot(made.drop_vars("model_error_curve"), variables="force")
+    assert len(figure.axes[0].collections) > len(plain.axes[0].collections)
