@@ -25,7 +25,8 @@ def small(tmp_path: Path) -> Path:
 
 
 def test_run_and_plot(small: Path) -> None:
-    done = roughmdr("run", "small.toml", "-o", "out.nc", "--set", "batch.realizations=3", cwd=small)
+    clear = "--set", "path.separation.start=6 sigma"
+    done = roughmdr("run", "small.toml", "-o", "out.nc", "--set", "batch.realizations=3", *clear, cwd=small)
     assert done.returncode == 0, done.stderr
     for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "out.nc"):
         assert text in done.stdout

@@ -21,6 +21,7 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
+from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction, fraction_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
@@ -130,7 +131,7 @@ def compute(
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
-        validity.jkr_error if adhesion.model == "jkr" else 0.0,
+        validity.usual_error if adhesion.model == "jkr" else 0.0,
         float(ensemble.attrs.get("radius_uncertainty", 0.0)),
         bool(ensemble.attrs.get("of_surface", 0)),
         _overlap(ensemble, radius),
@@ -168,6 +169,7 @@ def prepare(shape: str, adhesion: Adhesion) -> None:
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
         if law.adhesive:
             detachment_depths(law, columns, 1.0, one)
+            prepare_pull_off()
     if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 

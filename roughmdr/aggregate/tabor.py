@@ -34,6 +34,10 @@ class JkrValidity(NamedTuple):
     """The least Tabor number [1]; inf where the strength of the adhesion is not given."""
     jkr_error: float = 0.0
     """About the error of the force of JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
+    usual_error: float = 0.0
+    """Likewise, but where heights differ by less than a contact is stretched: at separations where contacts of nearly
+    equal heights do not just jump on.
+    """
 
 
 def _smallest_fold(columns: Columns, material: Material) -> tuple[float, float]:
@@ -76,8 +80,9 @@ def jkr_validity(
     kernels = choose(shape, Adhesion(adhesion.work), columns.params)
     radius, depth = _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, math.inf))
     if not 0.0 < radius < math.inf:
-        return JkrValidity(0.0, math.inf)
+        return JkrValidity(0.0, math.inf, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
     sharp = SHAPES[shape].flat and SHAPES[shape].corner
+    at_corner = _AT_A_CORNER if sharp else 0.0
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
-    return JkrValidity(tabor, (shift + (_AT_A_CORNER if sharp else 0.0)) / tabor)
+    return JkrValidity(tabor, (shift + at_corner) / tabor, (min(shift, SHIFT) + at_corner) / tabor)

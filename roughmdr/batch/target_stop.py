@@ -10,7 +10,7 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
-from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.errors import Fault, RoughmdrError, SceneError, TooMuchContact
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import Target
@@ -79,7 +79,19 @@ def _first_reached(law: _Law, target: Target, start: float, distance: float) -> 
 def _between(law: _Law, above: float, below: float) -> tuple[Floats, Floats]:
     """Return separations [m] from next to ``above`` to ``below``, and the law there."""
     h = np.linspace(above, below, _POINTS + 1)[1:]
-    return h, law(h)
+    return h, _capped(law, h)
+
+
+def _capped(law: _Law, separations: Floats) -> Floats:
+    """Return the law at falling separations [m]: inf where there would be more contact than nominal area."""
+    try:
+        return law(separations)
+    except TooMuchContact:
+        if separations.size == 1:
+            return np.array([np.inf])
+        half = separations.size // 2
+        first, rest = _capped(law, separations[:half]), np.full(separations.size - half, np.inf)
+        return np.concatenate([first, _capped(law, separations[half:]) if np.isfinite(first[-1]) else rest])
 
 
 def _fault(target: Target, message: str) -> SceneError:

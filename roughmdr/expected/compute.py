@@ -76,7 +76,7 @@ def compute(
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
     equal_radii = np.sqrt(total[AREA].max(keepdims=True) / math.pi)  # one contact in place of all alike
     overlap = poisson_overlap(equal_radii, nominal_area)
-    jkr_error = validity.jkr_error if model == "jkr" else 0.0
+    jkr_error = validity.usual_error if model == "jkr" else 0.0
     assumptions = Assumptions(limits, jkr_error, of_surface=source.of_surface, overlap=overlap)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     warnings = _warnings(law.numerical_error, error_of_others)

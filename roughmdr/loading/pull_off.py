@@ -70,6 +70,12 @@ def _turns(separation: Floats) -> Floats:
     return np.asarray(distinct[np.append(down[1:] != down[:-1], True)])
 
 
+def prepare() -> None:
+    """Compile what is needed to locate a pull-off."""
+    one = np.zeros(1)
+    merged(one, one, one, next_separations(np.arange(3.0), np.zeros(3), one, 0.0, 0.0), one[:0], one[:0])
+
+
 def locate(rises: list[Unloading], evaluate: Evaluate, detachments: Floats = _NONE) -> PullOff:
     """Return the largest tension of unloadings.
 

@@ -8,6 +8,7 @@ it changes from one end to the other, here or next to here.
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -48,29 +49,58 @@ def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
 
 
 @njit
+def _counts(h: Floats, detachments: Floats) -> NDArray[np.int64]:
+    """Return how many detachments lie below each separation."""
+    counts, passed = np.empty(h.size, dtype=np.int64), 0
+    for k in range(h.size):
+        while passed < detachments.size and detachments[passed] < h[k]:
+            passed += 1
+        counts[k] = passed
+    return counts
+
+
+@njit
+def _lowest_intervals(bounds: Floats, limit: float) -> NDArray[np.int64]:
+    """Return the intervals, at most ``_INTERVALS`` and ascending, whose bounds are the lowest, and below a limit."""
+    chosen, size = np.empty(_INTERVALS, dtype=np.int64), 0
+    for k in range(bounds.size):
+        if bounds[k] >= limit:
+            continue
+        if size == _INTERVALS:
+            worst = 0
+            for i in range(1, size):
+                worst = i if bounds[chosen[i]] >= bounds[chosen[worst]] else worst
+            if bounds[chosen[worst]] <= bounds[k]:
+                continue
+            for i in range(worst, size - 1):
+                chosen[i] = chosen[i + 1]
+            size -= 1
+        chosen[size] = k
+        size += 1
+    return chosen[:size]
+
+
+@njit
 def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: float, beside: float) -> Floats:
     """Return more separations [m], ascending, where the force may be below ``lowest`` [N]; none where it cannot be.
 
     h [m] ascends with the force there [N], and so do the ``detachments``, which are met ``beside`` [m] them.
     """
-    count = np.searchsorted(detachments, h)
-    smooth, bounds = np.empty(h.size - 1), np.empty(h.size - 1)
+    count, smooth, bounds, largest = _counts(h, detachments), np.empty(h.size - 1), np.empty(h.size - 1), 0.0
     for k in range(h.size - 1):  # a slope across a few roundings is none
         smooth[k] = 1.0 if count[k] == count[k + 1] and h[k + 1] - h[k] > _NARROW * beside else 0.0
-    limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * np.max(np.abs(force)))
+    for k in range(h.size):
+        largest = max(largest, abs(force[k]))
+    limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * largest)
     for k in range(h.size - 1):
         wide = h[k + 1] - h[k] > _NARROW * beside
         bounds[k] = _bound(h, force, smooth, k) if wide else math.inf
-    chosen = np.flatnonzero(bounds < limit)
-    if chosen.size > _INTERVALS:
-        chosen = np.sort(chosen[np.argsort(bounds[chosen])[:_INTERVALS]])
+    chosen = _lowest_intervals(bounds, limit)
     points = min(max(_POINTS // max(chosen.size, 1), _MIN_POINTS), _MAX_POINTS)
-    found = np.empty(2 * points * chosen.size)
-    filled = 0
+    found, filled = np.empty(2 * points * chosen.size), 0
     for number in range(chosen.size):
-        k = int(chosen[number])
-        last = float(h[k])
-        inside = count[k + 1] - count[k]
+        k = chosen[number]
+        last, inside = h[k], count[k + 1] - count[k]
         used = min(inside, points) if inside > 0 else points
         for j in range(used):
             if inside > 0:

@@ -1,5 +1,6 @@
 """Pictures of a result: mean and standard error of its variables over each loading and unloading."""
 
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -9,6 +10,7 @@ import numpy as np
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.report.trust import trust_of_result
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.files import check_ending, replace_atomically
@@ -46,14 +48,17 @@ class _Curve(NamedTuple):
     separation: Floats
     mean: Floats
     error: Floats  # standard error of the mean; NaN if there is none
+    model_error: Floats  # of a force, over itself; NaN where it is not known, or of other variables
     runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
 
 
 def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) -> "Figure":
     """Draw variables of a result against separation, with ``lines`` over them.
 
-    Every realisation is a thin line, the mean a thick one, twice its standard error a band. The cells of a sweep have a
-    colour each and no thin lines; unloading is dashed. The expected law is thin and dark, theory curves are dotted.
+    Every realisation is a thin line, the mean a thick one, twice its standard error a band, and of a force the error of
+    the model a grey one, where the result has its curve. The cells of a sweep have a colour each and no thin lines;
+    unloading is dashed. The expected law is thin and dark, theory curves are dotted. The title says how far the force
+    can be trusted.
     StoreError if no run was computed.
     """
     from matplotlib.figure import Figure
@@ -83,8 +88,15 @@ def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) 
         note += f", {len(named)} of {len(cells)} cells named" if len(named) < len(cells) else ""
     else:
         axes.flat[0].legend(handles=handles, frameon=False)
-    figure.suptitle(f"{escape_controls(result.attrs['title'])}\n{note}", fontsize=11, parse_math=False)
+    title = f"{escape_controls(result.attrs['title'])}\n{note}"
+    figure.suptitle("\n".join([title, *_trust_note(result, names)]), fontsize=11, parse_math=False)
     return figure
+
+
+def _trust_note(result: Labelled, names: list[str]) -> list[str]:
+    """Return how far the force can be trusted, in lines as long as a picture is wide."""
+    text = dict(trust_of_result(result))["trust"]
+    return textwrap.wrap(f"model: {text}", 62 * min(2, len(names)))
 
 
 def save(figure: "Figure", path: Path) -> None:
@@ -115,11 +127,21 @@ def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:
     else:
         mean, error = (result.variables[f"{name}_{statistic}"].values for statistic in ("mean", "sem"))
         runs, done = np.empty((*mean.shape[:-1], 0, branches.size)), np.empty((*mean.shape[:-1], 0), dtype=bool)
-    separation = separations(result)
+    separation, model_error = separations(result), _mean_model_error(result, name, mean)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         for pass_number, steps in enumerate(passes):
-            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], runs[cell][done[cell]][:, steps]
-            yield _Curve(number, pass_number, str(branches[steps[0]]), *columns)
+            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], model_error[cell][steps]
+            yield _Curve(number, pass_number, str(branches[steps[0]]), *columns, runs[cell][done[cell]][:, steps])
+
+
+def _mean_model_error(result: Labelled, name: str, mean: Floats) -> Floats:
+    """Return the model error of a mean force over the realisations; NaN where it is not known, or of others."""
+    curve = "model_error_curve"
+    if name in ("force", "pressure") and f"{curve}_mean" in result.variables:
+        return result.variables[f"{curve}_mean"].values
+    if name in ("force", "pressure") and curve in result.variables:
+        return mean_and_error(result.variables[curve].values, done_of(result))[0]
+    return np.full_like(mean, np.nan)
 
 
 def _draw_panel(
@@ -138,6 +160,10 @@ def _draw_panel(
             axes.plot(line.separation / h_scale, line.values / scale, **style)
 
     for curve in curves:
+        if np.isfinite(curve.model_error).any():
+            off = curve.model_error * np.abs(curve.mean) / scale
+            middle = curve.mean / scale
+            ax.fill_between(curve.separation / h_scale, middle - off, middle + off, color="0.85", lw=0, zorder=0.5)
         h, mean, error = curve.separation / h_scale, curve.mean / scale, curve.error / scale
         colour = _curve_style(curve, labels)["color"]
         if len(labels) == 1 and curve.runs.size:
