@@ -22,13 +22,11 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.scene import read
 
-POINTS = 512
-"""Of the grid of boundary elements, a side; for asperities."""
 _TOLD = ("contact", "model error", "trust", "warning")
 
 
 class Run(NamedTuple):
-    """One run from the command line, at its step of the largest model error."""
+    """One run from the command line, at its closest approach, where the model error is largest."""
 
     exit_status: int
     printed: str
@@ -55,13 +53,13 @@ class Truth(NamedTuple):
 
 _NAMES = {
     "exit_status": ("exit status of the run", "1"),
-    "contact_fraction": ("summed contact area over the nominal area at the largest model error", "1"),
-    "contact_radius": ("root mean square of the contact radii there", "m"),
-    "model_error": ("largest model error", "1"),
-    "separation": ("separation there", "m"),
-    "force": ("force of independent asperities there", "N"),
+    "contact_fraction": ("summed contact area over the nominal area at closest approach", "1"),
+    "contact_radius": ("root mean square of the contact radii at closest approach", "m"),
+    "model_error": ("model error at closest approach", "1"),
+    "separation": ("separation at closest approach", "m"),
+    "force": ("force of independent asperities at closest approach", "N"),
     "pull_off": ("pull-off force of independent asperities", "N"),
-    "true_force": ("true force there, infinite in full contact", "N"),
+    "true_force": ("true force at closest approach, infinite in full contact", "N"),
     "scatter": ("standard error of the true force, of a mean over maps", "N"),
     "true_pull_off": ("true pull-off force", "N"),
     "radius_points": ("contact radius over the spacing of the grid of boundary elements", "1"),
@@ -92,20 +90,20 @@ def _told(printed: str) -> Iterator[str]:
 
 
 def _compare(case: Case, file: Path, result: xr.Dataset, printed: str) -> tuple[Run, Truth]:
-    worst = int(result["model_error_curve"].argmax())
-    at = result.isel(step=worst)
+    closest = int(np.argmin(result["separation"].to_numpy()))
+    at = result.isel(step=closest)
     size = case.surface.size if case.surface else math.sqrt(float(_ensemble(file).attrs["nominal_area"]))
     run = Run(
         0,
         printed,
         float(at["contact_fraction"]),
         size * math.sqrt(float(at["contact_fraction"] / (math.pi * at["contact_count"]))),
-        float(result["model_error"]),
+        float(at["model_error_curve"]),
         float(at["separation"]),
         float(at["force"]),
         float(result.get("pull_off_force", math.nan)),
     )
-    return run, _truth(case, file, run, FlatPath(result["separation"].to_numpy(), worst))
+    return run, _truth(case, file, run, FlatPath(result["separation"].to_numpy(), closest))
 
 
 def _truth(case: Case, file: Path, run: Run, path: FlatPath) -> Truth:
@@ -122,8 +120,8 @@ def _truth(case: Case, file: Path, run: Run, path: FlatPath) -> Truth:
         if work:
             return Truth(force + by_range_of_adhesion(ensemble, modulus, work, path), 0.0, pull_off)
         return Truth(force, 0.0)
-    spacing = math.sqrt(float(ensemble.attrs["nominal_area"])) / POINTS
-    force = by_boundary_elements(ensemble, POINTS, modulus, run.separation)
+    spacing = math.sqrt(float(ensemble.attrs["nominal_area"])) / case.points
+    force = by_boundary_elements(ensemble, case.points, modulus, run.separation)
     return Truth(force, 0.0, radius_points=run.contact_radius / spacing)
 
 

@@ -4,7 +4,6 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 from oracles.gaussian_maps import gaussian_map
 
 from roughmdr.numerics.arguments import Floats
@@ -28,9 +27,8 @@ class Surface(NamedTuple):
     """How many points there are for each of these along a side of the grid of boundary elements."""
 
     def height(self, seed: int = 1) -> Floats:
-        """Return heights [m] on the grid of the file, of exactly the r.m.s. height of the spectrum."""
-        height = gaussian_map(self.spectrum, self.points, self.size, seed)
-        return height * (self.spectrum.rms_height / np.std(height))
+        """Return heights [m] on the grid of the file."""
+        return gaussian_map(self.spectrum, self.points, self.size, seed)
 
 
 class Case(NamedTuple):
@@ -44,6 +42,8 @@ class Case(NamedTuple):
     changes: str = ""
     """In which way it differs from the shipped scene of its name."""
     surface: Surface | None = None
+    points: int = 512
+    """Of the grid of boundary elements of asperities, a side."""
 
 
 def _shipped(name: str, without: tuple[str, ...] = (), **changes: Any) -> Table:
@@ -93,16 +93,16 @@ def _normal(std: str) -> Table:
 
 _MEASURED = Surface(SelfAffine.of(hurst=0.8, long_wave=50e-6, short_wave=6e-6, rms_height=0.5e-6), 100e-6, 256, 2)
 _COARSE = Surface(SelfAffine.of(hurst=0.5, long_wave=5e-6, short_wave=0.2e-6, rms_slope=0.1), 10e-6, 128, 4)
-_GAUSSIAN = Surface(SelfAffine.of(hurst=0.8, long_wave=100e-6, short_wave=5e-6, rms_slope=0.1), 300e-6, 512)
+_GAUSSIAN = Surface(SelfAffine.of(hurst=0.8, long_wave=30e-6, short_wave=5e-6, rms_slope=0.1), 250e-6, 512)
 _FILM = {"count": 240, "patch": "2 um", "radius": "120 nm", "height": _normal("5 nm")}
 
 CASES = (
     Case("rubber_on_glass", _shipped("rubber_on_glass"), "pairs"),
     Case(
         "gaussian_surface",
-        _shipped("gaussian_surface", asperities__patch="0.3 mm"),
+        _shipped("gaussian_surface", asperities__patch="0.25 mm", asperities__long_wave="30 um"),
         "maps",
-        "on 0.3 mm",
+        "waves up to 30 um, on 0.25 mm",
         _GAUSSIAN,
     ),
     Case(
@@ -164,9 +164,16 @@ CASES = (
     Case("rough map", _own("Rough map", {"file": "map.nc"}, _stop(0.02)), "map", surface=_COARSE),
     Case(
         "trap: pressed to 40 %",
-        _shipped("rubber_on_glass", ("adhesion",), path__separation__stop="-1.2 sigma"),
+        _shipped(
+            "rubber_on_glass",
+            ("adhesion",),
+            asperities__count=400,
+            asperities__patch="0.4472 mm",
+            path__separation__stop={"contact_fraction": 0.4},
+        ),
         "boundary elements",
-        "rubber_on_glass without adhesion",
+        "rubber_on_glass without adhesion, 400 asperities on 0.447 mm, as dense",
+        points=192,
     ),
     Case(
         "trap: 3 sigma below",
@@ -181,9 +188,13 @@ CASES = (
     ),
     Case(
         "trap: modulus = 3",
-        _shipped("rubber_on_glass", material__modulus=3),
+        _shipped(
+            "rubber_on_glass",
+            material__modulus=3,
+            path__separation={"start": "4 sigma", "stop": "1 sigma", "steps": 200},
+        ),
         "none",
-        "rubber_on_glass",
+        "rubber_on_glass down to 1 sigma",
     ),
 )
 QUICK = ("hexagonal", "sticky film", "trap: modulus = 3")

@@ -5,7 +5,7 @@ Pairs adhere as in JKR; the difference that the range of adhesion makes is added
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -19,16 +19,16 @@ from roughmdr.aggregate.tabor import ASSUMED_RANGE
 from roughmdr.numerics.arguments import Floats
 
 _LIFTED = 0.3  # of the deepest overlap: by less than this the pressure of some contacts lifts the surface between them
-_LOADING, _UNLOADING = 9, 60  # steps of a path that pairs are taken along
-MAPS = 6
+_LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
+MAPS = 5
 """Gaussian maps whose mean force is compared with the expected law."""
 
 
 class Path(NamedTuple):
-    """Separations [m] of a run; it comes down to the step of ``worst``, the closest approach, and may go back."""
+    """Separations [m] of a run, which come down to the step of the closest approach and may go back."""
 
     separation: Floats
-    worst: int
+    closest: int
 
 
 def by_boundary_elements(ensemble: xr.Dataset, points: int, modulus: float, separation: float) -> float:
@@ -52,7 +52,7 @@ def refined(height: Floats, factor: int) -> Floats:
 
 def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, path: Path) -> tuple[float, float]:
     """Return the force [N] of paraboloids at the closest approach, and the least one of the unloading (NaN: none)."""
-    down, up = path.separation[: path.worst + 1], path.separation[path.worst :]
+    down, up = path.separation[: path.closest + 1], path.separation[path.closest :]
     tops = _tops(ensemble, float(down[-1]))
     x, y, height, radius = (tops[name].to_numpy() for name in ("x", "y", "height", "radius"))
     green = periodic_green(x, y, side(ensemble), modulus)
@@ -68,14 +68,19 @@ def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path
 
     It is that of independent asperities, by Dugdale's model beside JKR.
     """
-    separation, both = path.separation[: path.worst + 1], []
-    for range_ in (ASSUMED_RANGE, 0.0):
-        adhesion = {"adhesion": "dugdale", "range": range_} if range_ else {}
+
+    def force(**range_of_adhesion: Any) -> float:
         law = rm.load_separation(
-            ensemble, separation=separation, effective_modulus=modulus, work=work, variables="force", **adhesion
+            ensemble,
+            separation=path.separation[: path.closest + 1],
+            effective_modulus=modulus,
+            work=work,
+            variables=["force"],
+            **range_of_adhesion,
         )
-        both.append(float(law["force"][-1]))
-    return both[0] - both[1]
+        return float(law["force"][-1])
+
+    return force(adhesion="dugdale", range=ASSUMED_RANGE) - force()
 
 
 def _tops(ensemble: xr.Dataset, separation: float) -> xr.Dataset:
