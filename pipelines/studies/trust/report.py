@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 FACTOR = 3.0
 """Within which the model error is to be of the true one."""
-_MIDDLE = 0.12  # errors above which the names of scenes stand on the left of their points
 _ORACLES = {
     "pairs": "asperities that feel each other in pairs",
     "boundary elements": "boundary elements",
@@ -43,17 +42,18 @@ def draw(result: xr.Dataset) -> "Figure":
     figure = Figure(figsize=(7.2, 6.0), layout="constrained")
     axes = figure.subplots()
     error, stated = errors(result), result["model_error"].to_numpy()
-    ends = np.array([0.02, 1.5])
+    ends = np.array([0.01, 3.0])
     axes.fill_between(ends, ends, FACTOR * ends, color="0.92", lw=0, label="bounds it, within a factor of 3")
     axes.loglog(ends, ends, color="k", lw=1)
     for oracle, words in _ORACLES.items():
         own = np.isfinite(error) & (result["oracle"].to_numpy() == oracle)
         if own.any():
             axes.plot(error[own], stated[own], "o", color=_COLOURS[oracle], label=words)
-    for x, y, name in zip(error, stated, result["name"].to_numpy(), strict=True):
-        if np.isfinite(x):
-            side, off = ("left", (6, -7)) if x < _MIDDLE else ("right", (-6, 2))
-            axes.annotate(name, (x, y), xytext=off, textcoords="offset points", fontsize=8, ha=side)
+    for rank, i in enumerate(np.argsort(error)):
+        if np.isfinite(error[i]):
+            side, off = ("left", (6, -8)) if rank % 2 else ("right", (-6, 3))
+            name = str(result["name"].values[i])
+            axes.annotate(name, (error[i], stated[i]), xytext=off, textcoords="offset points", fontsize=8, ha=side)
     axes.set(xlim=ends, ylim=ends, xlabel="true error of the force (relative)", ylabel="model error that is stated")
     axes.grid(color="0.9", which="both", lw=0.5)
     axes.set_axisbelow(True)
