@@ -10,7 +10,7 @@ from studies.study import OUTPUT, QUICK
 
 from roughmdr.storage.files import replace_atomically
 
-NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes", "versus_bem", "traps")
+NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes", "versus_bem", "trust", "traps")
 
 
 @click.command(help=__doc__)

@@ -15,7 +15,7 @@ from roughmdr.numerics.arguments import Floats
 
 _RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
 _RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
-_MAX_ITERATIONS = 200
+_MAX_ITERATIONS = 1000  # next to full contact; elsewhere some 50
 
 
 class Pressed(NamedTuple):

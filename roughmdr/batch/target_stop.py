@@ -11,6 +11,7 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.errors import Fault, RoughmdrError, SceneError, TooMuchContact
+from roughmdr.model_error.refusal import Givens, likely_cause
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import Target
@@ -33,16 +34,22 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
     middle = scene.asperities.extremes(0.5)
     distances = (start - float(np.median(middle.height)), _FIRST * float(middle.nondimensional().width.max()))
     try:
-        return _first_reached(_law(scene, target.variable, start), target, start, max(distances))
+        stop = _first_reached(_law(scene, [target.variable], start), target, start, max(distances))
+        contacts = float(_law(scene, ["contact_count"], start)(np.array([stop]))[0])
+        if contacts < 1.0:
+            givens = Givens(scene.effective_modulus, scene.work, scene.asperities.sigma, 1.0, 0.0)
+            reason = f"is reached with {contacts:.2g} contacts in the mean, fewer than one"
+            raise _fault(target, f"{reason}: {likely_cause(stop, givens)}")
+        return stop
     except SceneError:
         raise
     except RoughmdrError as error:
         raise _fault(target, f"cannot be looked for: {error}") from error
 
 
-def _law(scene: Scene, variable: str, start: float) -> _Law:
+def _law(scene: Scene, names: list[str], start: float) -> _Law:
     """Return the function: falling separations [m] -> the variable there, in loading from ``start`` [m]."""
-    source, names = scene.asperities, [variable]
+    source, variable = scene.asperities, names[0]
 
     def path(separations: Floats) -> LoadingPath:
         return LoadingPath.along(np.append(start, separations), unload=False, adhesive=scene.work > 0.0)

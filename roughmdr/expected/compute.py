@@ -97,7 +97,7 @@ def prepare(
 def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the totals that are integrated over the heights, and those of them that only the model error needs.
 
-    They are the force, the area and all others that are asked for but the energy lost in jumps.
+    They are the force, the area, the count and all others that are asked for but the energy lost in jumps.
     """
     asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]
     return tuple(dict.fromkeys([*asked, AREA])), () if AREA in asked else (AREA,)

@@ -29,9 +29,9 @@ alone.
 """
 SUMMITS = Coefficients(1.5, 1.9, 2.0)
 """Of the summits of a continuous surface, whose flanks are no paraboloids."""
-TENSION = 0.2
+TENSION, MOST_TENSION = 0.2, 1.1
 """The error of the pull-off force, of either sign, over the square root of the contact fraction there, as it typically
-is: of JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``). In one of ten it is above 1.1."""
+is, and what it exceeds in one case of ten: of JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``)."""
 
 
 def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASPERITIES) -> Floats:

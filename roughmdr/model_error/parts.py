@@ -12,6 +12,7 @@ from roughmdr.numerics.arguments import Floats
 TRUSTED_FRACTION = 0.02
 """Contact fraction up to which results are called right to the error stated: some 12 % by interaction."""
 
+_SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 _FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
 
 PARTS = {
@@ -88,7 +89,7 @@ class ModelError(NamedTuple):
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
         interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
-        beyond = separation[contact_fraction > TRUSTED_FRACTION]
+        beyond = separation[contact_fraction > _SLACK * TRUSTED_FRACTION]
         lowest = int(np.argmin(force))
         return cls(
             curve,

@@ -40,11 +40,12 @@ def check_contact_fraction(fraction: Floats, separation: Floats, givens: Givens)
     raise TooMuchContact(
         f"the summed contact area is {fraction[step]:.3g} times the nominal area at a separation of "
         f"{format_quantity(h, 'm')}; it must be below 1, and for independent asperities below some "
-        f"{LARGE_FRACTION:g}: {_likely_cause(h, givens)}"
+        f"{LARGE_FRACTION:g}: {likely_cause(h, givens)}"
     )
 
 
-def _likely_cause(separation: float, givens: Givens) -> str:
+def likely_cause(separation: float, givens: Givens) -> str:
+    """Return what in a scene is likely to be wrong, where its contacts cannot be at a separation [m]."""
     modulus, work = format_quantity(givens.effective_modulus, "Pa"), format_quantity(givens.work, "J/m^2")
     causes = []
     if givens.work > 0.0 and givens.effective_modulus < _SOFT:

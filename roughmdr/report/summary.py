@@ -155,9 +155,9 @@ def describe_failed(result: Labelled) -> str:
 
 
 def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
-    """Yield a note if the path begins or ends in contact; counts below a half, of expected laws, are no contact."""
+    """Yield a note if a path that unloads begins or ends in contact; counts below a half, of expected laws, are no contact."""
     name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
-    if name not in result.variables:
+    if name not in result.variables or "unloading" not in result.coordinates["branch"].values:
         return
     count = result.variables[name].values
     first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, TENSION, Coefficients, interaction_error
+from roughmdr.model_error.interaction import ASPERITIES, MOST_TENSION, SUMMITS, TENSION, Coefficients, interaction_error
 from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -45,11 +45,19 @@ def trust_lines(numbers: Numbers, *, unloads: bool) -> Iterator[tuple[str, str]]
         places.insert(0, (tension, "at pull-off"))
     shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
     coefficients = _coefficients(known)
-    errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
     yield "contact", f"summed contact area {', '.join(shares)}"
-    yield "model error", f"asperities are independent: force at given separation off by {', '.join(errors)}"
+    if not (known["model_error"] > 0.0).any():
+        yield "trust", "no contact along the whole path"
+        return
+    errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
+    yield "model error", f"asperities are independent: force at given separation off by {errors[0]}"
+    yield from (("", f"and by {error}") for error in errors[1:])
     if len(places) > 1:
-        yield "", f"the pull-off force itself: typically by {_percent(TENSION * math.sqrt(float(tension.max())))}"
+        root = math.sqrt(float(tension.max()))
+        yield (
+            "",
+            f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}",
+        )
     yield from _several("", others)
     yield "trust", _trust(known, coefficients)
 
@@ -65,14 +73,13 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
 
 def _trust(known: dict[str, Floats], coefficients: Coefficients) -> str:
     """Return within which error the force holds, and up to where."""
-    if not (known["model_error"] > 0.0).any():
-        return "no contact along the whole path"
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
+        whole = _percent(min(sum(parts.values()), 1.0))
+        rest = f"; below it asperities interact, which is not in the model: within {whole} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients))
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
-        rest = "; below, asperities interact, which is left out"
     error = sum(parts.values())
     if error < 1.0:
         return f"force within about {_percent(error)} {place}{rest}"
@@ -89,7 +96,8 @@ def _interaction(fraction: float, coefficients: Coefficients) -> str:
     """Return the error by interaction at a contact fraction, as it is typically, and its range."""
     root, most = math.sqrt(fraction), float(interaction_error(np.array(fraction), coefficients))
     low, middle = (min(part * root, 1.0) for part in (coefficients.low, coefficients.typical))
-    return f"about {100.0 * middle:.2g} % ({100.0 * low:.2g} to {100.0 * most:.2g})"
+    low_percent, middle_percent, most_percent = (_percent(part).removesuffix(" %") for part in (low, middle, most))
+    return f"about {middle_percent} % ({low_percent} to {most_percent})"
 
 
 def _known(values: Any) -> Floats:

@@ -311,7 +311,7 @@ def test_no_worker_process_outlives_a_killed_batch(folder: Path) -> None:
 def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(folder: Path) -> None:
     """A system out of memory kills whatever takes too much; here the test does it in its place."""
     counts = [100, 200, 6_000_000, 300, 400]
-    write_scene(folder, slow_scene(1, sweep={"asperities.count": counts}))
+    write_scene(folder, slow_scene(1, count=max(counts), sweep={"asperities.count": counts}))
     with running(Batch(folder, "--scheduler", "processes", runs_per_task=1)) as batch:
         deaths = 0
         while batch.process.poll() is None:

@@ -73,6 +73,11 @@ class Case(NamedTuple):
         return ensemble
 
 
+def side(ensemble: xr.Dataset) -> float:
+    """Return the side of the patch [m]."""
+    return math.sqrt(float(ensemble.attrs["nominal_area"]))
+
+
 def exponent_and_coefficient(ensemble: xr.Dataset) -> tuple[float, Floats]:
     """Return n [1] and c [m^(1-n)] of f = c r^n for each asperity."""
     if "radius" in ensemble:
@@ -94,8 +99,9 @@ def contact_radii(ensemble: xr.Dataset, separation: float) -> Floats:
 def height_map(ensemble: xr.Dataset, points: int) -> Floats:
     """Return the highest of all asperities and of their periodic images [m], on points x points over the patch."""
     n, c = exponent_and_coefficient(ensemble)
-    grid = (np.arange(points) + 0.5) * SIZE / points
-    squares = [(np.abs((grid - ensemble[axis].to_numpy()[:, None] + 0.5 * SIZE) % SIZE - 0.5 * SIZE)) ** 2
+    size = side(ensemble)
+    grid = (np.arange(points) + 0.5) * size / points
+    squares = [(np.abs((grid - ensemble[axis].to_numpy()[:, None] + 0.5 * size) % size - 0.5 * size)) ** 2
                for axis in "xy"]  # fmt: skip
     highest = np.full((points, points), -np.inf)
     for i, top in enumerate(ensemble["height"].to_numpy()):
@@ -106,7 +112,8 @@ def height_map(ensemble: xr.Dataset, points: int) -> Floats:
 
 def distances(ensemble: xr.Dataset) -> Floats:
     """Return the distances [m] of all pairs in the periodic patch; infinite from an asperity to itself."""
-    apart = [np.abs((p[:, None] - p[None, :] + 0.5 * SIZE) % SIZE - 0.5 * SIZE)
+    size = side(ensemble)
+    apart = [np.abs((p[:, None] - p[None, :] + 0.5 * size) % size - 0.5 * size)
              for p in (ensemble["x"].to_numpy(), ensemble["y"].to_numpy())]  # fmt: skip
     result = np.hypot(*apart)
     np.fill_diagonal(result, np.inf)

@@ -38,13 +38,18 @@ class MapCase(NamedTuple):
         waves = {"long_wave": self.long_wave * SIZE, "short_wave": self.short_wave * SIZE}
         spectrum = SelfAffine.of(hurst=self.hurst, rms_slope=_SLOPE, **waves)
         height = gaussian_map(spectrum, self.points, SIZE, self.seed)
-        at = ("m", np.arange(self.points) * SIZE / self.points)
-        stored = xr.Dataset(
-            {"height": (("x", "y"), height, {"units": "m"})},
-            {axis: (axis, at[1], {"units": at[0]}) for axis in "xy"},
-            {"periodic": 1},
-        )
         with tempfile.TemporaryDirectory() as folder:
-            write_netcdf(Labelled.of(stored), Path(folder) / "map.nc")
+            write_map(height, SIZE, Path(folder) / "map.nc")
             summits = rm.generate({"source": "surface", "file": str(Path(folder) / "map.nc")}, seed=0)
         return summits, height, height[::2, ::2]
+
+
+def write_map(height: Floats, size: float, file: Path) -> None:
+    """Write a periodic map of heights [m] over ``size`` [m] as netCDF."""
+    along = np.arange(height.shape[0]) * size / height.shape[0]
+    stored = xr.Dataset(
+        {"height": (("x", "y"), height, {"units": "m"})},
+        {axis: (axis, along, {"units": "m"}) for axis in "xy"},
+        {"periodic": 1},
+    )
+    write_netcdf(Labelled.of(stored), file)

@@ -69,8 +69,8 @@ def separations(ensemble: xr.Dataset, fractions: Floats) -> Floats:
     height = ensemble["height"].to_numpy()
     deep = 2.0 * float(np.ptp(height)) + 1e-7
     tried = height.max() - deep * np.linspace(0.0, 1.0, _SEARCHED)[1:] ** 3
-    law = rm.load_separation(ensemble, separation=tried, effective_modulus=MODULUS, variables="contact_fraction")
-    return np.asarray(np.interp(fractions, law["contact_fraction"].to_numpy(), tried, right=np.nan))
+    squares = [float(np.sum(contact_radii(ensemble, h) ** 2)) for h in tried.tolist()]
+    return np.asarray(np.interp(fractions, math.pi * np.array(squares) / SIZE**2, tried, right=np.nan))
 
 
 def overlaps(radius: Floats, distance: Floats) -> tuple[float, float]:

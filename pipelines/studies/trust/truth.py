@@ -1,0 +1,91 @@
+"""True forces of scenes: by boundary elements, or of paraboloids that feel each other in pairs.
+
+Pairs adhere as in JKR; the difference that the range of adhesion makes is added from independent asperities.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from oracles.boundary_elements import HeightMap
+from oracles.pairwise import Paraboloids, periodic_green
+from studies.trust.scenes import Surface
+from studies.versus_bem.ensembles import distances, height_map, side
+
+import roughmdr as rm
+from roughmdr.aggregate.tabor import ASSUMED_RANGE
+from roughmdr.numerics.arguments import Floats
+
+_LIFTED = 0.3  # of the deepest overlap: by less than this the pressure of some contacts lifts the surface between them
+_LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
+MAPS = 5
+"""Gaussian maps whose mean force is compared with the expected law."""
+
+
+class Path(NamedTuple):
+    """Separations [m] of a run, which come down to the step of the closest approach and may go back."""
+
+    separation: Floats
+    closest: int
+
+
+def by_boundary_elements(ensemble: xr.Dataset, points: int, modulus: float, separation: float) -> float:
+    """Return the force [N] of asperities at a separation [m]; infinite in full contact."""
+    size = side(ensemble)
+    return HeightMap(height_map(ensemble, points), size, modulus).press(separation).force
+
+
+def of_map(surface: Surface, seeds: Sequence[int], modulus: float, separation: float) -> list[float]:
+    """Return the force [N] on each map, on its finer grid."""
+    grids = (refined(surface.height(seed), surface.refined) for seed in seeds)
+    return [HeightMap(grid, surface.size, modulus).press(separation).force for grid in grids]
+
+
+def refined(height: Floats, factor: int) -> Floats:
+    """Return a periodic map, of as many points in both directions, with its waves on a grid finer by a whole factor."""
+    waves = np.fft.fftshift(np.fft.fft2(height))
+    added = height.shape[0] * (factor - 1) // 2
+    return np.asarray(np.fft.ifft2(np.fft.ifftshift(np.pad(waves, added))).real * factor**2)
+
+
+def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, path: Path) -> tuple[float, float]:
+    """Return the force [N] of paraboloids at the closest approach, and the least one of the unloading (NaN: none)."""
+    down, up = path.separation[: path.closest + 1], path.separation[path.closest :]
+    tops = _tops(ensemble, float(down[-1]))
+    x, y, height, radius = (tops[name].to_numpy() for name in ("x", "y", "height", "radius"))
+    green = periodic_green(x, y, side(ensemble), modulus)
+    pressed = Paraboloids(height, radius, green, modulus, work)
+    for h in np.linspace(height.max(), down[-1], _LOADING):
+        force = pressed.press(float(h)).force
+    unloading = np.linspace(up[0], up[-1], _UNLOADING if up.size > 1 else 1)[1:]
+    return force, min((pressed.press(float(h)).force for h in unloading), default=math.nan)
+
+
+def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path: Path) -> float:
+    """Return how much more force [N] at closest approach an adhesion has that reaches as far as that of van der Waals.
+
+    It is that of independent asperities, by Dugdale's model beside JKR.
+    """
+
+    def force(**range_of_adhesion: Any) -> float:
+        law = rm.load_separation(
+            ensemble,
+            separation=path.separation[: path.closest + 1],
+            effective_modulus=modulus,
+            work=work,
+            variables=["force"],
+            **range_of_adhesion,
+        )
+        return float(law["force"][-1])
+
+    return force(adhesion="dugdale", range=ASSUMED_RANGE) - force()
+
+
+def _tops(ensemble: xr.Dataset, separation: float) -> xr.Dataset:
+    """Return the asperities that may touch, without those whose top lies below the flank of another."""
+    height = ensemble["height"].to_numpy()
+    flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / ensemble["radius"].to_numpy()[:, None]
+    high = height > separation - _LIFTED * (height.max() - separation)
+    return ensemble.isel(asperity=np.flatnonzero(high & ~(flanks > height).any(axis=0)))
