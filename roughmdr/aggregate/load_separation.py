@@ -131,7 +131,7 @@ def compute(
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
-        validity.usual_error if adhesion.model == "jkr" else 0.0,
+        np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" else 0.0,
         float(ensemble.attrs.get("radius_uncertainty", 0.0)),
         bool(ensemble.attrs.get("of_surface", 0)),
         _overlap(ensemble, radius),

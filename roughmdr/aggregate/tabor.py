@@ -21,6 +21,11 @@ with paraboloids of normal heights, |delta_c|/std from 0.1 to 10, Tabor numbers 
 -1 std (``pipelines/adhesion_range.py``): there at most 4.3."""
 
 
+_PULL_OFF, _MOST_PULL_OFF = 0.09, 1.0 / 3.0
+"""The error of JKR's pull-off force: over the squared Tabor number (1 % at 3), and at most, of DMT, 2 pi w R."""
+
+_PER_FOLD = 4.0  # pull-off force of a paraboloid over E* a |delta| at its detachment under fixed grips
+
 ASSUMED_RANGE = 0.4e-9
 """Range of the adhesion [m] where it is not given: of van der Waals forces between solids, on the long side, which is
 the safe one.
@@ -34,10 +39,8 @@ class JkrValidity(NamedTuple):
     """The least Tabor number [1]; inf where the strength of the adhesion is not given."""
     jkr_error: float = 0.0
     """About the error of the force of JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
-    usual_error: float = 0.0
-    """Likewise, but where heights differ by less than a contact is stretched: at separations where contacts of nearly
-    equal heights do not just jump on.
-    """
+    contact_error: float = 0.0
+    """About the error of JKR's force of one contact [N] while it holds; jumps on before touch are left out."""
 
 
 def _smallest_fold(columns: Columns, material: Material) -> tuple[float, float]:
@@ -85,4 +88,5 @@ def jkr_validity(
     sharp = SHAPES[shape].flat and SHAPES[shape].corner
     at_corner = _AT_A_CORNER if sharp else 0.0
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
-    return JkrValidity(tabor, (shift + at_corner) / tabor, (min(shift, SHIFT) + at_corner) / tabor)
+    relative = min(at_corner / tabor + _PULL_OFF / (tabor * tabor), _MOST_PULL_OFF)
+    return JkrValidity(tabor, (shift + at_corner) / tabor, relative * _PER_FOLD * effective_modulus * radius * depth)

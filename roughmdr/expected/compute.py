@@ -52,7 +52,7 @@ def compute(
     if split is not None:
         for step in split.cuts:
             total[:, step] = split.total(step, dissipating=dissipating)
-    if COUNT in rows and (most := total[COUNT].max()) > 0.0:
+    if COUNT in rows and COUNT not in unjudged and (most := total[COUNT].max()) > 0.0:
         error_of_others = max(error_of_others, float(undecided_of(nodes, steps).max() / most))
     count = source.expected_count
     total *= count
@@ -76,7 +76,8 @@ def compute(
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
     equal_radii = np.sqrt(total[AREA].max(keepdims=True) / math.pi)  # one contact in place of all alike
     overlap = poisson_overlap(equal_radii, nominal_area)
-    jkr_error = validity.usual_error if model == "jkr" else 0.0
+    contacts = float(total[COUNT].max())
+    jkr_error = contacts * validity.contact_error if model == "jkr" and contacts > 0.0 else 0.0
     assumptions = Assumptions(limits, jkr_error, of_surface=source.of_surface, overlap=overlap)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     warnings = _warnings(law.numerical_error, error_of_others)
@@ -100,7 +101,8 @@ def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     They are the force, the area, the count and all others that are asked for but the energy lost in jumps.
     """
     asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]
-    return tuple(dict.fromkeys([*asked, AREA])), () if AREA in asked else (AREA,)
+    needed = (AREA, COUNT)
+    return tuple(dict.fromkeys([*asked, *needed])), tuple(row for row in needed if row not in asked)
 
 
 def _warnings(error: float, error_of_others: float) -> tuple[str, ...]:

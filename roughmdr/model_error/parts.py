@@ -30,7 +30,7 @@ class Assumptions(NamedTuple):
 
     limits: ValidityLimits
     jkr_error: float = 0.0
-    """About the error of JKR, over the largest force; 0 where it is not used."""
+    """About the error of JKR's force of all contacts [N]; 0 where it is not used."""
     radius_uncertainty: float = 0.0
     """Relative uncertainty of the radii of a map's summits."""
     of_surface: bool = False
@@ -75,13 +75,14 @@ class ModelError(NamedTuple):
     ) -> "ModelError":
         """Return the error along a path: separation [m], force [N] and contact fraction at each step.
 
-        The parts add up, each and all to at most 1, the whole force. Where the force is 0 there is no error.
+        The parts add up, each and all to at most 1, the whole force; that of JKR is over the largest force. Where the
+        force is 0 there is no error.
         """
-        limits = assumptions.limits
+        limits, largest = assumptions.limits, float(np.abs(force).max(initial=0.0))
         constant = {
             "slope_error": limits.slope_error,
             "profile_end_error": limits.end_error,
-            "adhesion_range_error": min(assumptions.jkr_error, 1.0),
+            "adhesion_range_error": min(assumptions.jkr_error / largest, 1.0) if largest > 0.0 else 0.0,
             "resolution_error": min(_FORCE_PER_RADIUS * assumptions.radius_uncertainty, 1.0),
         }
         if contact_fraction is None:

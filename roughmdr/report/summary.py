@@ -155,7 +155,7 @@ def describe_failed(result: Labelled) -> str:
 
 
 def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
-    """Yield a note if a path that unloads begins or ends in contact; counts below a half, of expected laws, are no contact."""
+    """Yield a note if a path that unloads begins or ends in contact; fewer than half a contact, expected, are none."""
     name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
     if name not in result.variables or "unloading" not in result.coordinates["branch"].values:
         return
