@@ -79,6 +79,8 @@ CASES = [
     Case("capped_paraboloid", {"radius": 1e-6, "cap_radius": 2e-5, "blend_radius": 2e-7}, 1e9, 0.2, FOUR),
     Case("capped_paraboloid", {"radius": 1e-6, "cap_radius": 2e-6, "blend_radius": 2e-7}, 5e7, 0.2, THREE),
     Case("rounded_punch", {"flat_radius": 1e-4, "edge_radius": 2e-4}, 1e6, 0.03, FOUR),
+    Case("rounded_punch", {"flat_radius": 1e-5, "edge_radius": 1e-7}, 1e9, 0.05, (1.2, 5.5, 25.0), 2.0, 4.0),
+    Case("rounded_punch", {"flat_radius": 3e-9, "edge_radius": 6e-12}, 2e11, 1.5, (4.0, 60.0), 2.0, 4.0),
     Case("power_series", {"terms": {"2.0": 2e5, "4.0": 1e17}}, 2e9, 0.05, FOUR),
     Case("power_series", {"terms": {"1.0": 0.05, "2.0": 5e4}}, 4e7, 0.06, THREE),
     Case("tabulated", table(3e-6, 4e-7, _UNEVEN, _CONICAL), 1e7, 0.04, (0.1, 2.0), 4.0),

@@ -188,14 +188,19 @@ class Cohesion(Dugdale):
         return value / unit, by_c * m * m / (c * unit)
 
     def spread(self, a: Array, guess: Array) -> Array:
-        """Return m [m] on the curve at each ``a`` > 0, by Newton's method in logarithms from ``guess``."""
+        """Return m [m] on the curve at each ``a`` > 0, by Newton's method in logarithms from ``guess``, or by halves."""
         if self.end is not None:
             guess = np.minimum(guess, self.math.sqrt((self.end - a) * (self.end + a)) / 2)
         m, small = guess, (mp.mpf(10) ** (-self.digits // 2 - 4) if self.digits else 1e-6)
-        for _ in range(100):
+        low, high = guess * self.math.number("1e-60"), guess * self.math.number("1e60")
+        for i in range(200):
             before, (value, by_log) = m, self.excess(a, m)
+            low, high = np.where(value < 1, m, low), np.where(value > 1, m, high)
             step = self.math.log(value) * value / by_log
             m = m * self.math.exp(-np.clip(step, -3, 3))
+            # Past a sharp edge the method may go to and fro.
+            lost = (np.abs(step) > 0.1) & ((m <= low) | (m >= high) | (i % 4 == 3))
+            m = np.where(lost, self.math.sqrt(low * high), m)
             if self.end is not None:  # short of the equator
                 m = np.minimum(m, (before + self.math.sqrt((self.end - a) * (self.end + a))) / 2)
             if np.max(np.abs(step)) < small:

@@ -1,7 +1,7 @@
 """The stable branches under adhesion with a range: where the controlled quantity grows along the equilibria.
 
-The slope is looked at in growing steps of the state, and its sign changes between them are solved for. Notation of
-``layout``.
+The slope is looked at in growing steps of the state, and where the profile turns softer or stiffer, since contacts
+may be stable there only; its sign changes between them are solved for. Notation of ``layout``.
 """
 
 import math
@@ -20,14 +20,19 @@ _MAX_ITERATIONS = 200
 _NEAR_END = 1.0 - 1e-9  # of the end of the profile: beyond, c and a are the same float
 
 
-def next_trial(s: float) -> float:
+def next_trial(s: float, params: Floats) -> float:
     """The next state to look at."""
     if s < 1.0:
         return max(2.0 * s, _FIRST)
     if law.flat and s < 2.0:
         return s + _STEP_ON_FLAT
     begin = 2.0 if law.flat else 1.0
-    return begin + max(law.stride * (s - begin), _FIRST_STEP)
+    trial = begin + max(law.stride * (s - begin), _FIRST_STEP)
+    for i in range(law.softening_count(params)):
+        for t in law.softening_interval(i, params):
+            turn = begin + t / params[UNIT]
+            trial = turn if s < turn < trial else trial
+    return trial
 
 
 def slope_root(low: float, high: float, params: Floats) -> float:
@@ -63,7 +68,7 @@ def find_branches(params: Floats) -> None:
     stable = law.control_at(s, params)[1] > 0.0
     while True:
         before, was = s, stable
-        s = law.next_trial(s)
+        s = law.next_trial(s, params)
         if (
             s > 1.0
             and law.end < math.inf

@@ -79,8 +79,11 @@ def zone_width(a: float, g: float, slope: float, params: Floats) -> float:
 
 
 def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
-    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds. On a flat tip, s < 2, t is 0."""
-    if law.flat and s < 2.0:
+    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds. On a flat tip, s <= 2, t is 0.
+
+    At its edge, s = 2, they are those from within: beyond, a and g may begin with a slope of 0.
+    """
+    if law.flat and s <= 2.0:
         a = s - 1.0
         m = law.zone_width(a, 0.0, 0.0, params)
         return 0.0, a, m, _atan(m / a), 0.0, 1.0, 0.0
