@@ -137,12 +137,14 @@ def _traced(run: Callable[[int], _Time], size: int) -> tuple[_Time, float]:
 
 
 def _thinned(cell: Cell, steps: int) -> LoadingPath:
-    """Return the path of a cell with so many of its steps, the first and the last included."""
+    """Return the path of a cell with so many of its steps, in loading: to find a pull-off takes time of its own, which
+    does not grow with them.
+    """
     path, adhesive = cell.path, cell.scene.work > 0.0
     if steps >= cell.steps:
         return path
     some = np.linspace(0, cell.steps - 1, steps).astype(int)
-    return LoadingPath.along(path.separation[some], unload=False, adhesive=adhesive)
+    return LoadingPath.along(np.sort(path.separation[some])[::-1], unload=False, adhesive=adhesive)
 
 
 def _draw_and_sum(scene: Scene, path: LoadingPath, count: int, estimator: str, variables: list[str]) -> _Time:

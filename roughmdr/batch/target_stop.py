@@ -19,6 +19,7 @@ from roughmdr.scene.separation import Target
 _POINTS = 16  # separations that the law is computed at together
 _RTOL = 1e-14  # of the distance from the start
 _MAX_DOUBLINGS = 60
+_MOST_OF_PATCH = 0.3  # of the nominal area: a contact that is none of many
 _FIRST = 1e-6  # of the width of an asperity: the first distance where all summits are at the start
 
 _Law = Callable[[Floats], Floats]
@@ -35,10 +36,11 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
     distances = (start - float(np.median(middle.height)), _FIRST * float(middle.nondimensional().width.max()))
     try:
         stop = _first_reached(_law(scene, [target.variable], start), target, start, max(distances))
-        contacts = float(_law(scene, ["contact_count"], start)(np.array([stop]))[0])
-        if contacts < 1.0:
+        at_stop = (_law(scene, [name], start)(np.array([stop]))[0] for name in ("contact_fraction", "contact_count"))
+        fraction, contacts = map(float, at_stop)
+        if fraction > _MOST_OF_PATCH * contacts:
             givens = Givens(scene.effective_modulus, scene.work, scene.asperities.sigma, 1.0, 0.0)
-            reason = f"is reached with {contacts:.2g} contacts in the mean, fewer than one"
+            reason = f"is reached by contacts of {fraction / contacts:.2g} times the nominal area each"
             raise _fault(target, f"{reason}: {likely_cause(stop, givens)}")
         return stop
     except SceneError:

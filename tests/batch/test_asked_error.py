@@ -150,8 +150,8 @@ ALIKE: dict[str, Any] = {**FEW, "radius": "50 um"}
         (asking(0.2, None), EVEN),
         (asking(1e-4, None), [*EVEN, ("expected", 0)]),
         (asking(1e-4, None, FIRST), [*EVEN, ("expected", 0)]),
-        (asking(0.2, None, asperities={**FEW, "count": 1_000_000}), [("expected", 0)]),
-        (asking(0.2, None, asperities={**ALIKE, "count": 30_000}), [("expected", 0)]),
+        (asking(0.2, None, asperities={**FEW, "count": 1_000_000, "patch": "40 mm"}), [("expected", 0)]),
+        (asking(0.2, None, asperities={**ALIKE, "count": 30_000, "patch": "7 mm"}), [("expected", 0)]),
     ],
 )
 def test_the_cheaper_of_draws_and_the_expected_law_is_made(

@@ -12,6 +12,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import split_into_tasks
+from roughmdr.model_error import PARTS
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -66,8 +67,11 @@ def test_the_contract_of_the_result(base: xr.Dataset) -> None:
     assert base.sizes == {"realization": 16, "step": 80}
     assert set(base.coords) == {"separation", "branch", "cell_key"}
     assert list(base.data_vars) == [
-        "force", "contact_area", "contact_count", "stiffness", "run_time", "numerical_error",
-        "edge_slope", "profile_extent", "status",
+        "force", "contact_area", "contact_count", "stiffness",
+        *(f"pull_off_{name}" for name in ("force", "separation", "contacts", "pressure")),
+        "pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "run_time", "numerical_error",
+        "model_error", *PARTS, "overlap_fraction", "largest_contact_fraction", "tension_contact_fraction",
+        "trusted_separation", "edge_slope", "profile_extent", "status",
     ]  # fmt: skip
     for name in ("force", "contact_area", "contact_count", "stiffness"):
         assert base[name].dims == ("realization", "step")

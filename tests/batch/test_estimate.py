@@ -11,7 +11,7 @@ from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
 
-LARGE = {**ASPERITIES, "count": 3_000_000}
+LARGE = {**ASPERITIES, "count": 3_000_000, "patch": "60 mm"}
 LONG = {"separation": {"start": "3 sigma", "stop": "-1 sigma", "steps": 20_000}, "unload": True}
 FINITE_RANGE = {"model": "dugdale", "work": "50 mJ/m^2", "strength": "5 MPa"}
 FIRST_PART, LARGEST_PART = 20 * 8, 10_000 * 500
