@@ -34,6 +34,7 @@ def test_a_scene_is_never_run_beyond_its_own_size() -> None:
 
 
 def test_with_time_the_parts_are_bounded_whatever_the_scene(tmp_path: Any) -> None:
+    work(0.0, asperities=LARGE, path=LONG)  # compiled
     assert work(60.0, asperities=LARGE, path=LONG) == LARGEST_PART
     sweep = {"asperities.patch": {"linspace": ["1 mm", "2 mm"], "num": 30}}
     assert work(60.0, path={"separation": ["2 um", "0 um"]}, sweep=sweep) == 12 * 1000 * 2
