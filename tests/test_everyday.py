@@ -88,7 +88,7 @@ with open("/proc/self/status") as status:
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of a process is read from /proc")
 def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
-    large = ["--set", "asperities.count=300000", "--set", "batch.realizations=6"]
+    large = ["--set", "asperities.count=300000", "--set", "asperities.patch=0.02", "--set", "batch.realizations=6"]
     done = roughmdr("plan", "small.toml", *large, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["small.toml"]

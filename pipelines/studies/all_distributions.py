@@ -49,7 +49,7 @@ class Scene(NamedTuple):
         drawn = {"distribution": self.family, **self.parameters, "loc": self.loc, "scale": _SCALE[self.of]}
         normal = {"distribution": "normal", "std": _STD}
         height, radius = (drawn, _RADIUS) if self.of == "heights" else (normal, drawn)
-        source = {"source": "random", "shape": "paraboloid", "count": _COUNT, "patch": "1 mm"}
+        source = {"source": "random", "shape": "paraboloid", "count": _COUNT, "patch": 1e9}
         return {
             "material": {"effective_modulus": _MODULUS},
             "asperities": {**source, "height": height, "radius": radius},

@@ -36,7 +36,7 @@ POLES = [
 
 
 def expected(height: dict[str, object], separation: list[float], **more: object) -> object:
-    asperities = {"source": "random", "shape": "paraboloid", "count": 1000, "patch": "1 mm", "radius": "50 um"}
+    asperities = {"source": "random", "shape": "paraboloid", "count": 1000, "patch": "1 km", "radius": "50 um"}
     scene = {
         "material": {"effective_modulus": "4 MPa"},
         "asperities": {**asperities, "height": height, **more.pop("asperities", {})},

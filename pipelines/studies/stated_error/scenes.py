@@ -88,7 +88,7 @@ def scene(number: int) -> RandomScene:
 
 def _asperities(rng: Rng, shape: str, adhesion: str, estimator: str, scales: Scales) -> Table:
     slow = adhesion == "dugdale" and shape not in ("paraboloid", "flat_punch")
-    count, patch = int(rng.integers(1, 3 if slow else 10)), 100.0 * scales.width
+    count, patch = int(rng.integers(1, 3 if slow else 10)), 1e6 * scales.width
     height = _heights(rng, scales.std, scales.datum)
     section: Table = {"source": "random", "shape": shape, "count": count, "patch": patch, "height": height}
     if shape in ("power_series", "tabulated"):
