@@ -206,7 +206,7 @@ def test_the_same_physics_in_other_units(tabor: float, length: float, stiff: flo
     z = np.array(heights) * 1e-8
     one, other = (
         rm.load_separation(
-            ensemble(z * factor, radius=5e-5 * factor),
+            ensemble(z * factor, area=None, radius=5e-5 * factor),
             separation=path * factor,
             effective_modulus=E * hard,
             work=W * factor * hard,
@@ -240,7 +240,7 @@ def test_the_bound_on_the_error_holds(name: str) -> None:
         rows.sort(key=lambda row: -mp.mpf(row["indentation"]))
         law = {"effective_modulus": case["modulus"], "work": case["work"], "strength": case["strength"]}
         for height in (0.0, 3e-7, -7e-5):
-            data = ensemble(np.full(40, height), shape=name, **case["parameters"])
+            data = ensemble(np.full(40, height), None, name, **case["parameters"])
             path = [height - float(row["indentation"]) for row in rows]
             got = rm.load_separation(data, separation=path, adhesion="dugdale", **law)
             largest = float(np.abs(got.force).max())
