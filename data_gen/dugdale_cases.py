@@ -78,6 +78,7 @@ CASES = [
     Case("rounded_cone", {"slope": 0.25, "blend_radius": 4e-8}, 1e8, 0.5, FOUR),
     Case("capped_paraboloid", {"radius": 1e-6, "cap_radius": 2e-5, "blend_radius": 2e-7}, 1e9, 0.2, FOUR),
     Case("capped_paraboloid", {"radius": 1e-6, "cap_radius": 2e-6, "blend_radius": 2e-7}, 5e7, 0.2, THREE),
+    Case("capped_paraboloid", {"radius": 1.331e-5, "cap_radius": 1.725e-5, "blend_radius": 2e-7}, 1e9, 0.2, (7.9,)),
     Case("rounded_punch", {"flat_radius": 1e-4, "edge_radius": 2e-4}, 1e6, 0.03, FOUR),
     Case("rounded_punch", {"flat_radius": 1e-5, "edge_radius": 1e-7}, 1e9, 0.05, (1.2, 5.5, 25.0), 2.0, 4.0),
     Case("rounded_punch", {"flat_radius": 3e-9, "edge_radius": 6e-12}, 2e11, 1.5, (4.0, 60.0), 2.0, 4.0),

@@ -188,7 +188,7 @@ class Cohesion(Dugdale):
         return value / unit, by_c * m * m / (c * unit)
 
     def spread(self, a: Array, guess: Array) -> Array:
-        """Return m [m] on the curve at each ``a`` > 0, by Newton's method in logarithms from ``guess`` or by halves."""
+        """Return m [m] on the curve at each ``a`` > 0, by Newton's method in logarithms or by halves."""
         if self.end is not None:
             guess = np.minimum(guess, self.math.sqrt((self.end - a) * (self.end + a)) / 2)
         m, small = guess, (mp.mpf(10) ** (-self.digits // 2 - 4) if self.digits else 1e-6)

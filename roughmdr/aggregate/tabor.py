@@ -18,7 +18,8 @@ SHIFT, _AT_A_CORNER = 5.0, 2.0
 """The error of JKR's force for many asperities, over the largest force, is at most (5 |delta_c|/std + 2 at a corner)
 over the Tabor number, std that of the heights: under Dugdale's adhesion contacts are made sooner by w/sigma0. Measured
 with paraboloids of normal heights, |delta_c|/std from 0.1 to 10, Tabor numbers from 1 to 100, the flat down to 2, 0 and
--1 std (``pipelines/adhesion_range.py``): there at most 4.3."""
+-1 std (``pipelines/adhesion_range.py``): there at most 4.3.
+Rounded punches need no more, however sharp their edges are: contacts detach at nearly the force of JKR."""
 
 
 _PULL_OFF, _MOST_PULL_OFF = 0.09, 1.0 / 3.0

@@ -194,3 +194,27 @@ def test_pull_off_is_where_the_contact_ends(case: Case, control: Control) -> Non
             rm.indent(case.shape, **case.law, force=-depth * (1.0 + 1e-9))
     inside = rm.indent(case.shape, **case.law, **{own: -depth * (1.0 - 1e-9)})
     assert float(inside.cohesive_radius) > 0.0
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize(
+    "unit", [pytest.param(unit, marks=[] if numba.config.DISABLE_JIT else pytest.mark.large) for unit in (1.0, 1e-3)]
+)
+def test_a_punch_with_a_sharp_edge_pulls_off_as_a_flat_one(unit: float, control: Control) -> None:
+    """But for a part that goes with the radius of the edge; so it comes to JKR as steadily as that."""
+    b, law = 1e-5 * unit, {"effective_modulus": 1e9, "work": 0.05 * unit}
+    flat, edges = rm.FlatPunch(radius=b), np.array([0.1, 0.01, 1e-3])
+    jkr = float(rm.pull_off(flat, **law, control=control).force)
+    parts = []
+    for tabor in (2.0, 4.0, 5.0, 8.0, 30.0):
+        strength = tabor / float(rm.tabor(flat, **law, strength=1.0))
+        forces = [
+            float(rm.pull_off(each, **law, adhesion="dugdale", strength=strength, control=control).force)
+            for each in (flat, *(rm.RoundedPunch(flat_radius=b, edge_radius=part * b) for part in edges.tolist()))
+        ]
+        off = np.abs(np.array(forces[1:]) / forces[0] - 1.0)
+        assert off[0] < 1e-3
+        assert np.polynomial.polynomial.polyfit(np.log(edges), np.log(off), 1)[1] == pytest.approx(1.0, abs=0.02)
+        parts.append(forces[1] / jkr)
+    assert (np.diff(parts) > 0.0).all()
+    assert 1e-4 < 1.0 - parts[-1] < 1e-3

@@ -103,8 +103,15 @@ def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
 
 
 def relative_errors(params: Floats) -> tuple[float, float]:
-    """The error of the force, as tested, and of the indentation, from the roundings of the profile and of the zone."""
-    error = ROUNDING * (law.roundings(params) + _ZONE_ROUNDINGS)
+    """The error of the force, as tested, and of the indentation, from the roundings of the profile and of the zone.
+
+    On a flat m^2 = c^2 - a^2 has the roundings of a and c, where m is sqrt(2 RANGE) or more next to the edge, and
+    about sqrt(pi RANGE/beta) at pull-off.
+    """
+    roundings = law.roundings(params) + _ZONE_ROUNDINGS
+    if law.flat:
+        roundings += math.sqrt(params[STRENGTH] / (2.0 * math.pi)) / params[RANGE]
+    error = ROUNDING * roundings
     return max(_ZONE_ERROR, error), error
 
 
