@@ -20,7 +20,7 @@ from test_cli import ROUGHMDR, roughmdr
 import roughmdr as rm
 from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
-from roughmdr.schema.units import _BASES
+from roughmdr.schema.units import _BASES, format_quantity
 from roughmdr.variables import CURVE_VARIABLES
 
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9}
@@ -106,18 +106,16 @@ def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
 
 
 def test_info_says_what_a_result_holds(folder: Path) -> None:
-    sweep = ["--set", 'sweep.adhesion.work=["10 mJ/m^2","50 mJ/m^2"]']
+    sweep = ["--set", 'sweep.adhesion.work=["10 mJ/m^2","50 mJ/m^2"]', "--set", 'path.separation.start="8 sigma"']
     assert roughmdr("run", "small.toml", "-o", "out.nc", *sweep, cwd=folder).returncode == 0
     done = roughmdr("info", "out.nc", cwd=folder)
     assert done.returncode == 0, done.stderr
     with xr.open_dataset(folder / "out.nc") as result:
-        lowest = result.force.min("step").clip(max=0.0)
-        mean, error = lowest.mean("realization"), lowest.std("realization", ddof=1) / 4.0
+        force = result.pull_off_force
+        mean, error = force.mean("realization"), force.std("realization", ddof=1) / 4.0
         for i, work in enumerate((10, 50)):
-            shown = f"{float(mean[i]):.4g} N ± {float(error[i]):.2g} N"
-            assert re.search(
-                rf"{re.escape(shown)} \[.* N\].* +adhesion_work = {work} mJ/m\^2$", done.stdout, re.MULTILINE
-            )
+            shown = format_quantity(float(mean[i]), "N", error=float(error[i]))
+            assert re.search(rf"{re.escape(shown)}, .* +adhesion_work = {work} mJ/m\^2$", done.stdout, re.MULTILINE)
         texts = ["A small scene: 2 adhesion_work x 16 realisations x 80 steps", "seed         7", "numpy"]
         texts += [result.attrs["history"], result.attrs["left_out"].splitlines()[0], 'modulus = "3 MPa"', "kB"]
     for text in texts:

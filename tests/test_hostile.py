@@ -44,7 +44,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_no_input_is_overwritten(folder: Path) -> None:
-    rm.run(folder / "small.toml", folder / "r.png")
+    rm.run(folder / "small.toml", folder / "r.nc")
+    (folder / "r.nc").rename(folder / "r.png")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     for arguments in (
         ["run", "maps.toml", "-o", "m2.nc"],
@@ -66,7 +67,7 @@ def test_a_patch_without_an_area_is_refused(patch: float) -> None:
 
 
 def test_a_pressure_that_no_float_can_hold_is_refused() -> None:
-    with pytest.raises(rm.OutOfRange, match="not representable on a nominal area|times the nominal area"):
+    with pytest.raises(rm.OutOfRange, match=r"not representable on a nominal area|times the nominal area"):
         rm.load_separation(
             ensemble([1.0], radius=1.0, area=1e-307), separation=[0.0], effective_modulus=1e9, variables=["pressure"]
         )

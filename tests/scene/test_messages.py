@@ -21,7 +21,7 @@ COMPLETE = scene(
 EXAMPLE = re.compile(r"is missing; for example: (?:\[(?P<section>\w+)\] )?(?P<keys>.*)")
 REQUIRED = [
     "material", "path", "asperities", "asperities.patch", "asperities.height", "asperities.radius",
-    "asperities.second.share", "path.separation", "path.separation.start", "path.separation.stop",
+    "asperities.second.share", "path.separation", "path.separation.stop",
     "path.separation.steps", "adhesion.model", "adhesion.work", "counter.modulus", "counter.poisson",
     "accuracy.relative",
 ]  # fmt: skip
