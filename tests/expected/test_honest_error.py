@@ -9,7 +9,7 @@ from studies.stated_error import judge as study
 from studies.stated_error.report import report
 from studies.stated_error.scenes import ESTIMATORS, scene
 
-ONE_OF_EACH = (0, 2, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
+ONE_OF_EACH = (0, 11, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
 
 
 def judge_random_scenes(count: int) -> None:

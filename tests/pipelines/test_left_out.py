@@ -92,8 +92,8 @@ def test_positions_are_not_drawn(studied: Studied, name: str) -> None:
 def test_a_variable_not_asked_for_is_not_computed(studied: Studied, name: str) -> None:
     """A variable takes two calls a visit: that of its kernel, and that of what this needs to know of the asperity.
 
-    Contacts are counted without, and the area is always known, for the model error; pressure and contact_fraction are made from force and area, and without adhesion
-    nothing is dissipated.
+    Contacts are counted without, and the area is always known, for the model error; pressure and contact_fraction are
+    made from force and area, and without adhesion nothing is dissipated.
     """
     default, others = (studied.counted(part, name) for part in ("the other default variables", "all other variables"))
     assert default[0] == others[0]
