@@ -76,9 +76,9 @@ def jkr_validity(
     ``spread`` is the standard deviation of the heights [m].
     """
     if not adhesion.tabor_known:
-        if adhesion.work == 0.0:
-            return JkrValidity()
         assumed = adhesion._replace(strength=adhesion.work / ASSUMED_RANGE)
+        if not assumed.tabor_known or not columns.width.size:
+            return JkrValidity()
         usual = Columns(*(np.median(column, axis=0)[None] for column in columns))
         return jkr_validity(shape, spread, usual, effective_modulus, assumed)._replace(tabor=math.inf)
     kernels = choose(shape, Adhesion(adhesion.work), columns.params)
