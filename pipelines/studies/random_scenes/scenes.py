@@ -123,7 +123,7 @@ def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
     if seldom(draw, 40):
         height = frame.datum
     parameters = shape_parameters(draw, frame, shape)
-    section: Table = {"source": "random", "shape": shape, "patch": number(draw, 1, 4, frame.size), "height": height}
+    section: Table = {"source": "random", "shape": shape, "patch": number(draw, 4, 7, frame.size), "height": height}
     count = draw(st.integers(1, 3 if frame.expensive else 300))
     if seldom(draw, 5):
         section["density"] = count / section["patch"] / section["patch"] if section["patch"] > 1e-150 else 1.0
