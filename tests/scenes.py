@@ -31,7 +31,7 @@ def scene(**changes: Any) -> dict[str, Any]:
     return {key: value for key, value in table.items() if value is not None}
 
 
-def ensemble(height: Any, area: float | None = 1e-6, shape: str = "paraboloid", **parameters: Any) -> xr.Dataset:
+def ensemble(height: Any, area: float | None = 1e-4, shape: str = "paraboloid", **parameters: Any) -> xr.Dataset:
     """An ensemble made by hand."""
     z = np.atleast_1d(np.asarray(height, dtype=float))
     columns = {

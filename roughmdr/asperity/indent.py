@@ -89,9 +89,10 @@ def indent(
     >>> [f"{force:.4g}" for force in contact.force.values]
     ['3.243e-06', '9.174e-06']
     """
+    model = material.get("adhesion", "jkr")
+    if method == "springs" and model != "jkr":
+        raise RoughmdrError(f"adhesion is {model!r}; with method='springs' it must be 'jkr'")
     asked = Adhesion.from_arguments(work, material)
-    if method == "springs" and asked.model != "jkr":
-        raise RoughmdrError(f"adhesion is {asked.model!r}; with method='springs' it must be 'jkr'")
     control, raw = exactly_one("indent", indentation=indentation, force=force, contact_radius=contact_radius)
     unit = ASPERITY[control].units
     values = check_values(control, raw, unit)

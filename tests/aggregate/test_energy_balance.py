@@ -91,7 +91,7 @@ def test_without_adhesion_nothing_is_dissipated_and_the_energy_is_the_work(kind:
     unit=st.sampled_from([1e-9, 1e-6, 1e-3]),
 )
 def test_every_jump_is_counted_once_on_any_path(path: list[int], heights: list[int], unit: float) -> None:
-    data = ensemble((np.array(heights) + 0.5) * unit, radius=50.0 * unit)
+    data = ensemble((np.array(heights) + 0.5) * unit, area=None, radius=50.0 * unit)
     way, work = np.array(path) * unit, W * unit / 1e-6
     law = rm.load_separation(data, separation=way, effective_modulus=E, work=work, variables=VARIABLES)
     fold = -float(

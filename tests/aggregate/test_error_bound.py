@@ -210,7 +210,7 @@ def test_the_stated_error_of_a_sum_of_unlike_asperities_holds() -> None:
             ("sphere", {"radius": radius}),
             ("rounded_cone", {"slope": 10.0 ** rng.uniform(-3.0, 0.0, 12), "blend_radius": flat}),
         ):
-            data = ensemble(z, shape=kind, **columns)
+            data = ensemble(z, area=None, shape=kind, **columns)
             shapes = [rm.shapes.SHAPES[kind](**{name: float(c[i]) for name, c in columns.items()}) for i in range(12)]
             h = float(z.min() - 1e-9)
             law = rm.load_separation(data, separation=[h], effective_modulus=1e8, work=1e-2, variables=["force"])

@@ -122,7 +122,7 @@ def test_it_does_not_depend_on_the_unit_of_length(unit: float) -> None:
     forces = []
     for scale in (1.0, unit):
         one = rough("paraboloid", 30, 5)
-        asperities = ensemble(one.height * scale, radius=one.radius * scale)
+        asperities = ensemble(one.height * scale, area=1e-4 * scale**2, radius=one.radius * scale)
         path = np.linspace(3e-6, -5e-7, 25) * scale
         curve = rm.load_separation(asperities, separation=path, unload=True, effective_modulus=E, work=W * scale)
         forces.append(float(curve.pull_off_force) / scale**2)

@@ -167,7 +167,7 @@ def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
         alone = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=depth * (X - 1.0))
         columns = {name: [value] for name, value in shape.parameters.items() if value is not None}
         law = rm.load_separation(
-            ensemble([0.0], shape=kind, **columns),
+            ensemble([0.0], area=None, shape=kind, **columns),
             separation=depth * (1.0 - X),
             effective_modulus=effective_modulus,
             work=work,

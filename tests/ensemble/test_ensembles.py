@@ -91,7 +91,7 @@ def test_the_same_seed_gives_the_same_bits_and_streams_do_not_mix() -> None:
 )
 def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
     section = {key: value for key, value in ASPERITIES.items() if key != "radius"}
-    data = rm.generate({**section, "shape": shape, **parameters}, seed=1)
+    data = rm.generate({**section, "patch": "10 cm", "shape": shape, **parameters}, seed=1)
     assert set(data.data_vars) == {"height", *parameters}
     law = rm.load_separation(data, separation=[1e-6, 0.0], effective_modulus=1e7, work=0.01)
     assert float(law.force[1]) > float(law.force[0])

@@ -27,7 +27,7 @@ MODULUS, DEPTH = 4e6, 1e-6
 def cones(spread: float, count: int, relative: float, *, method: str = "sampled", **changes: Any) -> dict[str, Any]:
     """Cones at one height whose inverse slope, and so their force, has this std over its mean."""
     slope = {"distribution": "lognorm", "s": math.sqrt(math.log1p(spread**2)), "loc": 0.0, "scale": 0.1}
-    asperities = {"source": "random", "shape": "cone", "count": count, "patch": "1 mm", "height": "0 um"}
+    asperities = {"source": "random", "shape": "cone", "count": count, "patch": "1e9 m", "height": "0 um"}
     return {
         "seed": 1,
         "material": {"effective_modulus": MODULUS},
