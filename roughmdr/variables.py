@@ -122,7 +122,6 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic("resolution_error", "1", "part of the model error: radii of summits that the map does not resolve"),
     Diagnostic("overlap_fraction", "1", "share of the contacts that reach into a neighbour's, at closest approach"),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
-    Diagnostic("tension_contact_fraction", "1", "contact area over the nominal area at the largest tension"),
     Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
@@ -169,11 +168,13 @@ PULL_OFF_NUMBERS = _declare(
     ),
     ("pull_off_separation", "m", "separation at the largest tension of the unloading"),
     ("pull_off_contacts", "1", "number of contacts that carry the largest tension of the unloading"),
+    ("pull_off_contact_area", "m2", "contact area at the largest tension of the unloading"),
 )
 """Numbers of the pull-off of each realisation, in the order of ``PullOff``."""
 
 PULL_OFF = PULL_OFF_NUMBERS | _declare(
     ("pull_off_pressure", "Pa", "largest tension of the unloading over nominal area"),
+    ("pull_off_contact_fraction", "1", "contact area over nominal area at the largest tension of the unloading"),
     ("pull_off_count", "1", "number of realizations with a pull-off: whose unloading does not end in contact"),
     ("pull_off_force_of_mean", "N", "largest tension of the mean force during unloading"),
     ("pull_off_pressure_of_mean", "Pa", "largest tension of the mean force during unloading, over nominal area"),

@@ -209,8 +209,8 @@ def load_separation(
     xarray.Dataset
         The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1];
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
-        where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m] and
-        pull_off_contacts [1], NaN where it ends in contact.
+        where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m],
+        pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact.
 
     Raises
     ------

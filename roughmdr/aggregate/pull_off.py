@@ -1,12 +1,10 @@
 """The pull-off of an ensemble: the largest tension of its unloadings."""
 
-from typing import Any
-
 import numpy as np
 
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.loop import count_above, sum_over_asperities
-from roughmdr.aggregate.totals import COUNT, FORCE
+from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.loading.path import LoadingPath
@@ -37,10 +35,14 @@ def pull_off_of(
     top, few = height[:count], Columns(*(column[:count] for column in columns))
     depths = detachment_depths(kernels, few, effective_modulus, adhesion)
 
-    def evaluate(refined: LoadingPath) -> tuple[Any, Any]:
+    def sums(along: LoadingPath, rows: set[int]) -> Floats:
         total, _, _ = sum_over_asperities(
-            kernels, top, few, effective_modulus, adhesion, refined.separation, refined.memory, {FORCE, COUNT}
+            kernels, top, few, effective_modulus, adhesion, along.separation, along.memory, rows
         )
-        return total[FORCE], total[COUNT]
+        return total
 
-    return locate(rises, evaluate, np.sort(top + depths))
+    found = locate(rises, lambda along: sums(along, {FORCE})[FORCE], np.sort(top + depths))
+    if found is None:
+        return WITHOUT_TENSION
+    there = sums(found.path, {COUNT, AREA})[:, -1]
+    return PullOff(found.force, float(found.path.separation[-1]), float(there[COUNT]), float(there[AREA]))

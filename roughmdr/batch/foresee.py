@@ -1,5 +1,6 @@
 """Foresees the physics of a cell from a few evenly drawn asperities: contact fraction, model error, Tabor number."""
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -23,6 +24,8 @@ class Foreseen(NamedTuple):
     """Some steps of the path of the cell."""
     law: LoadSeparation
     """Its contact fraction and pressure are those of all asperities."""
+    fraction_at_pull_off: float
+    """NaN where there is none, or no nominal area."""
 
 
 class Prospect(NamedTuple):
@@ -44,7 +47,7 @@ def foresee_cells(plan: Plan) -> Prospect:
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
         path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
         try:
-            foreseen.append(Foreseen(path, _law(cell.scene, path)))
+            foreseen.append(_foreseen(cell.scene, path))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     return Prospect(tuple(foreseen), tuple(failures))
@@ -71,7 +74,7 @@ def _reason(cell: Cell) -> str:
     closest = np.array([cell.path.separation.min()])
     path = LoadingPath.along(closest, unload=False, adhesive=cell.scene.work > 0.0)
     try:
-        _law(cell.scene, path)
+        _foreseen(cell.scene, path)
     except TooMuchContact as error:
         return str(error)
     except RoughmdrError:
@@ -79,7 +82,7 @@ def _reason(cell: Cell) -> str:
     return ""
 
 
-def _law(scene: Scene, path: LoadingPath) -> LoadSeparation:
+def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch."""
     source = scene.asperities
     section = source.limited_to(_MAX_ASPERITIES)
@@ -88,4 +91,6 @@ def _law(scene: Scene, path: LoadingPath) -> LoadSeparation:
         share = section.expected_count / source.expected_count
         ensemble = replace(ensemble, nominal_area=source.nominal_area * share)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
-    return simulate_ensemble(scene, path, ensemble, variables)
+    law = simulate_ensemble(scene, path, ensemble, variables)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    return Foreseen(path, law, law.pull_off.contact_area / area)

@@ -81,7 +81,7 @@ def compute(
     assumptions = Assumptions(limits, jkr_error, of_surface=source.of_surface, overlap=overlap)
     warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
-    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, rule, nodes, total[FORCE]))
+    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, nodes, total[FORCE]))
 
 
 @np.errstate(all="ignore")  # its numbers are not used

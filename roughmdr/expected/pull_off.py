@@ -3,11 +3,10 @@
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.aggregate.totals import COUNT, FORCE
-from roughmdr.ensemble.nodes import Rule
+from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.expected.intervals import contact_intervals
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, set_up, totals_of
+from roughmdr.expected.node import Problem, QuadratureNode, totals_of
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
 from roughmdr.numerics.arguments import Floats
 
@@ -16,10 +15,8 @@ _FEW, _FEW_OF_MOST = 0.5, 0.01
 of those at closest approach. Heights without an end never all detach."""
 
 
-def pull_off_of(
-    problem: Problem, split: KinkSplit | None, rule: Rule, nodes: list[QuadratureNode], force: Floats
-) -> PullOff:
-    """Return the pull-off, given the nodes of a rule and the force of all asperities [N] at each step.
+def pull_off_of(problem: Problem, split: KinkSplit | None, nodes: list[QuadratureNode], force: Floats) -> PullOff:
+    """Return the pull-off, given the nodes of the expected law and the force of all asperities [N] at each step.
 
     NaN where no unloading ends out of contact.
     """
@@ -31,31 +28,24 @@ def pull_off_of(
         return PullOff()
     if not problem.law.adhesive:
         return WITHOUT_TENSION
-    rows = (FORCE, COUNT)
-    if COUNT not in problem.rows:
-        nodes = set_up(problem._replace(rows=rows), rule)
 
-    def evaluate(refined: LoadingPath) -> tuple[Floats, Floats]:
+    def totals(along: LoadingPath) -> Floats:
         moved = [
-            node._replace(in_contact=contact_intervals(node.contact, refined.relative_to(node.heights.origin))[0])
+            node._replace(in_contact=contact_intervals(node.contact, along.relative_to(node.heights.origin))[0])
             for node in nodes
         ]
-        own_rows = problem.rows if COUNT in problem.rows else rows
-        total, _ = totals_of(moved, refined.separation, own_rows, list(range(refined.separation.size)))
-        return count * total[FORCE], count * total[COUNT]
+        return count * totals_of(moved, along.separation, problem.rows, list(range(along.separation.size)))[0]
 
-    found = [(locate([rise], evaluate), rise) for rise in rises]
-    lowest, rise = min(found, key=lambda each: each[0].force)
-    if not lowest.force < 0.0:
+    found = locate(rises, lambda along: totals(along)[FORCE])
+    if found is None:
         return WITHOUT_TENSION
-    if split is not None:
-        there = rise.path(np.array([lowest.separation]))
-        if exact := KinkSplit.of(problem._replace(path=there, rows=rows)):
-            step = there.separation.size - 1
-            if step in exact.cuts:
-                total = count * exact.total(step, dissipating=False)
-                return PullOff(float(total[FORCE]), lowest.separation, float(total[COUNT]))
-    return lowest
+    last = found.path.separation.size - 1
+    exact = None if split is None else KinkSplit.of(problem._replace(path=found.path))
+    if exact is not None and last in exact.cuts:
+        there = count * exact.total(last, dissipating=False)
+    else:
+        there = totals(found.path)[:, last]
+    return PullOff(*map(float, (there[FORCE], found.path.separation[last], there[COUNT], there[AREA])))
 
 
 def _fraction_in_contact(nodes: list[QuadratureNode], steps: int) -> Floats:

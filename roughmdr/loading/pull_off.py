@@ -20,8 +20,8 @@ _MAX_ROUNDS = 24
 _COARSE = 16  # intervals of a rise: from fewer its largest tension may not show at all
 _NONE = np.zeros(0)
 
-Evaluate = Callable[[LoadingPath], tuple[Floats, Floats]]
-"""Returns the force [N] and the number of contacts at each step of a path."""
+ForceAlong = Callable[[LoadingPath], Floats]
+"""Returns the force [N] at each step of a path."""
 
 
 class PullOff(NamedTuple):
@@ -33,9 +33,20 @@ class PullOff(NamedTuple):
     """Where it is [m]; NaN without tension, as the next."""
     contacts: float = math.nan
     """How many contacts carry it."""
+    contact_area: float = math.nan
+    """Their area [m2]."""
 
 
 WITHOUT_TENSION = PullOff(0.0)
+
+
+class LargestTension(NamedTuple):
+    """Where the largest tension is."""
+
+    force: float
+    """[N], negative."""
+    path: LoadingPath
+    """A path that ends there."""
 
 
 class Unloading(NamedTuple):
@@ -73,24 +84,24 @@ def _turns(separation: Floats) -> Floats:
 def prepare() -> None:
     """Compile what is needed to locate a pull-off."""
     one = np.zeros(1)
-    merged(one, one, one, next_separations(np.arange(3.0), np.zeros(3), one, 0.0, 0.0), one[:0], one[:0])
+    merged(one, one, next_separations(np.arange(3.0), np.zeros(3), one, 0.0, 0.0), one[:0])
 
 
-def locate(rises: list[Unloading], evaluate: Evaluate, detachments: Floats = _NONE) -> PullOff:
-    """Return the largest tension of unloadings.
+def locate(rises: list[Unloading], force_along: ForceAlong, detachments: Floats = _NONE) -> LargestTension | None:
+    """Return the largest tension of unloadings; None where there is none.
 
     ``detachments`` [m] ascend: the separations at which contacts are lost.
     """
-    lowest = PullOff(0.0)
+    largest = None
     for rise in sorted(rises, key=lambda each: float(each.force.min())):
-        found = _locate(rise, evaluate, detachments, lowest.force)
-        lowest = found if found.force < lowest.force else lowest
-    return lowest
+        limit = 0.0 if largest is None else largest.force
+        largest = _locate(rise, force_along, detachments, limit) or largest
+    return largest
 
 
-def _locate(rise: Unloading, evaluate: Evaluate, detachments: Floats, limit: float) -> PullOff:
-    """Return the largest tension of one unloading, unless its force is not below ``limit`` [N]."""
-    h, force, contacts = rise.separation, rise.force, np.full_like(rise.force, math.nan)
+def _locate(rise: Unloading, force_along: ForceAlong, detachments: Floats, limit: float) -> LargestTension | None:
+    """Return the largest tension of one unloading; None unless its force is below ``limit`` [N]."""
+    h, force = rise.separation, rise.force
     farthest = max(float(np.abs(h).max()), float(np.abs(detachments[[0, -1]]).max()) if detachments.size else 0.0)
     beside = BESIDE * float(np.spacing(farthest))
     for number in range(_MAX_ROUNDS):
@@ -101,13 +112,6 @@ def _locate(rise: Unloading, evaluate: Evaluate, detachments: Floats, limit: flo
             added = next_separations(h, force, detachments, min(limit, float(force.min())), beside)
         if not added.size:
             break
-        values = evaluate(rise.path(added))
-        found = (each[rise.turns.size :] for each in values)
-        h, force, contacts = merged(h, force, contacts, added, *found)
+        h, force = merged(h, force, added, force_along(rise.path(added))[rise.turns.size :])
     at = int(np.argmin(force))
-    if not force[at] < limit:
-        return WITHOUT_TENSION
-    carrying = contacts[at]
-    if math.isnan(carrying):
-        carrying = evaluate(rise.path(h[at : at + 1]))[1][-1]
-    return PullOff(float(force[at]), float(h[at]), float(carrying))
+    return LargestTension(float(force[at]), rise.path(h[at : at + 1])) if force[at] < limit else None

@@ -118,18 +118,16 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
 
 
 @njit
-def merged(
-    h: Floats, force: Floats, contacts: Floats, more: Floats, more_force: Floats, more_contacts: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return two tables over ascending separations [m] as one."""
+def merged(h: Floats, force: Floats, more: Floats, more_force: Floats) -> tuple[Floats, Floats]:
+    """Return two tables of the force [N] over ascending separations [m] as one."""
     size = h.size + more.size
-    all_h, all_force, all_contacts = np.empty(size), np.empty(size), np.empty(size)
+    all_h, all_force = np.empty(size), np.empty(size)
     i, j = 0, 0
     for k in range(size):
         if j == more.size or (i < h.size and h[i] <= more[j]):
-            all_h[k], all_force[k], all_contacts[k] = h[i], force[i], contacts[i]
+            all_h[k], all_force[k] = h[i], force[i]
             i += 1
         else:
-            all_h[k], all_force[k], all_contacts[k] = more[j], more_force[j], more_contacts[j]
+            all_h[k], all_force[k] = more[j], more_force[j]
             j += 1
-    return all_h, all_force, all_contacts
+    return all_h, all_force

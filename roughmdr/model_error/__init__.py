@@ -5,10 +5,9 @@
 """
 
 from roughmdr.model_error.parts import PARTS, Assumptions, ModelError
-from roughmdr.model_error.refusal import LARGE_FRACTION, Givens, check_contact_fraction, fraction_warnings
+from roughmdr.model_error.refusal import Givens, check_contact_fraction, fraction_warnings
 
 __all__ = [
-    "LARGE_FRACTION",
     "PARTS",
     "Assumptions",
     "Givens",

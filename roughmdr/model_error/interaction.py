@@ -16,19 +16,22 @@ class Coefficients(NamedTuple):
     """
 
     low: float
-    """Next to the least."""
+    """Few errors are smaller."""
     typical: float
+    """About the median."""
     estimate: float
-    """Bounds most errors; a term that is linear in the contact fraction is added."""
+    """Few errors are larger than this, with the contact fraction itself added (``interaction_error``)."""
 
 
-ASPERITIES = Coefficients(0.5, 0.85, 1.4)
+ASPERITIES = Coefficients(low=0.5, typical=0.85, estimate=1.4)
 """Of asperities on a plane: at random, separated, or on a lattice, for which the first order is exact. There each of
 equal contacts at a spacing L, under a load P, is pressed 3.9003 P/(pi E* L) deeper against the deformed mean plane than
 alone.
 """
-SUMMITS = Coefficients(1.5, 1.9, 2.0)
+
+SUMMITS = Coefficients(low=1.5, typical=1.9, estimate=2.0)
 """Of the summits of a continuous surface, whose flanks are no paraboloids."""
+
 TENSION, MOST_TENSION = 0.2, 1.1
 """The error of the pull-off force, of either sign, over the square root of the contact fraction there, as it typically
 is, and what it exceeds in one case of ten: of JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``)."""

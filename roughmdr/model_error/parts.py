@@ -10,7 +10,7 @@ from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_er
 from roughmdr.numerics.arguments import Floats
 
 TRUSTED_FRACTION = 0.02
-"""Contact fraction up to which results are called right to the error stated: some 12 % by interaction."""
+"""Contact fraction up to which a force is told to be right within an error: by interaction 22 %, typically 12 %."""
 
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 _FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
@@ -54,8 +54,6 @@ class ModelError(NamedTuple):
     """
     overlap: float
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
-    fraction_at_tension: float = math.nan
-    """The contact fraction at the largest tension; NaN where there is none, or it is not known."""
 
     @property
     def named(self) -> dict[str, float]:
@@ -65,7 +63,6 @@ class ModelError(NamedTuple):
             **self.parts,
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,
-            "tension_contact_fraction": self.fraction_at_tension,
             "trusted_separation": self.trusted_separation,
         }
 
@@ -91,12 +88,10 @@ class ModelError(NamedTuple):
         interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
         beyond = separation[contact_fraction > _SLACK * TRUSTED_FRACTION]
-        lowest = int(np.argmin(force))
         return cls(
             curve,
             {"interaction_error": float(interaction.max(initial=0.0)), **constant},
             float(contact_fraction.max(initial=0.0)),
             float(beyond.max()) if beyond.size else math.nan,
             assumptions.overlap,
-            float(contact_fraction[lowest]) if force[lowest] < 0.0 else math.nan,
         )

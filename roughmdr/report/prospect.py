@@ -39,7 +39,7 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
     names = cells[0].law.model_error.named
     numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
-    yield from trust_lines(numbers, unloads=returns)
+    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells])
 
 
 def _pressure_at_closest(cell: "Foreseen") -> float:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roughmdr.model_error.interaction import ASPERITIES, MOST_TENSION, SUMMITS, TENSION, Coefficients, interaction_error
 from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
@@ -17,16 +18,18 @@ _TINY = 1e-6
 _MORE = 1.0 + 1e-9
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
-_NAMES = {
-    "model_error", *PARTS, "largest_contact_fraction", "tension_contact_fraction", "trusted_separation"
-}  # fmt: skip
+_NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation"}
+_AT_PULL_OFF = "pull_off_contact_fraction"
 
 Numbers = Mapping[str, Any]
 """``ModelError.named``, numbers or arrays over the runs."""
 
 
-def trust_lines(numbers: Numbers, *, unloads: bool) -> Iterator[tuple[str, str]]:
-    """Yield the lines "contact", "model error" and "trust" of one run or several."""
+def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = ()) -> Iterator[tuple[str, str]]:
+    """Yield the lines "contact", "model error" and "trust" of one run or several.
+
+    ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none.
+    """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
     others = [
@@ -39,9 +42,9 @@ def trust_lines(numbers: Numbers, *, unloads: bool) -> Iterator[tuple[str, str]]
         yield from _several("model error", others)
         yield "trust", f"the force is right where asperities are far apart, which is {_NO_AREA}"
         return
-    tension = known["tension_contact_fraction"]
+    tension = _known(at_pull_off)
     places = [(largest, "at closest approach")]
-    if tension.size and unloads:
+    if tension.size:
         places.insert(0, (tension, "at pull-off"))
     shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
     coefficients = _coefficients(known)
@@ -65,8 +68,13 @@ def trust_lines(numbers: Numbers, *, unloads: bool) -> Iterator[tuple[str, str]]
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
     if set(result.variables) >= _NAMES:
-        unloads = "unloading" in result.coordinates["branch"].values
-        yield from trust_lines({name: result.variables[name].values for name in _NAMES}, unloads=unloads)
+        at_pull_off = [
+            result.variables[name].values.ravel()
+            for name in (_AT_PULL_OFF, f"{_AT_PULL_OFF}_min", f"{_AT_PULL_OFF}_max")
+            if name in result.variables
+        ]
+        numbers = {name: result.variables[name].values for name in _NAMES}
+        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]))
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 

@@ -17,6 +17,7 @@ from roughmdr.variables import DONE, PULL_OFF, PULL_OFF_NUMBERS
 
 _STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
 _FORCE, _PRESSURE = "pull_off_force", "pull_off_pressure"
+_OVER_AREA = {_FORCE: _PRESSURE, "pull_off_contact_area": "pull_off_contact_fraction"}
 
 
 def pull_off_numbers(
@@ -59,8 +60,12 @@ def pull_off_numbers(
             of_mean[cell] = found[cell, MEAN if plan.keeps_statistics else 0, 0]
     area = np.array([cell.scene.asperities.nominal_area or math.nan for cell in plan.cells])
     if np.isfinite(area).any():
-        of_force = {name: values for name, values in numbers.items() if name.startswith(_FORCE)}
-        numbers |= {name.replace(_FORCE, _PRESSURE): (values.T / area).T for name, values in of_force.items()}
+        numbers |= {
+            name.replace(total, over_area): (values.T / area).T
+            for total, over_area in _OVER_AREA.items()
+            for name, values in numbers.items()
+            if name.startswith(total)
+        }
 
     def array(name: str, own: tuple[str, ...], values: Floats) -> Array:
         shape = (*sizes, *values.shape[1:])

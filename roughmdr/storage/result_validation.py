@@ -122,7 +122,8 @@ def _pull_offs(data: Labelled) -> Iterator[str]:
     suffixes = [""] if "realization" in runs else [f"_{statistic}" for statistic in _STATISTICS]
     needed = {name + suffix: runs for name in PULL_OFF_NUMBERS for suffix in suffixes}
     needed |= dict.fromkeys(("pull_off_count", "pull_off_force_of_mean"), cells)
-    per_area = {f"pull_off_pressure{suffix}": runs for suffix in suffixes} | {"pull_off_pressure_of_mean": cells}
+    over_area = [f"pull_off_{name}{suffix}" for name in ("pressure", "contact_fraction") for suffix in suffixes]
+    per_area = dict.fromkeys(over_area, runs) | {"pull_off_pressure_of_mean": cells}
     for group in (needed, per_area):
         present = [name for name in group if name in data.variables]
         if present and len(present) < len(group):

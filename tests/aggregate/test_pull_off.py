@@ -90,6 +90,7 @@ def test_it_is_that_of_the_plain_way(kind: str, extra: dict[str, Any], count: in
         there = rm.load_separation(asperities, separation=[loading[-1], float(found.pull_off_separation)], **law)
         assert float(there.force[-1]) == float(found.pull_off_force)
         assert float(there.contact_count[-1]) == float(found.pull_off_contacts)
+        assert float(there.contact_area[-1]) == float(found.pull_off_contact_area)
 
 
 def test_of_one_paraboloid_it_is_that_of_jkr() -> None:

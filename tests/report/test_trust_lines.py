@@ -17,13 +17,13 @@ from roughmdr.report.trust import trust_lines
 NUMBERS = {
     "model_error": 0.3, "interaction_error": 0.28, "slope_error": 0.02, "profile_end_error": 0.0,
     "adhesion_range_error": 0.0, "resolution_error": 0.0, "largest_contact_fraction": 0.035,
-    "tension_contact_fraction": 0.025, "trusted_separation": 1.1e-6,
+    "trusted_separation": 1.1e-6,
 }  # fmt: skip
 NONE = dict.fromkeys(NUMBERS, math.nan)
 
 
-def lines(unloads: bool = True, **changes: float) -> dict[str, str]:
-    return dict(trust_lines(NUMBERS | changes, unloads=unloads))
+def lines(**changes: float) -> dict[str, str]:
+    return dict(trust_lines(NUMBERS | changes, [0.025, math.nan]))
 
 
 def test_the_block_reads_as_it_should() -> None:
@@ -36,6 +36,12 @@ def test_the_block_reads_as_it_should() -> None:
         "force within about 24 % down to h = 1.1 um (contact 2 %); below it asperities interact, which is not in the "
         "model: within 30 % at closest approach"
     )
+
+
+def test_where_no_unloading_ends_out_of_contact_there_is_no_line_on_pull_off() -> None:
+    told = dict(trust_lines(NUMBERS, [math.nan]))
+    assert told["contact"] == "summed contact area 3.5 % of the patch at closest approach"
+    assert "pull-off" not in str(told)
 
 
 def test_a_path_with_little_contact_is_trusted_along_all_of_it() -> None:
@@ -57,7 +63,7 @@ def test_a_path_without_contact_has_nothing_to_trust() -> None:
 
 
 def test_without_a_nominal_area_nothing_is_known() -> None:
-    told = dict(trust_lines({**NONE, "slope_error": 0.0}, unloads=False))
+    told = dict(trust_lines({**NONE, "slope_error": 0.0}))
     assert "not known" in told["contact"]
     assert "no nominal area" in told["trust"]
 

@@ -84,7 +84,7 @@ def test_the_bits_do_not_depend_on_workers() -> None:
     assert one.drop_vars("run_time").equals(three.drop_vars("run_time"))
 
 
-PULL_OFF = ("force", "separation", "contacts", "pressure")
+PULL_OFF = ("force", "separation", "contacts", "contact_area", "pressure", "contact_fraction")
 
 
 def test_the_pull_off_of_curves_and_of_statistics() -> None:
