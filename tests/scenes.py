@@ -25,6 +25,18 @@ SCENE: dict[str, Any] = {
 }
 
 
+WIDER_SHAPES: dict[str, dict[str, Any]] = {
+    "flat_punch": {"radius": (1e-6, 3e-6)},
+    "sphere": {"radius": (3e-5, 8e-5)},
+    "truncated_cone": {"slope": (0.1, 0.2), "flat_radius": (1e-6, 3e-6)},
+    "truncated_paraboloid": {"radius": (3e-5, 8e-5), "flat_radius": (1e-6, 3e-6)},
+    "rounded_cone": {"slope": (0.1, 0.2), "blend_radius": (1e-6, 4e-6)},
+    "capped_paraboloid": {"radius": (3e-5, 5e-5), "cap_radius": (6e-5, 9e-5), "blend_radius": (2e-6, 9e-6)},
+    "rounded_punch": {"flat_radius": (1e-6, 3e-6), "edge_radius": (1e-5, 5e-5)},
+}
+"""Shapes that are no power laws, with ranges of their parameters."""
+
+
 def scene(**changes: Any) -> dict[str, Any]:
     """The small scene with sections replaced; None leaves one out."""
     table = copy.deepcopy(SCENE) | copy.deepcopy(changes)

@@ -66,11 +66,20 @@ def test_a_patch_without_an_area_is_refused(patch: float) -> None:
         read(scene(asperities={**SMALL, "patch": patch}))
 
 
-def test_a_pressure_that_no_float_can_hold_is_refused() -> None:
-    with pytest.raises(rm.OutOfRange, match=r"not representable on a nominal area|times the nominal area"):
-        rm.load_separation(
-            ensemble([1.0], radius=1.0, area=1e-307), separation=[0.0], effective_modulus=1e9, variables=["pressure"]
-        )
+@pytest.mark.parametrize(
+    ("size", "modulus", "area", "says"),
+    [
+        (1e-98, 1e306, 4e-202, "pressure is not representable on a nominal area of 4e-202 m2"),
+        (1e3, 1e9, 1e-310, "contact_fraction is not representable on a nominal area of 1e-310 m2"),
+    ],
+)
+def test_what_no_float_can_hold_over_the_nominal_area_is_refused(
+    size: float, modulus: float, area: float, says: str
+) -> None:
+    """A pressure at a contact of less than the area, and one of far more."""
+    asperity = ensemble([size], radius=1e-6 * size, area=area)
+    with pytest.raises(rm.OutOfRange, match=says):
+        rm.load_separation(asperity, separation=[0.0], effective_modulus=modulus, variables=["pressure"])
 
 
 def test_a_key_swept_twice_is_refused(folder: Path) -> None:

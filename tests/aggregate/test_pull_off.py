@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scenes import ensemble
+from scenes import WIDER_SHAPES, ensemble
 
 import roughmdr as rm
 from roughmdr.loading.path import LoadingPath
@@ -23,13 +23,7 @@ COLUMNS: dict[str, dict[str, Any]] = {
     "paraboloid": {"radius": (3e-5, 8e-5)},
     "cone": {"slope": (0.1, 0.2)},
     "power_law": {"exponent": (1.2, 4.0), "rise": (1e-7, 3e-7), "width": (1e-6, 3e-6)},
-    "flat_punch": {"radius": (1e-6, 3e-6)},
-    "sphere": {"radius": (3e-5, 8e-5)},
-    "truncated_cone": {"slope": (0.1, 0.2), "flat_radius": (1e-6, 3e-6)},
-    "truncated_paraboloid": {"radius": (3e-5, 8e-5), "flat_radius": (1e-6, 3e-6)},
-    "rounded_cone": {"slope": (0.1, 0.2), "blend_radius": (1e-6, 4e-6)},
-    "capped_paraboloid": {"radius": (3e-5, 5e-5), "cap_radius": (6e-5, 9e-5), "blend_radius": (2e-6, 9e-6)},
-    "rounded_punch": {"flat_radius": (1e-6, 3e-6), "edge_radius": (1e-5, 5e-5)},
+    **WIDER_SHAPES,
 }
 CASES = [(kind, {}) for kind in COLUMNS] + [("paraboloid", {"adhesion": "dugdale", "strength": 2e5})]
 FINE = np.linspace(0.0, 1.0, 120)[1:-1]

@@ -10,22 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from scenes import SCENE, ensemble
+from scenes import SCENE, WIDER_SHAPES, ensemble
 
 import roughmdr as rm
 from roughmdr.shapes import SHAPES
 
 E = 4e6
 b, S, R = 2e-6, 0.2, 1e-5
-COLUMNS: dict[str, dict[str, Any]] = {
-    "flat_punch": {"radius": (1e-6, 3e-6)},
-    "sphere": {"radius": (3e-5, 8e-5)},
-    "truncated_cone": {"slope": (0.1, 0.2), "flat_radius": (1e-6, 3e-6)},
-    "truncated_paraboloid": {"radius": (3e-5, 8e-5), "flat_radius": (1e-6, 3e-6)},
-    "rounded_cone": {"slope": (0.1, 0.2), "blend_radius": (1e-6, 4e-6)},
-    "capped_paraboloid": {"radius": (3e-5, 5e-5), "cap_radius": (6e-5, 9e-5), "blend_radius": (2e-6, 9e-6)},
-    "rounded_punch": {"flat_radius": (1e-6, 3e-6), "edge_radius": (1e-5, 5e-5)},
-}
 VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy"]
 
 
@@ -37,7 +28,7 @@ def tension(shape: Any, omega: float) -> float:
 
 def rough(kind: str, count: int) -> xr.Dataset:
     rng = np.random.default_rng(43)
-    columns = {name: rng.uniform(*ends, count) for name, ends in COLUMNS[kind].items()}
+    columns = {name: rng.uniform(*ends, count) for name, ends in WIDER_SHAPES[kind].items()}
     return ensemble(rng.normal(0.0, 1e-7, count), shape=kind, **columns)
 
 
@@ -118,7 +109,7 @@ def test_their_energy_balance_closes(case: str) -> None:
         assert (np.diff(law.dissipated_energy) >= 0.0).all()
 
 
-@pytest.mark.parametrize("kind", COLUMNS)
+@pytest.mark.parametrize("kind", WIDER_SHAPES)
 @pytest.mark.parametrize("work", [0.0, 1e-3])
 def test_the_sum_is_that_of_its_asperities(kind: str, work: float) -> None:
     data = rough(kind, 12)
@@ -126,7 +117,7 @@ def test_the_sum_is_that_of_its_asperities(kind: str, work: float) -> None:
     law = rm.load_separation(data, separation=path, effective_modulus=E, work=work, variables=VARIABLES)
     totals = {name: np.zeros(path.size) for name in ("force", "contact_area", "stiffness")}
     for i in range(data.sizes["asperity"]):
-        shape = SHAPES[kind](**{name: float(data[name][i]) for name in COLUMNS[kind]})
+        shape = SHAPES[kind](**{name: float(data[name][i]) for name in WIDER_SHAPES[kind]})
         delta = float(data.height[i]) - path
         one = rm.indent(shape, effective_modulus=E, work=work, indentation=delta)
         touched = np.maximum.accumulate(delta >= 0.0) if work else delta > 0.0
@@ -151,7 +142,7 @@ def any_shape(kind: str, rng: np.random.Generator) -> Any:
 
 
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
-@pytest.mark.parametrize("kind", ["power_law", *list(COLUMNS)[1:]])
+@pytest.mark.parametrize("kind", ["power_law", *list(WIDER_SHAPES)[1:]])
 def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
     """Few steps for many at once, against a search that is held: any shape, from the fold to 1e4 times its depth."""
     rng = np.random.default_rng([53, *kind.encode()])
@@ -179,7 +170,7 @@ def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
 
 
 PARAMETERS: dict[str, dict[str, Any]] = {
-    **{kind: {name: sum(ends) / 2.0 for name, ends in columns.items()} for kind, columns in COLUMNS.items()},
+    **{kind: {name: sum(ends) / 2.0 for name, ends in columns.items()} for kind, columns in WIDER_SHAPES.items()},
     "power_series": {"terms": {"2": 1e4, "4": 1e14}},
     "tabulated": {"r": [0.0, "2 um", "4 um", "9 um"], "f": [0.0, "0.1 um", "0.5 um", "3 um"]},
 }

@@ -4,12 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from oracles.boundary_elements import HeightMap
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-
-pytest.importorskip("ContactMechanics")
-from oracles.boundary_elements import HeightMap
 
 PATCHES = {20: 1.145247762211, 12: 1.273263599777, 8: 1.489602436784, 6: 1.814344884220, 5: 2.2277808930}
 """Side of the patch -> force over 4/3 E* of a paraboloid with R = delta = 1, from a multipole solution."""

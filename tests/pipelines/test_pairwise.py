@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from oracles.boundary_elements import HeightMap
 from oracles.pairwise import Paraboloids, periodic_green
+from studies.versus_bem.ensembles import SIZE, Case
 
 import roughmdr as rm
 
@@ -58,10 +60,6 @@ def test_without_coupling_they_are_the_sum_of_independent_ones(work: float) -> N
 
 
 def test_they_agree_with_boundary_elements_far_better_than_independent_ones() -> None:
-    pytest.importorskip("ContactMechanics")
-    from oracles.boundary_elements import HeightMap
-    from studies.versus_bem.ensembles import SIZE, Case
-
     asperities, fine, _ = Case("hard_core 0.7", "paraboloid", 36, 0.2, 256, 1).build()
     height, radius, x, y = (asperities[name].to_numpy() for name in ("height", "radius", "x", "y"))
     separation = float(height[0] - 1.3 * height.std())

@@ -1,14 +1,11 @@
 """The study of the stated error against the true one."""
 
 from collections.abc import Iterator
-from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 import xarray as xr
-
-pytest.importorskip("ContactMechanics")
+from carried_out import CarriedOut, carried_out
 from oracles.gaussian_maps import gaussian_map
 from studies.trust.report import errors, judge
 from studies.trust.scenes import CASES, QUICK
@@ -22,29 +19,21 @@ from roughmdr.spectrum import SelfAffine
 MODULUS = 1e9
 
 
-class Studied(NamedTuple):
-    text: str
-    folder: Path
-    result: xr.Dataset
-
-
 @pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studied]:
-    folder = tmp_path_factory.mktemp("trust")
-    text = STUDY.carry_out(folder, quick=True)
-    with xr.open_dataset(folder / "trust.nc") as result:
-        yield Studied(text, folder, result)
+def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
+    with carried_out(STUDY, tmp_path_factory.mktemp("trust")) as made:
+        yield made
 
 
 @pytest.mark.slow
-def test_scenes_are_run_compared_drawn_and_reported(studied: Studied) -> None:
+def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result["name"].to_numpy().tolist() == list(QUICK)
     assert all(f"| {name}" in studied.text for name in QUICK)
     assert (studied.folder / "trust.png").stat().st_size > 5000
 
 
 @pytest.mark.slow
-def test_a_trap_is_refused_and_the_force_of_the_others_is_bounded(studied: Studied) -> None:
+def test_a_trap_is_refused_and_the_force_of_the_others_is_bounded(studied: CarriedOut) -> None:
     refused = studied.result["oracle"].to_numpy() == "none"
     assert refused.any()
     assert (studied.result["exit_status"].to_numpy() == np.where(refused, 2, 0)).all()

@@ -2,14 +2,10 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
-import xarray as xr
-
-pytest.importorskip("ContactMechanics")
+from carried_out import CarriedOut, carried_out
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances, height_map
 from studies.versus_bem.judge import errors, estimates, grid_errors, groups
 from studies.versus_bem.measure import QUICK, overlaps, separations
@@ -18,29 +14,21 @@ from versus_bem import STUDY
 import roughmdr as rm
 
 
-class Studied(NamedTuple):
-    text: str
-    folder: Path
-    result: xr.Dataset
-
-
 @pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studied]:
-    folder = tmp_path_factory.mktemp("versus_bem")
-    text = STUDY.carry_out(folder, quick=True)
-    with xr.open_dataset(folder / "versus_bem.nc") as result:
-        yield Studied(text, folder, result)
+def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
+    with carried_out(STUDY, tmp_path_factory.mktemp("versus_bem")) as made:
+        yield made
 
 
 @pytest.mark.slow
-def test_every_case_is_compared_drawn_and_reported(studied: Studied) -> None:
+def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result.sizes["case"] == len(QUICK)
     assert all(f"| {name} |" in studied.text for name in ("random", "square", "map"))
     assert (studied.folder / "versus_bem.png").stat().st_size > 5000
 
 
 @pytest.mark.slow
-def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: Studied) -> None:
+def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: CarriedOut) -> None:
     error, grid = errors(studied.result), grid_errors(studied.result)
     known = np.isfinite(error)
     assert known.sum() > 8
@@ -49,7 +37,7 @@ def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: St
 
 
 @pytest.mark.slow
-def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: Studied) -> None:
+def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: CarriedOut) -> None:
     error = errors(studied.result)
     known = np.isfinite(error)
     found = estimates(studied.result["contact_fraction"].to_numpy(), groups(studied.result))[known]

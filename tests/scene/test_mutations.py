@@ -66,7 +66,7 @@ BASES: dict[str, dict[str, Any]] = {
     },
     "power laws with coefficient": {
         **SCENE,
-        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 10.0},
+        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 1e7},
     },
     **{
         shape: {**SCENE, "asperities": {**_DRAWN, "count": 20, "shape": shape, **parameters}, "batch": {}}
@@ -247,7 +247,7 @@ def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> N
         done = CliRunner().invoke(
             main, ["run", str(folder / "right.toml"), "-o", str(folder / "right.nc"), "--quiet", "--fresh"]
         )
-        assert done.exit_code == 0 or "times the nominal area" in done.output, done.output
+        assert done.exit_code == 0, done.output
     for made in ("right.toml", "right.nc"):
         (folder / made).unlink()
 

@@ -71,7 +71,7 @@ def scene(number: int) -> RandomScene:
         "seed": int(rng.integers(2**31)),
         "material": {"effective_modulus": effective_modulus},
         "asperities": asperities,
-        "path": _path(rng, scales._replace(datum=2.0 * std) if nayak else scales),  # above, contact fills the surface
+        "path": _path(rng, scales._replace(datum=2.0 * std) if nayak else scales),  # lower, contacts fill the patch
         "output": {"variables": ["force"]},
         "batch": {"estimator": estimator},
     }
