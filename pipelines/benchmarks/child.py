@@ -25,7 +25,7 @@ HEIGHT = {"distribution": "normal", "std": "1 um"}
 
 def small_scene(*, count: int = 10, steps: int = 20, unload: bool = True, **sections: dict[str, Any]) -> Scene:
     """Return a scene of few asperities; other sections as they are given."""
-    random = {"source": "random", "shape": "paraboloid", "count": count, "patch": "1 mm"}
+    random = {"source": "random", "shape": "paraboloid", "count": count, "patch": "1 m"}
     scene = {
         "title": "small",
         "seed": 1,

@@ -58,7 +58,7 @@ _BARS = {
 
 def section(count: int, shape: str = "paraboloid", **parameters: Any) -> dict[str, Any]:
     """Return the asperities of a scene."""
-    given = {"source": "random", "shape": shape, "count": count, "patch": "1 mm", "height": HEIGHT}
+    given = {"source": "random", "shape": shape, "count": count, "patch": "1 m", "height": HEIGHT}
     return {**given, **(parameters or {"radius": RADIUS})}
 
 

@@ -20,7 +20,8 @@ class LoadingPath(NamedTuple):
     @classmethod
     def along(cls, approach: Floats, *, unload: bool, adhesive: bool) -> "LoadingPath":
         """Return the path of these separations [m]; ``unload`` adds them in reverse, the turning point repeated."""
-        separation = np.concatenate([approach, approach[::-1]]) if unload else approach
+        # A new array in either case: of one that is strided or read-only numba would compile all loops again.
+        separation = np.concatenate([approach, approach[::-1]] if unload else [approach])
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
     def relative_to(self, origin: float) -> "LoadingPath":

@@ -9,6 +9,7 @@ import inspect
 import os
 import re
 import shutil
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -25,6 +26,10 @@ from roughmdr.numerics.rebind import rebuilt
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
+
+_CONFIG = threading.Lock()
+"""For the setting of numba's folder, which is that of the process: a function that is compiled by one thread while
+another one puts the setting back would be kept in the current folder."""
 
 _FOLDER = re.compile(r"[0-9a-f]{16}-[0-9.]+\w*")  # the name of a cache folder
 _UNUSED = 30.0 * 86400.0
@@ -68,19 +73,20 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     machine code there: for parts of loops that become vector code.
     """
     folder = _cache_folder()
-    before = _config.CACHE_DIR
-    if folder is not None:
-        _config.CACHE_DIR = folder
-    try:
-        compiled = numba.njit(
-            nogil=True,
-            error_model="numpy",
-            cache=folder is not None,
-            inline="always" if inline else "never",
-            forceinline=small,
-        )(function)
-    finally:
-        _config.CACHE_DIR = before
+    with _CONFIG:
+        before = _config.CACHE_DIR
+        if folder is not None:
+            _config.CACHE_DIR = folder
+        try:
+            compiled = numba.njit(
+                nogil=True,
+                error_model="numpy",
+                cache=folder is not None,
+                inline="always" if inline else "never",
+                forceinline=small,
+            )(function)
+        finally:
+            _config.CACHE_DIR = before
     return cast(_Function, compiled)
 
 

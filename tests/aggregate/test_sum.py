@@ -1,10 +1,13 @@
 """The sum against a plain Python twin that remembers each contact, and what it may not depend on."""
 
+import gc
+
 import numpy as np
 import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba.core.dispatcher import Dispatcher
 from scenes import ensemble
 
 import roughmdr as rm
@@ -163,6 +166,27 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
     assert result.visits == needed
     if work:
         assert result.visits == int(result.variables["contact_count"].sum())
+
+
+def compiled_signatures() -> int:
+    return sum(len(each.signatures) for each in gc.get_objects() if isinstance(each, Dispatcher))
+
+
+def test_no_form_of_an_array_is_compiled_again() -> None:
+    z, path = np.random.default_rng(3).normal(0.0, 1e-6, 50), np.linspace(3e-6, 0.0, 20)
+    fixed, fixed_path = z.copy(), path.copy()
+    fixed.flags.writeable = fixed_path.flags.writeable = False
+
+    def law(height: np.ndarray, separation: object) -> float:
+        data = ensemble(height, radius=5e-5)
+        made = rm.load_separation(data, separation=separation, effective_modulus=E, work=W)  # type: ignore[arg-type]
+        return float(made.force[-1])
+
+    force, before = law(z, path), compiled_signatures()
+    for height in (z, fixed, np.repeat(z, 2)[::2], z[::-1]):
+        for separation in (path, fixed_path, np.sort(path)[::-1], np.repeat(path, 3)[::3], path.tolist()):
+            assert law(height, separation) == force
+    assert compiled_signatures() == before
 
 
 def test_only_the_asked_totals_are_computed() -> None:

@@ -1,11 +1,16 @@
 """Loops that are handed their kernels."""
 
+import sys
 from collections.abc import Callable
-from types import ModuleType
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import FunctionType, ModuleType
 
+import numba
 import pytest
 
 from roughmdr.numerics.jit import njit, specialise
+from roughmdr.numerics.vector_math import expm1
 
 
 class _Law(ModuleType):
@@ -59,3 +64,24 @@ def test_a_branch_that_a_law_never_takes_needs_no_kernel() -> None:
     adhesive = _filled("with_jump", _double, 0.0)
     adhesive.adhesive, adhesive.jump = True, _square
     assert specialise(_loop, adhesive)(1.5, 3) == 9.0 - 3.0 * 1.5**2
+
+
+def test_threads_that_compile_at_once_keep_the_folder_of_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """numba's setting of it is one for the whole process."""
+    monkeypatch.chdir(tmp_path)
+    before, interval = numba.config.CACHE_DIR, sys.getswitchinterval()  # type: ignore[attr-defined]
+    sys.setswitchinterval(1e-7)
+
+    def compile_many(_: int) -> None:
+        for _ in range(100):
+            njit(FunctionType(expm1.__code__, expm1.__globals__, "expm1"))
+
+    try:
+        with ThreadPoolExecutor(4) as threads:
+            list(threads.map(compile_many, range(4)))
+    finally:
+        sys.setswitchinterval(interval)
+    assert before == numba.config.CACHE_DIR  # type: ignore[attr-defined]
+    assert not list(tmp_path.iterdir())

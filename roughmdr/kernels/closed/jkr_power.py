@@ -163,9 +163,9 @@ def radius_force_stiffness(l: float, n: float) -> tuple[float, float, float]:
 
 @njit
 def radius(l: float, n: float) -> float:
-    """a/a_c."""
-    a, _, _ = radius_force_stiffness(l, n)
-    return a
+    """a/a_c, at the fold as well."""
+    tau = 1.0 + _expm1(l)
+    return float(tau * tau)
 
 
 @njit
