@@ -58,6 +58,8 @@ class Ensemble:
 
     def validity_limits(self, radius: Floats) -> ValidityLimits:
         """Return the validity limits of contacts with these radii [m], 0 for none."""
+        if not (radius > 0.0).any():
+            return ValidityLimits()
         if self.shared_profile is not None:
             return ValidityLimits.of(radius, self.shared_profile.df(radius), np.array(self.shared_profile.end))
         shape = SHAPES[self.shape]

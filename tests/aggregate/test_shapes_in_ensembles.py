@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from scenes import SCENE, WIDER_SHAPES, ensemble
+from scenes import SCENE, WIDER_SHAPES, ensemble, scene
 
 import roughmdr as rm
 from roughmdr.shapes import SHAPES
@@ -189,6 +189,26 @@ def test_a_scene_of_any_shape_is_its_ensemble_pressed(shape: str) -> None:
         if name != "numerical_error":
             np.testing.assert_array_equal(result[name].isel(realization=0), law[name])
     assert float(result.force.max()) > 0.0 > float(result.force.min())
+
+
+@pytest.mark.parametrize("shape", PARAMETERS)
+@pytest.mark.parametrize("work", [0.0, 0.05])
+def test_realisations_without_asperities_have_no_force(shape: str, work: float) -> None:
+    """A Poisson number may be 0."""
+    section = {
+        "source": "random",
+        "shape": shape,
+        "density": 1e3,
+        "patch": "1 mm",
+        "height": SCENE["asperities"]["height"],
+    }
+    adhesion = {"model": "jkr", "work": work} if work else None
+    table = scene(adhesion=adhesion, asperities={**section, **PARAMETERS[shape]}, batch={"realizations": 3})
+    made = rm.run(table)
+    assert not made.contact_count.any()
+    assert not made.force.any()
+    assert not made.model_error.any()
+    assert not made.pull_off_force.any()
 
 
 def test_a_common_profile_is_stored_and_read_back(tmp_path: Any) -> None:
