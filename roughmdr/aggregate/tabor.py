@@ -86,8 +86,11 @@ def jkr_validity(
     if not 0.0 < radius < math.inf:
         return JkrValidity(0.0, math.inf, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
+    pull_off = _PER_FOLD * effective_modulus * radius * depth
+    if tabor * tabor == 0.0:  # to a float: as far from JKR as can be
+        return JkrValidity(tabor, math.inf, _MOST_PULL_OFF * pull_off)
     sharp = SHAPES[shape].flat and SHAPES[shape].corner
     at_corner = _AT_A_CORNER if sharp else 0.0
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
     relative = min(at_corner / tabor + _PULL_OFF / (tabor * tabor), _MOST_PULL_OFF)
-    return JkrValidity(tabor, (shift + at_corner) / tabor, relative * _PER_FOLD * effective_modulus * radius * depth)
+    return JkrValidity(tabor, (shift + at_corner) / tabor, relative * pull_off)

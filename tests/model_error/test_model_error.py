@@ -89,6 +89,14 @@ def test_jkr_is_off_where_adhesion_reaches_far_whether_its_range_is_told_or_not(
     assert error(1.0, adhesion="dugdale", strength=0.05 / 0.4e-9) == 0.0
 
 
+@pytest.mark.parametrize("work", [5e-324, 1e-300, 1e-170, 1e-30])
+def test_an_adhesion_that_is_next_to_nothing_has_an_error_of_next_to_nothing(work: float) -> None:
+    """The square of its Tabor number is 0 to a float."""
+    asperities = ensemble(np.linspace(0.0, 1.0, 5), area=1e4, shape="power_law", exponent=10.0, coefficient=1.0)
+    made = rm.load_separation(asperities, separation=[-1e-3], effective_modulus=1e3, work=work)
+    assert float(made.adhesion_range_error) < 1e-9
+
+
 @pytest.mark.parametrize("separation", [20.0, 0.0, -20.0])
 def test_the_error_of_jkr_bounds_what_dugdale_differs_by(separation: float) -> None:
     """A sticky film whose Tabor number is 1.1, retracting from deep contact."""
