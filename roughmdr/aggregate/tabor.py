@@ -79,7 +79,7 @@ def jkr_validity(
         assumed = adhesion._replace(strength=adhesion.work / ASSUMED_RANGE)
         if not assumed.tabor_known or not columns.width.size:
             return JkrValidity()
-        usual = Columns(*(np.median(column, axis=0)[None] for column in columns))
+        usual = Columns(*(np.quantile(column, 0.5, axis=0, method="lower")[None] for column in columns))
         return jkr_validity(shape, spread, usual, effective_modulus, assumed)._replace(tabor=math.inf)
     kernels = choose(shape, Adhesion(adhesion.work), columns.params)
     radius, depth = _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, math.inf))

@@ -2,6 +2,7 @@
 
 import copy
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -95,6 +96,13 @@ def test_an_adhesion_that_is_next_to_nothing_has_an_error_of_next_to_nothing(wor
     asperities = ensemble(np.linspace(0.0, 1.0, 5), area=1e4, shape="power_law", exponent=10.0, coefficient=1.0)
     made = rm.load_separation(asperities, separation=[-1e-3], effective_modulus=1e3, work=work)
     assert float(made.adhesion_range_error) < 1e-9
+
+
+def test_two_of_the_largest_floats_are_refused_without_their_sum() -> None:
+    pair = ensemble([0.0, 0.0], area=1e8, shape="cone", slope=1.7e308)
+    with warnings.catch_warnings(), pytest.raises(rm.OutOfRange, match="contact of an asperity is not representable"):
+        warnings.simplefilter("error", RuntimeWarning)
+        rm.load_separation(pair, separation=[0.0], effective_modulus=1e3, work=1e3)
 
 
 @pytest.mark.parametrize("separation", [20.0, 0.0, -20.0])
