@@ -28,6 +28,7 @@ LINES = (
     ("asperity",),
     ("fields",),
     ("ensemble",),
+    ("interaction",),
     ("scene",),
     ("model_error",),
     ("aggregate",),
