@@ -1,0 +1,175 @@
+"""Pairs of contacts that nearly touch or overlap, where no expansion in their distance holds.
+
+Each contact is a sum of flat punches: a load that grows brings its increments on as those of punches of growing radii.
+A punch of radius s is felt by one of radius t at the distance D as ∫∫ 1/sqrt(D^2 - (x - y)^2) dx dy/(4 s t), x from -s
+to s, y from -t to t, |x - y| < D: their springs, coupled. This is a Gram matrix, positive definite together with the
+compliance 1/(2 E* a) of each contact, at any overlap.
+
+Between distances of ``FULL`` and ``NONE`` times the sum of the contact radii pairs change over to the expansion.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.interaction.contacts import Contacts
+from roughmdr.interaction.green import point_load
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.gauss import unit_gauss
+from roughmdr.numerics.jit import njit
+
+FULL, NONE = 1.1, 1.4
+_GROWTH = 1.15  # of contact radii until pairs are looked for again
+_NODES, _WEIGHTS = unit_gauss(4)  # of the load of a contact, from none to all
+_LEAST_EXCESS = 1e-9  # of a sum of punches over one punch
+
+
+class Pairs(NamedTuple):
+    """Pairs of contacts that may be close."""
+
+    members: NDArray[np.int64]
+    """Their numbers, [pair, 2]."""
+    apart: Floats
+    """Their distance along x, along y and whole, [pair, 3]."""
+    share: Floats
+    """1 where the pair is close, 0 where the expansion holds, between in between."""
+    radius: Floats
+    """The contact radii that pairs were looked for with."""
+
+    def outgrown(self, radius: Floats) -> bool:
+        """Return whether a contact has grown so that pairs may be missing."""
+        return bool((radius > self.radius).any())
+
+
+def find_pairs(at: Floats, radius: Floats, sides: Floats | None) -> Pairs:
+    """Return pairs of contacts nearer than ``NONE`` times their radii, which may grow; sizes in classes of two."""
+    from scipy.spatial import cKDTree
+
+    touching = np.flatnonzero(radius > 0.0)
+    grown = np.where(radius > 0.0, _GROWTH * radius, 0.0)
+    found: list[NDArray[np.int64]] = []
+    size = np.floor(np.log2(grown[touching])) if touching.size else np.empty(0)
+    wrapped = at if sides is None else np.minimum(at % sides, np.nextafter(sides, 0.0))
+    for each in np.unique(size):
+        larger, all_to = touching[size == each], touching[size <= each]
+        reach = 4.0 * NONE * 2.0**each
+        trees = [cKDTree(wrapped[group], boxsize=sides) for group in (larger, all_to)]
+        near = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
+        i, j = larger[near["i"]], all_to[near["j"]]
+        keep = (near["v"] < NONE * (grown[i] + grown[j])) & (i != j)
+        found.append(np.sort(np.column_stack([i[keep], j[keep]]), axis=1))
+    members = np.unique(np.concatenate(found), axis=0) if found else np.empty((0, 2), np.int64)
+    apart = at[members[:, 0]] - at[members[:, 1]]
+    if sides is not None:
+        apart -= sides * np.rint(apart / sides)
+    away = np.hypot(apart[:, 0], apart[:, 1])
+    return Pairs(members, np.column_stack([apart, away]), np.zeros(away.size), grown)
+
+
+@njit
+def _spring_integral(x: float, away: float) -> float:
+    """Return the second integral of 1/sqrt(D^2 - x^2) (none beyond D), 0 with its slope at x = 0."""
+    if x >= away:
+        return 0.5 * math.pi * x - away
+    return x * math.asin(x / away) - x * x / (away + math.sqrt(away * away - x * x))
+
+
+@njit
+def punches(s: float, t: float, away: float) -> float:
+    """Return the mean displacement of a punch of radius s by one of radius t under a unit load, over 1/(pi E*)."""
+    return (_spring_integral(s + t, away) - _spring_integral(abs(s - t), away)) / (2.0 * s * t)
+
+
+@njit
+def punch_and_contact(s: float, a: float, excess: float, away: float) -> float:
+    """Return the displacement of a punch of radius s by a contact of radius a under a unit load.
+
+    ``excess`` is its M/(P a^2): 2/3 of one punch, less of several, whose radii are taken to grow as a power of the load.
+    """
+    ratio = 1.5 * excess
+    if 1.0 - ratio < _LEAST_EXCESS:
+        return punches(s, a, away)
+    power = 0.5 * (1.0 - ratio) / ratio  # the mean of (load^power)^2 is the ratio
+    total = 0.0
+    for i in range(_NODES.size):
+        total += _WEIGHTS[i] * punches(s, a * math.pow(_NODES[i], power), away)
+    return total
+
+
+@njit
+def update_shares(pairs: Pairs, radius: Floats) -> None:
+    """Set the share of each pair, by a polynomial with no slope at its ends."""
+    for number in range(pairs.share.size):
+        i, j = pairs.members[number]
+        pairs.share[number] = 0.0
+        if radius[i] > 0.0 and radius[j] > 0.0:
+            u = (NONE - pairs.apart[number, 2] / (radius[i] + radius[j])) / (NONE - FULL)
+            u = min(max(u, 0.0), 1.0)
+            pairs.share[number] = u * u * (3.0 - 2.0 * u)
+
+
+@njit
+def take_from_field(pairs: Pairs, load: Floats, field: Floats) -> None:
+    """Take the expansion of close pairs out of the field of point loads."""
+    for number in range(pairs.share.size):
+        share = pairs.share[number]
+        if share > 0.0:
+            i, j = pairs.members[number]
+            g, gx, gy, lap = point_load(pairs.apart[number, 0], pairs.apart[number, 1])
+            for row, value, sign in ((0, g, 1.0), (1, gx, -1.0), (2, gy, -1.0), (3, lap, 1.0)):
+                field[row, i] -= share * value * load[j]
+                field[row, j] -= sign * share * value * load[i]
+
+
+@njit
+def take_from_moments(pairs: Pairs, laplacian: Floats, along_x: Floats, along_y: Floats, potential: Floats) -> None:
+    """Take the expansion of close pairs out of the displacement by moments."""
+    for number in range(pairs.share.size):
+        share = pairs.share[number]
+        if share > 0.0:
+            i, j = pairs.members[number]
+            _, gx, gy, lap = point_load(pairs.apart[number, 0], pairs.apart[number, 1])
+            potential[i] -= share * (lap * laplacian[j] + gx * along_x[j] + gy * along_y[j])
+            potential[j] -= share * (lap * laplacian[i] - gx * along_x[i] - gy * along_y[i])
+
+
+@njit
+def add_contacts(pairs: Pairs, contacts: Contacts, excess: Floats, potential: Floats) -> None:
+    """Add what the contacts of close pairs do to each other; ``excess`` is M/(P a^2) of each as it is alone."""
+    radius, load = contacts.radius, contacts.load
+    for number in range(pairs.share.size):
+        share = pairs.share[number]
+        if share > 0.0:
+            i, j = pairs.members[number]
+            away = pairs.apart[number, 2]
+            potential[i] += share * load[j] * punch_and_contact(radius[i], radius[j], excess[j], away)
+            potential[j] += share * load[i] * punch_and_contact(radius[j], radius[i], excess[i], away)
+
+
+@njit
+def tangent(pairs: Pairs, radius: Floats, values: Floats) -> None:
+    """Fill what is to be added to 1/r for each pair where loads change."""
+    for number in range(pairs.share.size):
+        i, j = pairs.members[number]
+        away, share = pairs.apart[number, 2], pairs.share[number]
+        values[number] = share * (punches(radius[i], radius[j], away) - 1.0 / away) if share > 0.0 else 0.0
+
+
+@njit
+def add_tangent(pairs: Pairs, values: Floats, load: Floats, potential: Floats) -> None:
+    """Add to the displacement by changes of the loads."""
+    for number in range(values.size):
+        i, j = pairs.members[number]
+        potential[i] += values[number] * load[j]
+        potential[j] += values[number] * load[i]
+
+
+@njit
+def mark_overlaps(pairs: Pairs, radius: Floats, overlapping: NDArray[np.bool_]) -> None:
+    """Mark the contacts that overlap another."""
+    for number in range(pairs.share.size):
+        i, j = pairs.members[number]
+        if radius[i] > 0.0 and radius[j] > 0.0 and pairs.apart[number, 2] < radius[i] + radius[j]:
+            overlapping[i] = overlapping[j] = True

@@ -1,0 +1,61 @@
+"""The displacements of contacts by each other, each pair summed: for few asperities, and to check the mesh by."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.interaction.green import Periodic, periodic_load, point_load
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
+
+_MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
+
+
+@njit
+def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, matrices: Floats) -> None:
+    for i in range(x.size):
+        for j in range(i + 1):
+            if periodic:
+                field = periodic_load(x[i] - x[j], y[i] - y[j], patch)
+            else:
+                field = point_load(x[i] - x[j], y[i] - y[j]) if i != j else (0.0, 0.0, 0.0, 0.0)
+            for row in range(4):
+                matrices[row, i, j] = field[row]
+                matrices[row, j, i] = field[row] if row in (0, 3) or i == j else -field[row]
+
+
+class Dense(NamedTuple):
+    """Matrices of G, its slopes and its Laplacian, [row, asperity, asperity], in units of the patch."""
+
+    matrices: Floats
+
+    error = 1e-12
+    """Of the displacements."""
+
+    @classmethod
+    def of(cls, x: Floats, y: Floats, patch: Periodic, periodic: bool) -> "Dense":
+        """Make the matrices of points."""
+        matrices = np.empty((4, x.size, x.size))
+        _fill(x, y, patch, periodic, matrices)
+        return cls(matrices)
+
+    def potential(self, load: Floats) -> Floats:
+        """Return the displacement of each point by point loads."""
+        return np.asarray(self.matrices[0] @ load)
+
+    def least_displacement(self, load: Floats) -> float:
+        """Return about the least displacement between the points by compressive point loads."""
+        values = self.potential(load)
+        return float(values.min() - _MARGIN * np.ptp(values))
+
+    def field(self, load: Floats) -> Floats:
+        """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""
+        touching = np.flatnonzero(load)
+        if 2 * touching.size < load.size:
+            return np.asarray(self.matrices[:, :, touching] @ load[touching])
+        return np.asarray(self.matrices @ load)
+
+    def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
+        """Return the displacement by sources of the Laplacian and of the slopes of G."""
+        _, x, y, lap = self.matrices
+        return np.asarray(lap @ laplacian + x @ along_x + y @ along_y)

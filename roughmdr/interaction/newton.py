@@ -1,0 +1,177 @@
+"""The equilibrium of coupled contacts at one separation, by a semismooth Newton method with conjugate gradients.
+
+For each asperity x + lift + U = z - h, where x > 0 carries a load P(x) (``contacts.py``), U is the displacement by all
+loads and moments, and lift depends on the slopes and the curvature of U. Each step solves (1/k + G) dP = -residual
+for the contacts, with the coupling of first order, that of close pairs in full: what the second order adds to it is a
+few per cent, and so each step leaves a few per cent of the error.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, cg
+
+from roughmdr.interaction import close
+from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels
+from roughmdr.numerics.arguments import Floats
+
+_MAX_STEPS = 60
+_RTOL, _MAX_ITERATIONS = 0.03, 200  # of a step
+_SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
+_DAMPED = 20, 0.5  # from this step on so much of a step is taken
+_STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
+
+
+class Coupling(Protocol):
+    """How loads displace the surface at each asperity; ``Dense`` and ``Mesh``."""
+
+    error: float
+
+    def potential(self, load: Floats) -> Floats:
+        """Return the displacement by point loads."""
+        ...
+
+    def field(self, load: Floats) -> Floats:
+        """Return displacement, slopes and Laplacian by point loads, [row, asperity]."""
+        ...
+
+    def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
+        """Return the displacement by sources of the Laplacian and of the slopes of G."""
+        ...
+
+    def least_displacement(self, load: Floats) -> float:
+        """Return about the least displacement between the points."""
+        ...
+
+
+class System(NamedTuple):
+    """Asperities that are coupled, in units of the patch."""
+
+    kernels: CoupledKernels
+    asperities: Asperities
+    coupling: Coupling
+    at: Floats
+    """Positions, [asperity, 2]."""
+    sides: Floats | None
+    """Of the patch that repeats; None of a free one."""
+    order: int
+
+
+class State(NamedTuple):
+    """Contacts, in equilibrium or not."""
+
+    x: Floats
+    contacts: Contacts
+    pairs: close.Pairs
+    residual: Floats
+    displacement: Floats
+    """Where each asperity would have to be for x = 0, over z - h."""
+    lost: int
+    """Number of contacts that are no discs."""
+
+
+class Equilibrium(NamedTuple):
+    """The state that was found."""
+
+    state: State
+    error: float
+    """About the relative error of the total load; inf where there was no equilibrium."""
+
+
+def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | None) -> State:
+    """Return the contacts at x with their residuals; close pairs are looked for again where they may be others."""
+    kernels, asperities, coupling = system.kernels, system.asperities, system.coupling
+    contacts = Contacts(*np.zeros((len(Contacts._fields), x.size)))
+    kernels.load_alone(x, asperities, contacts)
+    if pairs is None or pairs.outgrown(contacts.radius):
+        pairs = close.find_pairs(system.at, contacts.radius, system.sides)
+    close.update_shares(pairs, contacts.radius)
+    load, lost = contacts.load, 0
+    if system.order == 1:
+        field = np.zeros((4, x.size))
+        kernels.respond(asperities, field, contacts)  # for the second moments, that close pairs need
+        field[0] = coupling.potential(load)
+        close.take_from_field(pairs, load, field)
+        displacement = field[0]
+    else:
+        field = coupling.field(load)
+        close.take_from_field(pairs, load, field)
+        lost = kernels.respond(asperities, field, contacts)
+        moments = 0.25 * contacts.second_moment, contacts.tilting * field[1], contacts.tilting * field[2]
+        displacement = field[0] + coupling.of_moments(*moments)
+        close.take_from_moments(pairs, *moments, displacement)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.radius**2), 0.0)
+    close.add_contacts(pairs, contacts, excess, displacement)
+    displacement = displacement + contacts.lift
+    return State(x, contacts, pairs, x + displacement + (separation - asperities.height), displacement, lost)
+
+
+def _step(system: System, state: State, values: Floats, right: Floats, rtol: float) -> Floats:
+    """Return the loads dP of the contacts with (1/k + G) dP = right, 0 of all others."""
+    root = np.sqrt(state.contacts.stiffness)
+
+    def product(scaled: Floats) -> Floats:
+        load = root * scaled.ravel()
+        potential = system.coupling.potential(load)
+        close.add_tangent(state.pairs, values, load, potential)
+        return scaled.ravel() + root * potential
+
+    operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)
+    found, _ = cg(operator, root * right, rtol=rtol, atol=0.0, maxiter=_MAX_ITERATIONS)
+    return np.asarray(root * found)
+
+
+def _tangent(state: State) -> Floats:
+    values = np.zeros(state.pairs.share.size)
+    close.tangent(state.pairs, state.contacts.radius, values)
+    return values
+
+
+def solve(system: System, x: Floats, separation: float, error: float) -> Equilibrium:
+    """Return the equilibrium at a separation, from a guess of x; ``error`` is that asked for of the total load."""
+    state = evaluate(system, x, separation, None)
+    before, stated = np.inf, np.inf
+    for number in range(_MAX_STEPS):
+        stiffness = state.contacts.stiffness
+        touching = stiffness > 0.0
+        if not touching.any() and not (state.residual < 0.0).any():
+            return Equilibrium(state, 0.0)
+        values = _tangent(state)
+        change = _step(system, state, values, -state.residual, _RTOL) if touching.any() else np.zeros_like(x)
+        moved = -state.residual
+        if touching.any():
+            potential = system.coupling.potential(change)
+            close.add_tangent(state.pairs, values, change, potential)
+            moved = np.where(touching, change / np.where(touching, stiffness, 1.0), -state.residual - potential)
+        part = 1.0 if number < _DAMPED[0] else _DAMPED[1]
+        total = state.contacts.load.sum()
+        new = evaluate(system, state.x + part * moved, separation, state.pairs)
+        made = new.contacts.load - state.contacts.load
+        size = float(np.abs(made).sum() / max(total, new.contacts.load.sum()))
+        ratio = size / before if number and before > 0.0 else 1.0
+        stated = size * ratio / (1.0 - ratio) if ratio < _SLOW and part == 1.0 else size
+        state, before = new, size
+        if not np.isfinite(size):
+            break
+        if stated <= error:
+            return Equilibrium(state, stated)
+    return Equilibrium(state, np.inf)
+
+
+def total_stiffness(system: System, state: State, separation: float) -> float:
+    """Return -dF/dh: the response of all loads to 1, by the tangent of first order and probes of the whole one."""
+    stiffness = state.contacts.stiffness
+    touching = stiffness > 0.0
+    if not touching.any():
+        return 0.0
+    values, right = _tangent(state), np.where(touching, 1.0, 0.0)
+    change = _step(system, state, values, right, _STIFFNESS_RTOL)
+    probe = _PROBE * float(state.x.max())
+    for _ in range(_STIFFNESS_PASSES):
+        moved = np.where(touching, change / np.where(touching, stiffness, 1.0), 0.0)
+        scale = probe / float(np.abs(moved).max())
+        other = evaluate(system, state.x + scale * moved, separation, state.pairs)
+        left = np.where(touching, (other.residual - state.residual) / scale, 0.0)
+        change = change + _step(system, state, values, right - left, _STIFFNESS_RTOL)
+    return float(change.sum())

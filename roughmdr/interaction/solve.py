@@ -1,0 +1,232 @@
+"""Coupled asperities along a path of the flat: who can touch, the equilibrium at each separation, and the totals.
+
+Without adhesion contacts have no memory: each separation is solved once, from the largest down, from the contacts at
+the one before.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import OutOfRange, SceneError
+from roughmdr.interaction import close
+from roughmdr.interaction.contacts import Asperities, coupled_kernels
+from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.green import Periodic
+from roughmdr.interaction.mesh import Mesh
+from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
+from roughmdr.interaction.settings import Interaction
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns, Material
+from roughmdr.numerics.arguments import Floats
+
+DENSE_UP_TO = 300
+"""Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
+_MESH_ERROR = 0.3  # of the error asked for
+_GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
+_SMALLEST = np.finfo(np.float64).tiny
+
+
+class Overlap(NamedTuple):
+    """Contacts that overlap a neighbour's."""
+
+    count: int
+    share: float
+    """Of the force."""
+
+
+class Step(NamedTuple):
+    """The totals at one separation, in SI."""
+
+    force: float = 0.0
+    radius_sum: float = 0.0
+    area: float = 0.0
+    stiffness: float = 0.0
+    count: int = 0
+    error: float = 0.0
+    """About that of the force [N]; inf where there is no equilibrium."""
+    overlap: Overlap = Overlap(0, 0.0)
+    lost: int = 0
+    """Number of contacts that are no discs."""
+
+
+class Coupled(NamedTuple):
+    """Coupled asperities along a path."""
+
+    steps: list[Step]
+    radius: Floats
+    """The contact radius [m] of each asperity where the flat is closest."""
+    visits: int
+
+
+class Candidates:
+    """The highest asperities of an ensemble: all that can touch, and some more."""
+
+    def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction) -> None:
+        missing = [name for name in ("x", "y") if name not in ensemble.positions]
+        if missing:
+            raise SceneError("ensemble: x and y are missing; interaction 'pairwise' needs positions")
+        self.length, side_y = _sides(ensemble)
+        self.patch, self.interaction = Periodic.of(side_y), interaction
+        columns = ensemble.nondimensional()
+        law = choose(ensemble.shape, Adhesion(), columns.params)
+        self.kernels = coupled_kernels(law)
+        self.at = np.column_stack([ensemble.positions[name] for name in ("x", "y")]) / self.length
+        self.height = ensemble.height / self.length
+        _check_apart(self.at, self.sides)
+        self._columns, self._material = columns, Material(effective_modulus, 0.0, math.inf)
+        self._natural = _natural_scales(law, columns, self._material, self.height.size)
+        self.system = self._system(0)
+
+    @property
+    def sides(self) -> Floats | None:
+        """Sides of the patch that repeats."""
+        return np.array([1.0, self.patch.side_y]) if self.interaction.boundary == "periodic" else None
+
+    @property
+    def count(self) -> int:
+        """Number of asperities that can touch."""
+        return int(self.system.asperities.height.size)
+
+    def _system(self, count: int) -> System:
+        """Return the ``count`` highest asperities, coupled."""
+        depth, size = self._natural
+        params = self.kernels.prepare(self._material, self._columns, 0, max(count, 1), 0.0)
+        asperities = Asperities(self.height[:count], depth[:count] / self.length, size[:count] / self.length, params)
+        at, periodic = self.at[:count], self.interaction.boundary == "periodic"
+        x, y = np.ascontiguousarray(at.T)
+        coupling: Coupling
+        if count <= DENSE_UP_TO:
+            coupling = Dense.of(x, y, self.patch, periodic)
+        else:
+            coupling = Mesh(x, y, self.patch, periodic, _MESH_ERROR * self.interaction.error)
+        return System(self.kernels, asperities, coupling, at, self.sides, self.interaction.order)
+
+    def extend(self, lowest: float) -> bool:
+        """Take asperities down to a height, over the side of the patch, and some more; whether that changed anything."""
+        needed = int(np.searchsorted(-self.height, -lowest, side="right"))
+        if needed <= self.count:
+            return False
+        target = max(min(DENSE_UP_TO, self.height.size), math.ceil(_GROWTH * needed))
+        self.system = self._system(min(target, self.height.size))
+        return True
+
+
+def _sides(ensemble: Ensemble) -> tuple[float, float]:
+    """Return the side of the patch along x [m], and that along y over it."""
+    attrs = ensemble.attrs
+    if "patch_x" in attrs and "patch_y" in attrs:
+        return float(attrs["patch_x"]), float(attrs["patch_y"]) / float(attrs["patch_x"])
+    if "patch" in attrs:
+        return float(attrs["patch"]), 1.0
+    if ensemble.nominal_area is None:
+        raise SceneError("ensemble: attribute patch is missing; interaction 'pairwise' needs the sides of the patch")
+    return math.sqrt(ensemble.nominal_area), 1.0
+
+
+def _natural_scales(law: object, columns: Columns, material: Material, count: int) -> tuple[Floats, Floats]:
+    """Return natural depths and radii [m]; OutOfRange where one is not representable."""
+    prepare, scales, params_of = (getattr(law, name) for name in ("prepare", "scales", "params_of"))
+    params = prepare(material, columns, 0, count, 0.0)
+    found = np.empty((2, count))
+    for i in range(count):
+        (depth, _), size, _, _ = scales(
+            material.effective_modulus, 0.0, columns.width[i], columns.rise[i], params_of(params, i)
+        )
+        found[:, i] = depth, size
+    if not ((found >= _SMALLEST) & np.isfinite(found)).all():
+        raise OutOfRange("the contact of an asperity is not representable")
+    return found[0], found[1]
+
+
+def _check_apart(at: Floats, sides: Floats | None) -> None:
+    """Raise SceneError where two asperities have the same position."""
+    wrapped = at if sides is None else at - sides * np.floor(at / sides)
+    order = np.lexsort(wrapped.T)
+    same = (np.diff(wrapped[order], axis=0) == 0.0).all(axis=1)
+    if same.any():
+        first = int(np.argmax(same))
+        i, j = sorted((int(order[first]), int(order[first + 1])))
+        raise SceneError(f"ensemble: asperities {i} and {j} have the same position; interaction needs them apart")
+
+
+def solve_path(
+    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, stiffness: bool
+) -> Coupled:
+    """Return coupled asperities at separations [m]; ``stiffness`` only where it is asked for.
+
+    SceneError where positions or sides are missing, or two asperities have one position; OutOfRange where a contact is
+    not representable.
+    """
+    candidates = Candidates(ensemble, effective_modulus, interaction)
+    length = candidates.length
+    distinct, index = np.unique(-separation, return_inverse=True)
+    steps, visits, x, moved = list[Step](), 0, np.empty(0), np.empty(0)
+    last = math.inf
+    state: State | None = None
+    for h in (-distinct / length).tolist():
+        found = _settle(candidates, h, last, x, moved)
+        state = found.state
+        visits += candidates.count
+        before = x
+        x = state.x
+        moved = np.where(np.isfinite(last), (x[: before.size] - before) / (last - h), np.nan) if before.size else before
+        last = h
+        steps.append(_totals(candidates, found, h, length, effective_modulus, stiffness))
+    radius = np.zeros_like(ensemble.height)
+    if state is not None:
+        radius[: state.x.size] = state.contacts.radius * length
+    return Coupled([steps[i] for i in index.ravel()], radius, visits)
+
+
+def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:
+    """Return the equilibrium at a separation, with all asperities that can touch."""
+    error = candidates.interaction.error
+    candidates.extend(h)
+    while True:
+        guess = candidates.system.asperities.height - h
+        if x.size:
+            rate = np.where(np.isfinite(moved), moved, 1.0) if moved.size else np.ones(x.size)
+            rate = np.concatenate([rate, np.ones(x.size - rate.size)])
+            advanced = x + rate * (last - h) if math.isfinite(last) else x
+            lag = float(np.mean(advanced - guess[: x.size]))
+            guess = np.concatenate([advanced, guess[x.size :] + min(lag, 0.0)])
+        found = solve(candidates.system, guess, h, error)
+        if candidates.count == candidates.height.size:
+            return found
+        load, lift = found.state.contacts.load, found.state.contacts.lift
+        least = candidates.system.coupling.least_displacement(load) if load.any() else 0.0
+        apart = load == 0.0
+        highest_lift = -float(lift[apart].min(initial=0.0))
+        if not candidates.extend(h + min(least, 0.0) - highest_lift):
+            return found
+        x, moved, last = found.state.x, np.empty(0), math.inf
+
+
+def _totals(
+    candidates: Candidates, found: Equilibrium, h: float, length: float, modulus: float, stiffness: bool
+) -> Step:
+    """Return the totals of an equilibrium in SI."""
+    contacts, pairs = found.state.contacts, found.state.pairs
+    touching = contacts.load > 0.0
+    if not touching.any():
+        return Step(error=0.0 if math.isfinite(found.error) else math.inf)
+    overlapping = np.zeros(touching.size, dtype=np.bool_)
+    close.mark_overlaps(pairs, contacts.radius, overlapping)
+    load = math.fsum(contacts.load.tolist())
+    force = math.pi * modulus * length * length * load
+    overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
+    rigidity = total_stiffness(candidates.system, found.state, h) if stiffness else 0.0
+    return Step(
+        force,
+        length * math.fsum(contacts.radius[touching].tolist()),
+        math.pi * length * length * math.fsum((contacts.radius[touching] ** 2).tolist()),
+        math.pi * modulus * length * rigidity,
+        int(touching.sum()),
+        force * (found.error + candidates.system.coupling.error),
+        overlap,
+        found.state.lost,
+    )
