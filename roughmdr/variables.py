@@ -99,6 +99,10 @@ def _tabor_known(scene: Any) -> bool:
     return bool(scene.adhesion_model.tabor_known)
 
 
+def _pairwise(scene: Any) -> bool:
+    return bool(scene.needs_positions)
+
+
 def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
     return {row.name: row for row in rows}
 
@@ -120,7 +124,25 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic("profile_end_error", "1", "part of the model error: contacts beyond the end of their profile"),
     Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
     Diagnostic("resolution_error", "1", "part of the model error: radii of summits that the map does not resolve"),
-    Diagnostic("overlap_fraction", "1", "share of the contacts that reach into a neighbour's, at closest approach"),
+    Diagnostic(
+        "overlap_fraction",
+        "1",
+        "share of the contacts that reach into a neighbour's, at closest approach; with pairwise interaction the share "
+        "of the force that they carry",
+    ),
+    Diagnostic(
+        "overlap_count",
+        "1",
+        "number of contacts that overlap a neighbour's, at closest approach",
+        in_result=_pairwise,
+    ),
+    Diagnostic(
+        "marked_steps",
+        "1",
+        "number of steps without an equilibrium, or with more overlap than the interaction can describe",
+        merge="maximum",
+        in_result=_pairwise,
+    ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
     Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
     Diagnostic(

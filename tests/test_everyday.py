@@ -69,7 +69,9 @@ def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
     )
     assert rm.run(tomllib.loads(chosen)).force.shape == (16, 400)
     auto = (
-        text.replace('model = "jkr"  ', 'model = "auto"').replace("# strength", "strength").replace("# error", "error")
+        text.replace('model = "jkr"  ', 'model = "auto"')
+        .replace("# strength", "strength")
+        .replace("# error = 0.01", "error = 0.01")
     )
     assert (rm.run(tomllib.loads(auto)).tabor_number > 0.0).all()
     assert rm.run(

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple, Unpack
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.law import PER_AREA, LoadSeparation
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
+from roughmdr.interaction.placed import check_placed
+from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
-from roughmdr.loading.pull_off import PullOff
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
-from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction, fraction_warnings
+from roughmdr.model_error import Assumptions, Givens, fraction_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
@@ -35,82 +36,31 @@ from roughmdr.variables import COORDINATES, CURVE_VARIABLES, DEFAULT_VARIABLES, 
 if TYPE_CHECKING:
     import xarray as xr
 
-_PER_AREA = {"pressure", "contact_fraction", "model_error_curve"}
-
-
-class LoadSeparation(NamedTuple):
-    """The law of one ensemble along one path."""
-
-    variables: dict[str, Floats]
-    """Each over the steps, in SI."""
-    numerical_error: float
-    """Bound on the error of the force along the path, over the largest magnitude of the force."""
-    model_error: ModelError
-    """The error that the assumptions of the model cause."""
-    extremes: ValidityLimits
-    """The extremes of all contacts."""
-    visits: int
-    """How often an asperity was visited."""
-    tabor: float
-    """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
-    model: str
-    """The adhesion model that was used."""
-    warnings: tuple[str, ...] = ()
-    """Warnings that concern the ensemble itself."""
-    pull_off: PullOff = PullOff()
-    """The largest tension of the unloadings."""
-
-    @classmethod
-    def of(
-        cls,
-        total: Floats,
-        names: list[str],
-        separation: Floats,
-        givens: Givens,
-        assumptions: Assumptions,
-        visits: int,
-        tabor: float,
-        model: str,
-    ) -> LoadSeparation:
-        """Return the law from ``total`` [row, step].
-
-        OutOfRange where a variable is not representable, or where the contacts have more area than the patch.
-        """
-        area, force = givens.nominal_area, total[totals.FORCE]
-        fraction = None if math.isnan(area) else _over_area("contact_fraction", total[totals.AREA], area)
-        if fraction is not None:
-            check_contact_fraction(fraction, separation, givens)
-        model_error = ModelError.of(assumptions, separation, force, fraction)
-        results = {name: total[totals.TOTAL_INDEX[name]] for name in names if name not in _PER_AREA}
-        if fraction is not None and not _PER_AREA.isdisjoint(names):
-            pressure = _over_area("pressure", force, area)
-            derived = {"contact_fraction": fraction, "pressure": pressure, "model_error_curve": model_error.curve}
-            results |= {name: derived[name] for name in names if name in derived}
-        largest, error = float(np.max(np.abs(force))), float(np.max(total[totals.ERROR]))
-        relative = error / largest if largest > 0.0 else 0.0
-        extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
-        return cls(results, relative, model_error, extremes, visits, tabor, model)
-
-
-def _over_area(name: str, total: Floats, area: float) -> Floats:
-    with np.errstate(over="ignore"):  # refused below
-        values = np.asarray(total / area)
-    if not np.isfinite(values).all():
-        raise OutOfRange(f"{name} is not representable on a nominal area of {area:g} m2")
-    return values
-
 
 def compute(
-    ensemble: Ensemble, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    ensemble: Ensemble,
+    path: LoadingPath,
+    *,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    variables: Iterable[str],
+    interaction: Interaction | None = None,
 ) -> LoadSeparation:
     """Return the law of ``ensemble`` along a path; E* [Pa].
 
-    SceneError where a variable needs a nominal area and there is none, OutOfRange where the contact of an asperity is
+    SceneError where a variable needs a nominal area and there is none, or where the ensemble lacks positions or the
+    patch that the interaction needs, OutOfRange where the contact of an asperity is
     not representable, or where the contacts have more area than the patch.
     """
     names = list(variables)
-    if ensemble.nominal_area is None and not _PER_AREA.isdisjoint(names):
-        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(_PER_AREA))} need it")
+    if ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
+        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
+    if interaction is not None:
+        check_placed(ensemble, interaction)
+        if adhesion.work > 0.0:
+            raise SceneError("interaction: does not go with adhesion (work > 0) yet")
+        # The solvers of the interaction are called here.
+        raise SceneError(f"interaction: {interaction.model} is not available")
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
@@ -180,6 +130,7 @@ def load_separation(
     separation: ArrayLike,
     work: float | str = 0.0,
     unload: bool = False,
+    interaction: str | Mapping[str, Any] | None = None,
     variables: Iterable[str] = DEFAULT_VARIABLES,
     **material: Unpack[AdhesiveMaterial],
 ) -> xr.Dataset:
@@ -195,6 +146,9 @@ def load_separation(
         Work of adhesion [J/m^2]; 0 for none.
     unload : bool, optional
         Whether the same separations follow in reversed order, the turning point repeated.
+    interaction : {"pairwise", "mean_field"} or dict, optional
+        How asperities feel each other, as in a scene's [interaction]: a dict has model, boundary, order, error, beyond.
+        None: they are independent. "pairwise" needs x and y, and either model without adhesion.
     variables : str or iterable of str, optional
         Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum, energy,
         dissipated_energy, model_error_curve.
@@ -210,7 +164,8 @@ def load_separation(
         The variables over ``step`` in SI, with the coordinates separation [m] and branch; numerical_error [1];
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
         where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m],
-        pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact.
+        pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact; with pairwise interaction
+        overlap_count [1] and marked_steps [1].
 
     Raises
     ------
@@ -241,6 +196,7 @@ def load_separation(
         raise SceneError(f"ensemble is a {type(ensemble).__name__}; it must be a Dataset as generate returns it")
     try:
         asked = Adhesion.from_arguments(work, material)
+        coupling = Interaction.from_argument(interaction)
     except RoughmdrError as error:
         raise error if isinstance(error, OutOfRange) else SceneError(str(error)) from None
     effective_modulus = effective_modulus_of(load_separation, material)
@@ -253,10 +209,17 @@ def load_separation(
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
     path = LoadingPath.along(separations, unload=unload, adhesive=asked.work > 0.0)
     result = compute(
-        Ensemble.from_dataset(ensemble), path, effective_modulus=effective_modulus, adhesion=asked, variables=names
+        Ensemble.from_dataset(ensemble),
+        path,
+        effective_modulus=effective_modulus,
+        adhesion=asked,
+        interaction=coupling,
+        variables=names,
     )
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
+    if coupling is not None and coupling.model == "pairwise":
+        errors |= {"overlap_count": result.overlap_count, "marked_steps": result.marked_steps}
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     if (np.diff(path.separation) > 0.0).any():
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):

@@ -55,8 +55,8 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``.
     RoughmdrError where the cell cannot be computed.
     """
-    if estimator == "expected":
-        return _expected_law(cell, variables, budget)
+    if estimator == "expected" or cell.scene.needs_positions:
+        return _in_proportion(cell, estimator, variables, budget)
     count = max(1, math.ceil(cell.scene.asperities.expected_count))
     sizes = list(dict.fromkeys((min(most, count), min(steps, cell.steps)) for most, steps in _PARTS))
 
@@ -81,16 +81,25 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     return Cost(whole, memory * count / sizes[size][0], *sizes[size])
 
 
-def _expected_law(cell: Cell, variables: list[str], budget: float) -> Cost:
-    steps = list(dict.fromkeys(min(most, cell.steps) for _, most in _PARTS))
-    parts = [Cell(cell.scene, _thinned(cell, each)) for each in steps]
-    foreseen = [seconds(part, "expected") for part in (*parts, cell)]
-    if _MARGIN * foreseen[0] > budget:
+def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
+    """Return the cost of a run that grows from a part to the whole as ``costs`` foresees: of an expected law, whose
+    parts have fewer steps, or of asperities that feel each other in pairs, whose parts have fewer of them, too.
+    """
+    whole, drawn = cell.scene.asperities, estimator != "expected"
+    total = whole.expected_count if drawn else 0.0
+    sizes = list(dict.fromkeys((min(most, math.ceil(total)), min(steps, cell.steps)) for most, steps in _PARTS))
+    sections = [whole.limited_to(asperities) if drawn else whole for asperities, _ in sizes]
+    parts = [
+        Cell(cell.scene.model_copy(update={"asperities": section}), _thinned(cell, steps))
+        for section, (_, steps) in zip(sections, sizes, strict=True)
+    ]
+    foreseen = [seconds(part, estimator) for part in (*parts, cell)]
+    if not drawn and _MARGIN * foreseen[0] > budget:
         return Cost(foreseen[-1], 0.0)
 
     def run(size: int) -> _Time:
         started = time.perf_counter()
-        simulate_realization(cell.scene, parts[size].path, 0, variables, "expected")
+        simulate_realization(*parts[size], 0, variables, estimator)
         return _Time(0.0, time.perf_counter() - started)
 
     def scaled(taken: _Time, size: int, other: int) -> float:
@@ -98,7 +107,8 @@ def _expected_law(cell: Cell, variables: list[str], budget: float) -> Cost:
 
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, size + 1), len(parts), budget)
     taken = _Time(*np.mean(times, axis=0).tolist())
-    return Cost(scaled(taken, size, -1), memory, 0, steps[size])
+    more = total / sections[size].expected_count if drawn else 1.0
+    return Cost(scaled(taken, size, -1), memory * more, *sizes[size])
 
 
 def _grow(

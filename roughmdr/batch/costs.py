@@ -15,6 +15,7 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
+_PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-3, 4e-5  # a step of asperities that feel each other in pairs; each of them
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
@@ -32,6 +33,10 @@ def seconds(cell: Cell, estimator: str) -> float:
         return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
+    if cell.scene.needs_positions:
+        return (
+            begin + section.expected_count * _DRAW + steps * (_PAIRWISE_STEP + section.expected_count * _PAIRWISE_VISIT)
+        )
     return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
 
 

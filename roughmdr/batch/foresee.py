@@ -1,7 +1,6 @@
 """Foresees the physics of a cell from a few evenly drawn asperities: contact fraction, model error, Tabor number."""
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,10 +9,12 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.errors import RoughmdrError, TooMuchContact
+from roughmdr.interaction.placed import part_of
 from roughmdr.scene import Scene
 
 _MAX_ASPERITIES = 1000
 _MAX_STEPS = 60
+_MAX_PAIRED, _MAX_PAIRED_STEPS = 200, 12  # where asperities feel each other in pairs, which takes longer
 _MAX_CELLS = 12
 
 
@@ -41,9 +42,9 @@ def foresee_cells(plan: Plan) -> Prospect:
     foreseen, failures = [], []
     for number in np.unique(np.linspace(0, len(plan.cells) - 1, _MAX_CELLS).astype(int)).tolist():
         cell = plan.cells[number]
-        separation = cell.path.separation
-        if separation.size > _MAX_STEPS:
-            some = np.linspace(0, separation.size - 1, _MAX_STEPS).astype(int)
+        separation, steps = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
+        if separation.size > steps:
+            some = np.linspace(0, separation.size - 1, steps).astype(int)
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
         path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
         try:
@@ -84,12 +85,12 @@ def _reason(cell: Cell) -> str:
 
 def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch."""
-    source = scene.asperities
-    section = source.limited_to(_MAX_ASPERITIES)
-    ensemble = section.ensemble(scene.seed, 0, stratified=not source.reason_against("stratified"))
-    if source.nominal_area is not None:
-        share = section.expected_count / source.expected_count
-        ensemble = replace(ensemble, nominal_area=source.nominal_area * share)
+    source, paired = scene.asperities, scene.needs_positions
+    count = _MAX_PAIRED if paired else _MAX_ASPERITIES
+    stratified = not source.reason_against("stratified")
+    ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)
+    if paired:
+        ensemble = part_of(ensemble, count)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
     law = simulate_ensemble(scene, path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area

@@ -28,7 +28,7 @@ class PathFinder:
         if not path.starts_clear and path.target is None:
             return path.separations(sigma)
         # Sections that cells of a sweep have in common are the same objects.
-        key = (cell.effective_modulus, cell.adhesion_model, id(cell.asperities), id(path))
+        key = (cell.effective_modulus, cell.adhesion_model, cell.interaction_model, id(cell.asperities), id(path))
         if key not in self._found:
             self._found[key] = _find(cell, *path.given(sigma))
         return path.separations(sigma, *self._found[key])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.path_ends import PathFinder
 from roughmdr.errors import SceneError
+from roughmdr.interaction.placed import check_placed
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
@@ -104,6 +105,7 @@ def make_plan(scene: Scene) -> Plan:
     finder = PathFinder()
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         try:
+            _check_asperities_read(cell)
             loading = finder.separations(cell)
         except SceneError as error:
             raise scene.located(error, describe_cell(values)) from None
@@ -119,6 +121,12 @@ def make_plan(scene: Scene) -> Plan:
         cells.append(Cell(cell, paths[key]))
     left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
     return Plan(scene, tuple(cells), tuple(left_out), tuple(finder.notes))
+
+
+def _check_asperities_read(cell: Scene) -> None:
+    """SceneError where asperities that are read, not drawn, lack what their interaction needs."""
+    if cell.interaction_model is not None and not cell.asperities.is_random:
+        check_placed(cell.asperities.ensemble(cell.seed, 0), cell.interaction_model)
 
 
 def _left_out(scene: Scene) -> Iterator[str]:
@@ -137,9 +145,11 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.is_random:
-        yield "positions: asperities are independent; nothing depends on their positions"
-    yield "interaction: asperities are independent; the scene has no [interaction]"
+    if scene.asperities.is_random and not scene.needs_positions:
+        independent = "interaction.model is 'mean_field'" if scene.interaction else "asperities are independent"
+        yield f"positions: {independent}; nothing depends on their positions"
+    if scene.interaction is None:
+        yield "interaction: asperities are independent; the scene has no [interaction]"
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

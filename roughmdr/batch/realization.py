@@ -6,9 +6,15 @@ from roughmdr.scene import Scene
 
 
 def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
-    """Return the load-separation curve of an ensemble with the material and the adhesion of a scene."""
-    effective_modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-    return compute(ensemble, path, effective_modulus=effective_modulus, adhesion=adhesion, variables=variables)
+    """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
+    return compute(
+        ensemble,
+        path,
+        effective_modulus=scene.effective_modulus,
+        adhesion=scene.adhesion_model,
+        interaction=scene.interaction_model,
+        variables=variables,
+    )
 
 
 def simulate_realization(
@@ -22,5 +28,7 @@ def simulate_realization(
         return expected.compute(
             scene.asperities, path, effective_modulus=modulus, adhesion=adhesion, variables=variables
         )
-    ensemble = scene.asperities.ensemble(scene.seed, realization, stratified=estimator == "stratified")
+    ensemble = scene.asperities.ensemble(
+        scene.seed, realization, stratified=estimator == "stratified", with_positions=scene.needs_positions
+    )
     return simulate_ensemble(scene, path, ensemble, variables)

@@ -56,10 +56,10 @@ def _law(scene: Scene, names: list[str], start: float) -> _Law:
     def path(separations: Floats) -> LoadingPath:
         return LoadingPath.along(np.append(start, separations), unload=False, adhesive=scene.work > 0.0)
 
-    if source.is_random and not source.reason_against("expected"):
+    if source.is_random and not scene.reason_against("expected"):
         return lambda h: simulate_realization(scene, path(h), 0, names, "expected").variables[variable][1:]
     stratified = source.is_random and not source.reason_against("stratified")
-    ensemble = source.ensemble(scene.seed, 0, stratified=stratified)
+    ensemble = source.ensemble(scene.seed, 0, stratified=stratified, with_positions=scene.needs_positions)
     return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
 
 

@@ -165,6 +165,8 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
         "profile_extent": result.extremes.extent,
         "tabor_number": result.tabor if result.tabor < math.inf else math.nan,
         "adhesion_law": ADHESION_CODES.index(result.model if scene.work > 0.0 else "none"),
+        "overlap_count": result.overlap_count,
+        "marked_steps": result.marked_steps,
         "remark": "\n".join(result.warnings),
     }
 

@@ -52,6 +52,7 @@ def _squares(cell: Cell, stream: int) -> tuple[float, Floats]:
     """
     from scipy.special import ndtr
 
+    cell = cell._replace(scene=cell.scene.model_copy(update={"interaction": None}))  # they are alone
     ensembles = cell.scene.asperities.ensembles_at_levels(stream, ndtr(_SCORES), _PER_SCORE)
     force = np.array([[_force(cell, ensemble, number) for number in range(_PER_SCORE)] for ensemble in ensembles])
     largest = float(np.abs(force).max())

@@ -107,7 +107,8 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
 
 def make(section: Source, seed: int, realization: int) -> Ensemble:
     """Return an ensemble for a user to keep: with positions where the section says how to place the asperities."""
-    ensemble = section.ensemble(seed, realization, with_positions="placement" in section.model_fields_set)
+    placed = not section.model_fields_set.isdisjoint({"placement", "min_distance"})
+    ensemble = section.ensemble(seed, realization, with_positions=placed)
     return replace(ensemble, warnings=(*section.warnings, *ensemble.warnings))
 
 

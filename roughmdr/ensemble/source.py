@@ -95,7 +95,9 @@ class Source(Section):
         raise NotImplementedError
 
     def limited_to(self, count: int) -> "Source":
-        """Return a source like this one with about ``count`` asperities at most, or itself where that cannot be."""
+        """Return a source like this one with about ``count`` asperities at most, on so much smaller a patch, or itself
+        where that cannot be.
+        """
         return self
 
     def reason_against(self, estimator: str) -> str:
@@ -133,6 +135,9 @@ class Source(Section):
 class PatchSource(Source):
     """A source whose asperities lie on a square of side ``patch``."""
 
+    has_usual_distance: ClassVar[bool] = False
+    """Whether ``core_distance`` is known without min_distance."""
+
     shape: str
     patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]  # its square is a float
     placement: Literal["random", "hard_core", "hexagonal"] = "random"
@@ -147,13 +152,18 @@ class PatchSource(Source):
 
     @model_validator(mode="after")
     def _hard_core_has_a_distance(self) -> "PatchSource":
-        if self.placement == "hard_core" and self.min_distance is None:
+        if self.placement == "hard_core" and self.min_distance is None and not self.has_usual_distance:
             raise RoughmdrError('placement = "hard_core" needs min_distance')
         return self
 
     @property
     def shape_name(self) -> str:
         return self.shape
+
+    @property
+    def core_distance(self) -> float:
+        """Least distance of two asperities [m] under placement "hard_core"; else 0."""
+        return self.min_distance or 0.0
 
     @property
     def nominal_area(self) -> float:
@@ -163,8 +173,8 @@ class PatchSource(Source):
         """Return x and y [m] of ``count`` asperities; OutOfRange where they do not fit at the distance asked for."""
         from roughmdr.ensemble import placement
 
-        if self.min_distance is not None:
-            x, y = placement.hard_core_positions(streams, count, self.patch, self.min_distance)
+        if self.placement == "hard_core":
+            x, y = placement.hard_core_positions(streams, count, self.patch, self.core_distance)
         elif self.placement == "hexagonal":
             x, y = placement.hexagonal_positions(count, self.patch)
         else:

@@ -56,7 +56,7 @@ def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
     """Return the expected law of each cell in these variables."""
 
     def evaluate(cell: Cell) -> dict[str, Floats]:
-        if reason := cell.scene.asperities.reason_against("expected"):
+        if reason := cell.scene.reason_against("expected"):
             raise RoughmdrError(reason)
         return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
 

@@ -9,9 +9,18 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
+from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
-from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, MaterialSection, Output
+from roughmdr.scene.sections import (
+    Accuracy,
+    AdhesionSection,
+    Batch,
+    Body,
+    InteractionSection,
+    MaterialSection,
+    Output,
+)
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import effective_modulus
@@ -35,6 +44,7 @@ class Scene(Section):
     counter: Body | None = None
     adhesion: AdhesionSection | None = None
     asperities: Asperities
+    interaction: InteractionSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -85,7 +95,10 @@ class Scene(Section):
         if not asperities.is_random and realizations > 1:
             message = f"must be 1 with source {asperities.source!r}: nothing in it is random"
             raise mismatch("batch.realizations", message)
-        if estimator != "sampled" and (reason := asperities.reason_against(estimator)):
+        if self.interaction is not None and self.work > 0.0:
+            message = "does not go with adhesion yet: leave out one of them, or set adhesion.work to 0"
+            raise mismatch("interaction", message)
+        if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
             self._check_accuracy(self.accuracy)
@@ -109,8 +122,14 @@ class Scene(Section):
         if self.batch.realizations > accuracy.max_realizations:
             message = f"must be at most accuracy.max_realizations, {accuracy.max_realizations}"
             raise mismatch("batch.realizations", message)
-        if accuracy.method != "auto" and (reason := self.asperities.reason_against(accuracy.method)):
+        if accuracy.method != "auto" and (reason := self.reason_against(accuracy.method)):
             raise mismatch("accuracy.method", f"cannot be {accuracy.method!r}: {reason}")
+
+    def reason_against(self, estimator: str) -> str:
+        """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
+        if estimator == "expected" and self.needs_positions:
+            return "asperities that feel each other in pairs have positions, which the expected law does not know"
+        return self.asperities.reason_against(estimator)
 
     @property
     def estimators(self) -> tuple[str, ...]:
@@ -125,7 +144,7 @@ class Scene(Section):
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
         drawn = "stratified" if is_whole else "sampled"
-        return (drawn,) if self.asperities.reason_against("expected") else (drawn, "expected")
+        return (drawn,) if self.reason_against("expected") else (drawn, "expected")
 
     @property
     def effective_modulus(self) -> float:
@@ -147,6 +166,16 @@ class Scene(Section):
     def adhesion_model(self) -> Adhesion:
         """Adhesion model with its parameters."""
         return Adhesion() if self.adhesion is None else self.adhesion.adhesion_model
+
+    @property
+    def interaction_model(self) -> Interaction | None:
+        """Interaction with its parameters; None where asperities are independent."""
+        return None if self.interaction is None else self.interaction.interaction_model
+
+    @property
+    def needs_positions(self) -> bool:
+        """Whether the law depends on where the asperities stand."""
+        return self.interaction is not None and self.interaction.model == "pairwise"
 
     @property
     def file(self) -> Path | None:

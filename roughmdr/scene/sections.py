@@ -6,9 +6,11 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.interaction.settings import DEFAULT_ERROR as DEFAULT_SOLVER_ERROR
+from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Boundary, Interaction, Model
 from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
 from roughmdr.schema.material import check_one_body
-from roughmdr.schema.quantities import Quantity, Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
 _MAX_REALIZATIONS = 1_000_000_000
@@ -62,6 +64,33 @@ class AdhesionSection(Section):
             strength = strength_of(self.work, self.range)
         error = 0.0 if self.model != "auto" else (DEFAULT_ERROR if self.error is None else self.error)
         return Adhesion(self.work, self.model, strength, error)
+
+
+class InteractionSection(Section):
+    """[interaction]: how asperities feel each other; see ``Interaction``."""
+
+    model: Model
+    boundary: Boundary = "periodic"
+    order: Annotated[int, BeforeValidator(WholeNumber(1, 2))] = 2
+    error: Annotated[float, BeforeValidator(Quantity("1", at_least=LEAST_ERROR, at_most=MOST_ERROR))] = (
+        DEFAULT_SOLVER_ERROR
+    )
+    beyond: Beyond = "flag"
+
+    @model_validator(mode="after")
+    def _combination(self) -> "InteractionSection":
+        if self.model != "pairwise":
+            for key in ("order", "error", "beyond"):
+                if key in self.model_fields_set:
+                    raise EntryError(key, getattr(self, key), 'goes with model = "pairwise" only')
+        if self.beyond == "boundary_elements" and self.boundary == "free":
+            raise EntryError("beyond", self.beyond, 'does not go with boundary = "free": the grid repeats')
+        return self
+
+    @property
+    def interaction_model(self) -> Interaction:
+        """Interaction with its parameters."""
+        return Interaction(self.model, self.boundary, self.order, self.error, self.beyond)
 
 
 def _check_variable(value: object) -> object:

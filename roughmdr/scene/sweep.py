@@ -16,7 +16,7 @@ from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 
-_SECTIONS = ("material", "counter", "adhesion", "asperities")
+_SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
 _STOP = "path.separation.stop"
 _PATH_KEYS = ("path.separation.start", _STOP, f"{_STOP}.contact_fraction", f"{_STOP}.pressure")
 _ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"

@@ -12,6 +12,7 @@ _SECTIONS = {
         "height": '{ distribution = "normal", std = "1 um" }',
         "radius": '"50 um"',
     },
+    "interaction": {"model": '"pairwise"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
     "accuracy": {"relative": "1e-2"},
 }

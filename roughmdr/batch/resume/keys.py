@@ -47,6 +47,7 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
     parts = (
         scene.effective_modulus,
         tuple(scene.adhesion_model),
+        scene.interaction_model,
         sections[id(section)],
         hashlib.sha256(path.separation.tobytes()).hexdigest(),
         scene.seed,

@@ -1,5 +1,6 @@
 """source = "random": the sections of a scene, one for each shape with its parameters as keys, and what a run asks."""
 
+import math
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from itertools import product
@@ -122,9 +123,9 @@ class RandomAsperities(PatchSource):
         return min((each["exponent"].smallest for each in parameters if "exponent" in each), default=np.inf)
 
     def limited_to(self, count: int) -> "RandomAsperities":
-        if self.count is not None:
-            return self.model_copy(update={"count": min(count, self.count)})
-        return self.model_copy(update={"density": min(count, self.expected_count) / self.patch / self.patch})
+        patch = self.patch * math.sqrt(min(1.0, count / self.expected_count))
+        limited = {} if self.count is None else {"count": min(count, self.count)}
+        return self.model_copy(update={"patch": patch, **limited})
 
     @property
     def expected_count(self) -> float:

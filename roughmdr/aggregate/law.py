@@ -1,0 +1,84 @@
+"""The load-separation law of one ensemble along one path, made from the totals over its asperities."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import totals
+from roughmdr.asperity.validity import ValidityLimits
+from roughmdr.errors import OutOfRange
+from roughmdr.loading.pull_off import PullOff
+from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction
+from roughmdr.numerics.arguments import Floats
+
+PER_AREA = {"pressure", "contact_fraction", "model_error_curve"}
+"""Variables that need a nominal area."""
+
+
+class LoadSeparation(NamedTuple):
+    """The law of one ensemble along one path."""
+
+    variables: dict[str, Floats]
+    """Each over the steps, in SI."""
+    numerical_error: float
+    """Bound on the error of the force along the path, over the largest magnitude of the force."""
+    model_error: ModelError
+    """The error that the assumptions of the model cause."""
+    extremes: ValidityLimits
+    """The extremes of all contacts."""
+    visits: int
+    """How often an asperity was visited."""
+    tabor: float
+    """The least Tabor number of the asperities [1]; inf where the strength of the attraction is not known."""
+    model: str
+    """The adhesion model that was used."""
+    warnings: tuple[str, ...] = ()
+    """Warnings that concern the ensemble itself."""
+    pull_off: PullOff = PullOff()
+    """The largest tension of the unloadings."""
+    overlap_count: float = math.nan
+    """Number of contacts that overlap a neighbour's, at closest approach; NaN without pairwise interaction."""
+    marked_steps: float = math.nan
+    """Number of steps without an equilibrium, or with more overlap than the interaction can describe; NaN likewise."""
+
+    @classmethod
+    def of(
+        cls,
+        total: Floats,
+        names: list[str],
+        separation: Floats,
+        givens: Givens,
+        assumptions: Assumptions,
+        visits: int,
+        tabor: float,
+        model: str,
+    ) -> LoadSeparation:
+        """Return the law from ``total`` [row, step].
+
+        OutOfRange where a variable is not representable, or where the contacts have more area than the patch.
+        """
+        area, force = givens.nominal_area, total[totals.FORCE]
+        fraction = None if math.isnan(area) else _over_area("contact_fraction", total[totals.AREA], area)
+        if fraction is not None:
+            check_contact_fraction(fraction, separation, givens)
+        model_error = ModelError.of(assumptions, separation, force, fraction)
+        results = {name: total[totals.TOTAL_INDEX[name]] for name in names if name not in PER_AREA}
+        if fraction is not None and not PER_AREA.isdisjoint(names):
+            pressure = _over_area("pressure", force, area)
+            derived = {"contact_fraction": fraction, "pressure": pressure, "model_error_curve": model_error.curve}
+            results |= {name: derived[name] for name in names if name in derived}
+        largest, error = float(np.max(np.abs(force))), float(np.max(total[totals.ERROR]))
+        relative = error / largest if largest > 0.0 else 0.0
+        extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
+        return cls(results, relative, model_error, extremes, visits, tabor, model)
+
+
+def _over_area(name: str, total: Floats, area: float) -> Floats:
+    with np.errstate(over="ignore"):  # refused below
+        values = np.asarray(total / area)
+    if not np.isfinite(values).all():
+        raise OutOfRange(f"{name} is not representable on a nominal area of {area:g} m2")
+    return values
