@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
@@ -47,6 +48,15 @@ class Ensemble:
 
         height = np.ascontiguousarray(self.height[order])
         return replace(self, height=height, parameters=pick(self.parameters), positions=pick(self.positions))
+
+    def taken(self, numbers: NDArray[np.int64]) -> "Ensemble":
+        """Return the asperities of these numbers."""
+
+        def pick(columns: dict[str, Floats]) -> dict[str, Floats]:
+            return {name: column[numbers] for name, column in columns.items()}
+
+        parameters, positions = pick(self.parameters), pick(self.positions)
+        return replace(self, height=self.height[numbers], parameters=parameters, positions=positions)
 
     def nondimensional(self) -> Columns:
         """Return width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from roughmdr.interaction.contacts import Contacts
 from roughmdr.interaction.green import point_load
+from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
@@ -23,11 +24,12 @@ from roughmdr.numerics.jit import njit
 FULL, NONE = 1.1, 1.4
 _GROWTH = 1.15  # of contact radii until pairs are looked for again
 _NODES, _WEIGHTS = unit_gauss(4)  # of the load of a contact, from none to all
+_POINT = 1e-5  # a smaller punch, over the larger one, is a point: the square of this is left out
 _LEAST_EXCESS = 1e-9  # of a sum of punches over one punch
 
 
 class Pairs(NamedTuple):
-    """Pairs of contacts that may be close."""
+    """Pairs of asperities, at least one of them in contact, that may be close."""
 
     members: NDArray[np.int64]
     """Their numbers, [pair, 2]."""
@@ -44,23 +46,13 @@ class Pairs(NamedTuple):
 
 
 def find_pairs(at: Floats, radius: Floats, sides: Floats | None) -> Pairs:
-    """Return pairs of contacts nearer than ``NONE`` times their radii, which may grow; sizes in classes of two."""
-    from scipy.spatial import cKDTree
-
-    touching = np.flatnonzero(radius > 0.0)
+    """Return pairs nearer than ``NONE`` times their contact radii, which may grow."""
     grown = np.where(radius > 0.0, _GROWTH * radius, 0.0)
-    found: list[NDArray[np.int64]] = []
-    size = np.floor(np.log2(grown[touching])) if touching.size else np.empty(0)
-    wrapped = at if sides is None else np.minimum(at % sides, np.nextafter(sides, 0.0))
-    for each in np.unique(size):
-        larger, all_to = touching[size == each], touching[size <= each]
-        reach = 4.0 * NONE * 2.0**each
-        trees = [cKDTree(wrapped[group], boxsize=sides) for group in (larger, all_to)]
-        near = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
-        i, j = larger[near["i"]], all_to[near["j"]]
-        keep = (near["v"] < NONE * (grown[i] + grown[j])) & (i != j)
+    found = [np.empty((0, 2), np.int64)]
+    for i, j, away in within_reach(at, 2.0 * NONE * grown, sides):
+        keep = (away < NONE * (grown[i] + grown[j])) & (grown[j] <= grown[i])
         found.append(np.sort(np.column_stack([i[keep], j[keep]]), axis=1))
-    members = np.unique(np.concatenate(found), axis=0) if found else np.empty((0, 2), np.int64)
+    members = np.unique(np.concatenate(found), axis=0)
     apart = at[members[:, 0]] - at[members[:, 1]]
     if sides is not None:
         apart -= sides * np.rint(apart / sides)
@@ -79,6 +71,7 @@ def _spring_integral(x: float, away: float) -> float:
 @njit
 def punches(s: float, t: float, away: float) -> float:
     """Return the mean displacement of a punch of radius s by one of radius t under a unit load, over 1/(pi E*)."""
+    s, t = max(s, _POINT * t), max(t, _POINT * s)
     return (_spring_integral(s + t, away) - _spring_integral(abs(s - t), away)) / (2.0 * s * t)
 
 
@@ -104,7 +97,7 @@ def update_shares(pairs: Pairs, radius: Floats) -> None:
     for number in range(pairs.share.size):
         i, j = pairs.members[number]
         pairs.share[number] = 0.0
-        if radius[i] > 0.0 and radius[j] > 0.0:
+        if radius[i] > 0.0 or radius[j] > 0.0:
             u = (NONE - pairs.apart[number, 2] / (radius[i] + radius[j])) / (NONE - FULL)
             u = min(max(u, 0.0), 1.0)
             pairs.share[number] = u * u * (3.0 - 2.0 * u)
@@ -144,8 +137,10 @@ def add_contacts(pairs: Pairs, contacts: Contacts, excess: Floats, potential: Fl
         if share > 0.0:
             i, j = pairs.members[number]
             away = pairs.apart[number, 2]
-            potential[i] += share * load[j] * punch_and_contact(radius[i], radius[j], excess[j], away)
-            potential[j] += share * load[i] * punch_and_contact(radius[j], radius[i], excess[i], away)
+            if load[j] > 0.0:
+                potential[i] += share * load[j] * punch_and_contact(radius[i], radius[j], excess[j], away)
+            if load[i] > 0.0:
+                potential[j] += share * load[i] * punch_and_contact(radius[j], radius[i], excess[i], away)
 
 
 @njit

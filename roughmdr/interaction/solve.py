@@ -12,6 +12,7 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.interaction import close
+from roughmdr.interaction.buried import buried
 from roughmdr.interaction.contacts import Asperities, coupled_kernels
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
@@ -60,6 +61,8 @@ class Coupled(NamedTuple):
     radius: Floats
     """The contact radius [m] of each asperity where the flat is closest."""
     visits: int
+    buried_count: int
+    """Number of summits below the flank of another asperity, which are left out."""
 
 
 class Candidates:
@@ -71,12 +74,17 @@ class Candidates:
             raise SceneError("ensemble: x and y are missing; interaction 'pairwise' needs positions")
         self.length, side_y = _sides(ensemble)
         self.patch, self.interaction = Periodic.of(side_y), interaction
+        at = np.column_stack([ensemble.positions[name] for name in ("x", "y")])
+        _check_apart(at / self.length, self.sides)
+        hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
+        self.kept = np.flatnonzero(~hidden)
+        """The numbers of the asperities that are not buried."""
+        ensemble = ensemble.taken(self.kept)
         columns = ensemble.nondimensional()
         law = choose(ensemble.shape, Adhesion(), columns.params)
         self.kernels = coupled_kernels(law)
         self.at = np.column_stack([ensemble.positions[name] for name in ("x", "y")]) / self.length
         self.height = ensemble.height / self.length
-        _check_apart(self.at, self.sides)
         self._columns, self._material = columns, Material(effective_modulus, 0.0, math.inf)
         self._natural = _natural_scales(law, columns, self._material, self.height.size)
         self.system = self._system(0)
@@ -178,8 +186,8 @@ def solve_path(
         steps.append(_totals(candidates, found, h, length, effective_modulus, stiffness))
     radius = np.zeros_like(ensemble.height)
     if state is not None:
-        radius[: state.x.size] = state.contacts.radius * length
-    return Coupled([steps[i] for i in index.ravel()], radius, visits)
+        radius[candidates.kept[: state.x.size]] = state.contacts.radius * length
+    return Coupled([steps[i] for i in index.ravel()], radius, visits, ensemble.height.size - candidates.kept.size)
 
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:

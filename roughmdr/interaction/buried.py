@@ -1,0 +1,56 @@
+"""Summits that lie below the flank of a higher asperity: they are no part of the surface that all make together."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.interaction.neighbours import within_reach
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
+
+_DOUBLINGS, _HALVINGS = 200, 30
+
+
+def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
+    """Return f(r) [m] of the asperities i at distances r [m]; infinite beyond the end of a profile."""
+    kind, columns = SHAPES[ensemble.shape], ensemble.nondimensional()
+    width, rise = columns.width[i], columns.rise[i]
+    with np.errstate(over="ignore", invalid="ignore"):
+        if kind is FlatPunch:
+            return np.where(r < width, 0.0, np.inf)
+        if issubclass(kind, ProfileShape):
+            from roughmdr.shapes.evaluate import f_and_slopes
+
+            profile = kind.profile if ensemble.shared_profile is None else ensemble.shared_profile.profile
+            params = np.broadcast_to(columns.params[0], (i.size, columns.params.shape[1])) if kind.shared else columns.params[i]
+            ends = profile.end * width
+            inside = np.minimum(r, 0.5 * ends if np.isinf(profile.end) else ends)
+            return np.where(r <= ends, f_and_slopes(profile, kind.name, (width, rise, params), inside)[0], np.inf)
+        return np.asarray(rise * (r / width) ** columns.params[i])
+
+
+def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.bool_]:
+    """Return which summits lie below a flank; positions [asperity, 2] and ``sides`` of a patch that repeats [m]."""
+    height = ensemble.height
+    hidden = np.zeros(height.size, dtype=np.bool_)
+    for i, j, away in within_reach(at, _reach(ensemble), sides):
+        lower = height[j] < height[i]
+        i, j, away = i[lower], j[lower], away[lower]
+        hidden[j[height[i] - drop(ensemble, i, away) > height[j]]] = True
+    return hidden
+
+
+def _reach(ensemble: Ensemble) -> Floats:
+    """Return about the radius [m] at which the flank of each asperity is as low as the lowest summit, at least."""
+    every, deepest = np.arange(ensemble.height.size), ensemble.height - ensemble.height.min()
+    low, high = np.zeros(every.size), ensemble.nondimensional().width.copy()
+    for _ in range(_DOUBLINGS):
+        above = drop(ensemble, every, high) < deepest
+        if not above.any():
+            break
+        low, high = np.where(above, high, low), np.where(above, 2.0 * high, high)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        above = drop(ensemble, every, middle) < deepest
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return np.where(deepest > 0.0, high, 0.0)
