@@ -70,7 +70,7 @@ class LoadSeparation(NamedTuple):
             pressure = _over_area("pressure", force, area)
             derived = {"contact_fraction": fraction, "pressure": pressure, "model_error_curve": model_error.curve}
             results |= {name: derived[name] for name in names if name in derived}
-        largest, error = float(np.max(np.abs(force))), float(np.max(total[totals.ERROR]))
+        largest, error = (float(np.nanmax(np.abs(row), initial=0.0)) for row in (force, total[totals.ERROR]))
         relative = error / largest if largest > 0.0 else 0.0
         extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
         return cls(results, relative, model_error, extremes, visits, tabor, model)
@@ -79,6 +79,6 @@ class LoadSeparation(NamedTuple):
 def _over_area(name: str, total: Floats, area: float) -> Floats:
     with np.errstate(over="ignore"):  # refused below
         values = np.asarray(total / area)
-    if not np.isfinite(values).all():
+    if not np.isfinite(values[np.isfinite(total)]).all():
         raise OutOfRange(f"{name} is not representable on a nominal area of {area:g} m2")
     return values

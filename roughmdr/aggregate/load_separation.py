@@ -25,6 +25,7 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, fraction_warnings
+from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values
@@ -59,8 +60,7 @@ def compute(
         check_placed(ensemble, interaction)
         if adhesion.work > 0.0:
             raise SceneError("interaction: does not go with adhesion (work > 0) yet")
-        # The solvers of the interaction are called here.
-        raise SceneError(f"interaction: {interaction.model} is not available")
+        return _coupled(ensemble, path, effective_modulus, interaction, names)
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
@@ -91,6 +91,32 @@ def compute(
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
     return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
+
+
+def _coupled(
+    ensemble: Ensemble, path: LoadingPath, effective_modulus: float, interaction: Interaction, names: list[str]
+) -> LoadSeparation:
+    """Return the law of asperities that feel each other in pairs, without adhesion."""
+    from roughmdr.aggregate.coupled import sum_coupled
+
+    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    givens = Givens(effective_modulus, 0.0, float(np.std(ensemble.height)), area, float(found.radius.max(initial=0.0)))
+    assumptions = Assumptions(
+        ensemble.validity_limits(found.radius),
+        radius_uncertainty=float(ensemble.attrs.get("radius_uncertainty", 0.0)),
+        of_surface=bool(ensemble.attrs.get("of_surface", 0)),
+        overlap=found.overlap_share,
+        coupling_error=found.error,
+    )
+    result = LoadSeparation.of(found.total, names, path.separation, givens, assumptions, found.visits, math.inf, "none")
+    warnings = (
+        *ensemble.warnings,
+        *coupling_warnings(result.model_error.largest_fraction, found.overlap_share, found.marked),
+    )
+    return result._replace(
+        warnings=warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
+    )
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:
@@ -225,6 +251,8 @@ def load_separation(
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
             data[variable.name] = Array((), np.array(number), variable.attrs)
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
-    warnings = [*result.warnings, *result.extremes.warnings, *fraction_warnings(result.model_error.largest_fraction)]
+    warnings = [*result.warnings, *result.extremes.warnings]
+    if coupling is None or coupling.model != "pairwise":  # which has warnings of its own
+        warnings += fraction_warnings(result.model_error.largest_fraction)
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
     return Labelled(data, {"separation": distance, "branch": path.branch()}, attrs).to_xarray()

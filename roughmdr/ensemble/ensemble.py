@@ -43,11 +43,7 @@ class Ensemble:
         if (descending[1:] == descending[:-1]).any():
             order = np.lexsort((*self.parameters.values(), -self.height))
 
-        def pick(columns: dict[str, Floats]) -> dict[str, Floats]:
-            return {name: np.ascontiguousarray(column[order]) for name, column in columns.items()}
-
-        height = np.ascontiguousarray(self.height[order])
-        return replace(self, height=height, parameters=pick(self.parameters), positions=pick(self.positions))
+        return self.taken(order)
 
     def taken(self, numbers: NDArray[np.int64]) -> "Ensemble":
         """Return the asperities of these numbers."""

@@ -22,7 +22,11 @@ def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
             from roughmdr.shapes.evaluate import f_and_slopes
 
             profile = kind.profile if ensemble.shared_profile is None else ensemble.shared_profile.profile
-            params = np.broadcast_to(columns.params[0], (i.size, columns.params.shape[1])) if kind.shared else columns.params[i]
+            params = (
+                np.broadcast_to(columns.params[0], (i.size, columns.params.shape[1]))
+                if kind.shared
+                else columns.params[i]
+            )
             ends = profile.end * width
             inside = np.minimum(r, 0.5 * ends if np.isinf(profile.end) else ends)
             return np.where(r <= ends, f_and_slopes(profile, kind.name, (width, rise, params), inside)[0], np.inf)
@@ -34,9 +38,9 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.b
     height = ensemble.height
     hidden = np.zeros(height.size, dtype=np.bool_)
     for i, j, away in within_reach(at, _reach(ensemble), sides):
-        lower = height[j] < height[i]
-        i, j, away = i[lower], j[lower], away[lower]
-        hidden[j[height[i] - drop(ensemble, i, away) > height[j]]] = True
+        lower = np.flatnonzero(height[j] < height[i])
+        flank = height[i[lower]] - drop(ensemble, i[lower], away[lower])
+        hidden[j[lower][flank > height[j[lower]]]] = True
     return hidden
 
 

@@ -79,7 +79,7 @@ def punches(s: float, t: float, away: float) -> float:
 def punch_and_contact(s: float, a: float, excess: float, away: float) -> float:
     """Return the displacement of a punch of radius s by a contact of radius a under a unit load.
 
-    ``excess`` is its M/(P a^2): 2/3 of one punch, less of several, whose radii are taken to grow as a power of the load.
+    ``excess`` is its M/(P a^2): 2/3 of one punch, less of several, whose radii grow as a power of the load.
     """
     ratio = 1.5 * excess
     if 1.0 - ratio < _LEAST_EXCESS:
@@ -162,9 +162,11 @@ def add_tangent(pairs: Pairs, values: Floats, load: Floats, potential: Floats) -
 
 
 @njit
-def mark_overlaps(pairs: Pairs, radius: Floats, overlapping: NDArray[np.bool_]) -> None:
-    """Mark the contacts that overlap another."""
+def mark_overlaps(pairs: Pairs, radius: Floats, overlapping: NDArray[np.bool_], near: NDArray[np.bool_]) -> None:
+    """Mark the contacts that overlap another, and all those in a pair that is at least partly close."""
     for number in range(pairs.share.size):
         i, j = pairs.members[number]
-        if radius[i] > 0.0 and radius[j] > 0.0 and pairs.apart[number, 2] < radius[i] + radius[j]:
-            overlapping[i] = overlapping[j] = True
+        if radius[i] > 0.0 and radius[j] > 0.0 and pairs.share[number] > 0.0:
+            near[i] = near[j] = True
+            if pairs.apart[number, 2] < radius[i] + radius[j]:
+                overlapping[i] = overlapping[j] = True

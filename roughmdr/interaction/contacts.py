@@ -1,4 +1,4 @@
-"""One contact without adhesion on a surface that others displace, tilt and curve, to the second order in their distance.
+"""One contact without adhesion on a surface that others displace, tilt and curve, to second order in their distance.
 
 The neighbours displace the half-space by U + tilt . x + curvature r^2 about the axis of an asperity. Each term is exact
 to its order:
@@ -75,8 +75,14 @@ class CoupledKernels(Kernels):
     curved_state: Callable[..., float]
     """(t, ratio, params) -> the state with the load of t on a surface whose curvature adds ratio a^2 to g; negative,
     minus the radius, where the contact lies within the flat of a tip."""
+    newton_state: Callable[..., float]
+    """As ``curved_state``, by iteration, where that has a closed form for some."""
     top: Callable[..., float]
     """(t, tilt, ratio, params) -> the radius from t on where dg/da is the tilt, over natural size."""
+    bisected_top: Callable[..., float]
+    """As ``top``, by bisection."""
+    load_alone: Callable[..., None]
+    respond: Callable[..., int]
 
 
 law = CoupledKernels("law")
@@ -133,7 +139,7 @@ def curved_state_of_power(t: float, ratio: float, n: float) -> float:
     """Return the state in closed form for n = 2, else by Newton's method."""
     if n == 2.0:
         return t * math.pow(1.0 + ratio, -1.0 / 3.0)
-    return law.newton_state(t, ratio, n)
+    return float(law.newton_state(t, ratio, n))
 
 
 def top(t: float, tilt: float, ratio: float, params: Floats) -> float:
@@ -158,7 +164,7 @@ def top(t: float, tilt: float, ratio: float, params: Floats) -> float:
 
 def top_of_power(t: float, tilt: float, ratio: float, n: float) -> float:
     """Return the radius in closed form for n = 2, else by bisection."""
-    return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else law.bisected_top(t, tilt, ratio, n)
+    return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else float(law.bisected_top(t, tilt, ratio, n))
 
 
 def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
@@ -229,6 +235,7 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
     whole = CoupledKernels(f"coupled_{kernels.name}")
     vars(whole).update(vars(kernels) | {"__name__": whole.__name__})
     whole.pinned = kernels.name.endswith("flat_punch")
+    parts: dict[str, Callable[..., object]]
     if isinstance(kernels, ProfileKernels):
         parts = {
             "terms": terms_of_profile,

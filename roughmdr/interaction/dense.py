@@ -1,7 +1,5 @@
 """The displacements of contacts by each other, each pair summed: for few asperities, and to check the mesh by."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from roughmdr.interaction.green import Periodic, periodic_load, point_load
@@ -24,20 +22,14 @@ def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, matrices: Float
                 matrices[row, j, i] = field[row] if row in (0, 3) or i == j else -field[row]
 
 
-class Dense(NamedTuple):
+class Dense:
     """Matrices of G, its slopes and its Laplacian, [row, asperity, asperity], in units of the patch."""
 
-    matrices: Floats
-
-    error = 1e-12
-    """Of the displacements."""
-
-    @classmethod
-    def of(cls, x: Floats, y: Floats, patch: Periodic, periodic: bool) -> "Dense":
-        """Make the matrices of points."""
-        matrices = np.empty((4, x.size, x.size))
-        _fill(x, y, patch, periodic, matrices)
-        return cls(matrices)
+    def __init__(self, x: Floats, y: Floats, patch: Periodic, periodic: bool) -> None:
+        self.error = 1e-12
+        """Of the displacements."""
+        self.matrices = np.empty((4, x.size, x.size))
+        _fill(x, y, patch, periodic, self.matrices)
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement of each point by point loads."""

@@ -1,4 +1,4 @@
-"""The displacement of a half-space under a point load, over 1/(pi E*): 1/r and, on a periodic patch, that of all images.
+"""The displacement of a half-space under a point load, over 1/(pi E*): 1/r, on a periodic patch that of all images.
 
 On a periodic patch it has zero mean, so that displacements count from the deformed mean plane. The sums are split as by
 P. P. Ewald, Ann. Phys. 369 (1921) 253: 1/r = erfc(split r)/r + erf(split r)/r, images of the first, waves of the

@@ -46,19 +46,17 @@ class Spread(NamedTuple):
 
 
 @njit
-def _locate(
-    x: Floats, y: Floats, shape: tuple[int, int], sides: tuple[float, float], spread: Spread, beta: float
-) -> None:
-    width = spread.along_x.shape[1]
-    for i in range(x.size):
-        for axis in range(2):
-            weights = spread.along_x if axis == 0 else spread.along_y
-            at = (x[i] if axis == 0 else y[i]) / sides[axis] * shape[axis]
-            low = math.ceil(at - 0.5 * width)
-            spread.first[i, axis] = low % shape[axis]
-            for k in range(width):
-                z = (low + k - at) / (0.5 * width)
-                weights[i, k] = math.exp(beta * (math.sqrt(max(1.0 - z * z, 0.0)) - 1.0)) if abs(z) < 1.0 else 0.0
+def _locate(at: Floats, points: int, axis: int, spread: Spread, beta: float) -> None:
+    """Fill the cells and the weights along an axis with so many mesh points, of points ``at`` [side of the mesh]."""
+    weights = spread.along_x if axis == 0 else spread.along_y
+    width = weights.shape[1]
+    for i in range(at.size):
+        place = at[i] * points
+        low = math.ceil(place - 0.5 * width)
+        spread.first[i, axis] = low % points
+        for k in range(width):
+            z = (low + k - place) / (0.5 * width)
+            weights[i, k] = math.exp(beta * (math.sqrt(max(1.0 - z * z, 0.0)) - 1.0)) if abs(z) < 1.0 else 0.0
 
 
 @njit
@@ -161,7 +159,8 @@ class Mesh:
         width = math.ceil(-math.log10(error)) + 2
         beta = math.pi * width * (1.0 - 0.5 / _OVERSAMPLING)
         self._spread = Spread(np.empty((x.size, 2), np.int64), np.empty((x.size, width)), np.empty((x.size, width)))
-        _locate(x, y, self._shape, sides, self._spread, beta)
+        for axis in range(2):
+            _locate(at[:, axis] / sides[axis], self._shape[axis], axis, self._spread, beta)
         waves = [2.0 * math.pi * scipy.fft.fftfreq(n, side / n) for n, side in zip(self._shape, sides, strict=True)]
         waves[1] = waves[1][: self._shape[1] // 2 + 1]
         kx, ky = waves[0][:, None], np.abs(waves[1])[None, :]

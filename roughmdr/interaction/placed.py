@@ -8,7 +8,6 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
-from roughmdr.numerics.arguments import Floats
 
 
 def sides_of(ensemble: Ensemble) -> tuple[float, float] | None:
@@ -58,15 +57,5 @@ def part_of(ensemble: Ensemble, count: int) -> Ensemble:
     if sides is not None:
         attrs |= {"patch_x": share * sides[0], "patch_y": share * sides[1]}
 
-    def pick(columns: dict[str, Floats]) -> dict[str, Floats]:
-        return {name: column[near] for name, column in columns.items()}
-
     area = None if ensemble.nominal_area is None else ensemble.nominal_area * (count / size)
-    return replace(
-        ensemble,
-        height=ensemble.height[near],
-        parameters=pick(ensemble.parameters),
-        positions=pick(ensemble.positions),
-        nominal_area=area,
-        attrs=attrs,
-    )
+    return replace(ensemble.taken(near), nominal_area=area, attrs=attrs)

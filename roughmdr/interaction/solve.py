@@ -18,10 +18,11 @@ from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
+from roughmdr.interaction.placed import sides_of
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.numerics.arguments import Floats
 
 DENSE_UP_TO = 300
@@ -32,11 +33,13 @@ _SMALLEST = np.finfo(np.float64).tiny
 
 
 class Overlap(NamedTuple):
-    """Contacts that overlap a neighbour's."""
+    """Contacts that overlap a neighbour's, and those that nearly do."""
 
-    count: int
+    contacts: int
     share: float
     """Of the force."""
+    close_share: float
+    """Of the force, of all contacts that the expansion in distances does not hold for."""
 
 
 class Step(NamedTuple):
@@ -46,10 +49,10 @@ class Step(NamedTuple):
     radius_sum: float = 0.0
     area: float = 0.0
     stiffness: float = 0.0
-    count: int = 0
+    contacts: int = 0
     error: float = 0.0
     """About that of the force [N]; inf where there is no equilibrium."""
-    overlap: Overlap = Overlap(0, 0.0)
+    overlap: Overlap = Overlap(0, 0.0, 0.0)
     lost: int = 0
     """Number of contacts that are no discs."""
 
@@ -69,12 +72,14 @@ class Candidates:
     """The highest asperities of an ensemble: all that can touch, and some more."""
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction) -> None:
-        missing = [name for name in ("x", "y") if name not in ensemble.positions]
-        if missing:
-            raise SceneError("ensemble: x and y are missing; interaction 'pairwise' needs positions")
-        self.length, side_y = _sides(ensemble)
-        self.patch, self.interaction = Periodic.of(side_y), interaction
         at = np.column_stack([ensemble.positions[name] for name in ("x", "y")])
+        at -= at.min(axis=0)
+        sides = sides_of(ensemble)
+        if interaction.boundary == "free" or sides is None:
+            whole = float(np.ptp(at, axis=0).max())
+            sides = (whole, whole) if whole > 0.0 else (1.0, 1.0)
+        self.length, self.interaction = sides[0], interaction
+        self.patch = Periodic.of(sides[1] / sides[0])
         _check_apart(at / self.length, self.sides)
         hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
         self.kept = np.flatnonzero(~hidden)
@@ -83,10 +88,10 @@ class Candidates:
         columns = ensemble.nondimensional()
         law = choose(ensemble.shape, Adhesion(), columns.params)
         self.kernels = coupled_kernels(law)
-        self.at = np.column_stack([ensemble.positions[name] for name in ("x", "y")]) / self.length
+        self.at = at[self.kept] / self.length
         self.height = ensemble.height / self.length
         self._columns, self._material = columns, Material(effective_modulus, 0.0, math.inf)
-        self._natural = _natural_scales(law, columns, self._material, self.height.size)
+        self._natural = _natural_scales(self.kernels, columns, self._material, self.height.size)
         self.system = self._system(0)
 
     @property
@@ -108,13 +113,13 @@ class Candidates:
         x, y = np.ascontiguousarray(at.T)
         coupling: Coupling
         if count <= DENSE_UP_TO:
-            coupling = Dense.of(x, y, self.patch, periodic)
+            coupling = Dense(x, y, self.patch, periodic)
         else:
             coupling = Mesh(x, y, self.patch, periodic, _MESH_ERROR * self.interaction.error)
         return System(self.kernels, asperities, coupling, at, self.sides, self.interaction.order)
 
     def extend(self, lowest: float) -> bool:
-        """Take asperities down to a height, over the side of the patch, and some more; whether that changed anything."""
+        """Take asperities down to a height [side of the patch], and some more; whether that changed anything."""
         needed = int(np.searchsorted(-self.height, -lowest, side="right"))
         if needed <= self.count:
             return False
@@ -123,27 +128,13 @@ class Candidates:
         return True
 
 
-def _sides(ensemble: Ensemble) -> tuple[float, float]:
-    """Return the side of the patch along x [m], and that along y over it."""
-    attrs = ensemble.attrs
-    if "patch_x" in attrs and "patch_y" in attrs:
-        return float(attrs["patch_x"]), float(attrs["patch_y"]) / float(attrs["patch_x"])
-    if "patch" in attrs:
-        return float(attrs["patch"]), 1.0
-    if ensemble.nominal_area is None:
-        raise SceneError("ensemble: attribute patch is missing; interaction 'pairwise' needs the sides of the patch")
-    return math.sqrt(ensemble.nominal_area), 1.0
-
-
-def _natural_scales(law: object, columns: Columns, material: Material, count: int) -> tuple[Floats, Floats]:
+def _natural_scales(kernels: Kernels, columns: Columns, material: Material, count: int) -> tuple[Floats, Floats]:
     """Return natural depths and radii [m]; OutOfRange where one is not representable."""
-    prepare, scales, params_of = (getattr(law, name) for name in ("prepare", "scales", "params_of"))
-    params = prepare(material, columns, 0, count, 0.0)
+    params = kernels.prepare(material, columns, 0, count, 0.0)
     found = np.empty((2, count))
     for i in range(count):
-        (depth, _), size, _, _ = scales(
-            material.effective_modulus, 0.0, columns.width[i], columns.rise[i], params_of(params, i)
-        )
+        own = kernels.params_of(params, i)
+        (depth, _), size, _, _ = kernels.scales(material.effective_modulus, 0.0, columns.width[i], columns.rise[i], own)
         found[:, i] = depth, size
     if not ((found >= _SMALLEST) & np.isfinite(found)).all():
         raise OutOfRange("the contact of an asperity is not representable")
@@ -166,8 +157,8 @@ def solve_path(
 ) -> Coupled:
     """Return coupled asperities at separations [m]; ``stiffness`` only where it is asked for.
 
-    SceneError where positions or sides are missing, or two asperities have one position; OutOfRange where a contact is
-    not representable.
+    The ensemble has positions. SceneError where two asperities have one position; OutOfRange where a contact is not
+    representable.
     """
     candidates = Candidates(ensemble, effective_modulus, interaction)
     length = candidates.length
@@ -222,11 +213,12 @@ def _totals(
     touching = contacts.load > 0.0
     if not touching.any():
         return Step(error=0.0 if math.isfinite(found.error) else math.inf)
-    overlapping = np.zeros(touching.size, dtype=np.bool_)
-    close.mark_overlaps(pairs, contacts.radius, overlapping)
+    near = np.zeros((2, touching.size), dtype=np.bool_)
+    close.mark_overlaps(pairs, contacts.radius, near[0], near[1])
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
-    overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
+    shares = [float(contacts.load[own].sum()) / load for own in near]
+    overlap = Overlap(int(near[0].sum()), *shares)
     rigidity = total_stiffness(candidates.system, found.state, h) if stiffness else 0.0
     return Step(
         force,

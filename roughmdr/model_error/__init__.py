@@ -1,6 +1,6 @@
 """The error that the assumptions of the model cause in the force, as far as it can be estimated beside the result.
 
-``interaction.py`` has that of asperities that do not feel each other, ``parts.py`` all parts together, and
+``interaction.py`` has that of asperities that do not feel each other, ``coupling.py`` that of those that do, ``parts.py`` all parts together, and
 ``refusal.py`` says beyond which contact fraction there is no answer, and what the likely cause is.
 """
 

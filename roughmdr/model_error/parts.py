@@ -12,11 +12,14 @@ from roughmdr.numerics.arguments import Floats
 TRUSTED_FRACTION = 0.02
 """Contact fraction up to which a force is told to be right within an error: by interaction 22 %, typically 12 %."""
 
+TRUSTED_ERROR = 0.02
+"""Error by interaction up to which the force of coupled asperities is told to be right."""
+
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 _FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
 
 PARTS = {
-    "interaction_error": "asperities that do not feel each other",
+    "interaction_error": "asperities that do not feel each other, or are coupled only so far",
     "slope_error": "slopes that are not small",
     "profile_end_error": "contacts beyond the end of their profile",
     "adhesion_range_error": "JKR, where adhesion reaches further than it supposes",
@@ -37,6 +40,8 @@ class Assumptions(NamedTuple):
     """Whether the asperities are the summits of a continuous surface."""
     overlap: float = math.nan
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
+    coupling_error: Floats | None = None
+    """The error of asperities that are coupled, at each step; None of independent ones."""
 
 
 class ModelError(NamedTuple):
@@ -59,7 +64,7 @@ class ModelError(NamedTuple):
     def named(self) -> dict[str, float]:
         """The largest error over the steps and all that describes it, by their names in results."""
         return {
-            "model_error": float(self.curve.max(initial=0.0)),
+            "model_error": float(np.fmax.reduce(self.curve, initial=0.0)),
             **self.parts,
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,
@@ -75,7 +80,7 @@ class ModelError(NamedTuple):
         The parts add up, each and all to at most 1, the whole force; that of JKR is over the largest force. Where the
         force is 0 there is no error.
         """
-        limits, largest = assumptions.limits, float(np.abs(force).max(initial=0.0))
+        limits, largest = assumptions.limits, float(np.nanmax(np.abs(force), initial=0.0))
         constant = {
             "slope_error": limits.slope_error,
             "profile_end_error": limits.end_error,
@@ -85,13 +90,18 @@ class ModelError(NamedTuple):
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
-        interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
+        coupled = assumptions.coupling_error
+        if coupled is None:
+            interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
+        else:
+            interaction = np.where(np.isnan(force), math.nan, coupled)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
-        beyond = separation[contact_fraction > _SLACK * TRUSTED_FRACTION]
+        trusted = contact_fraction <= _SLACK * TRUSTED_FRACTION if coupled is None else interaction <= TRUSTED_ERROR
+        beyond = separation[~trusted]
         return cls(
             curve,
-            {"interaction_error": float(interaction.max(initial=0.0)), **constant},
-            float(contact_fraction.max(initial=0.0)),
+            {"interaction_error": float(np.nanmax(interaction, initial=0.0)), **constant},
+            float(np.nanmax(contact_fraction, initial=0.0)),
             float(beyond.max()) if beyond.size else math.nan,
             assumptions.overlap,
         )

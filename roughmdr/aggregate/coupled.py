@@ -1,0 +1,68 @@
+"""The totals of asperities that feel each other, as those of the sum over independent ones."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import totals
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import SceneError
+from roughmdr.interaction.settings import Interaction
+from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error
+from roughmdr.numerics.arguments import Floats
+
+UNAVAILABLE = ("energy", "dissipated_energy")
+
+
+class CoupledTotals(NamedTuple):
+    """Totals along a path."""
+
+    total: Floats
+    """[row, step] in SI; NaN at a step without an equilibrium."""
+    radius: Floats
+    """The contact radius [m] of each asperity where the flat is closest."""
+    visits: int
+    error: Floats
+    """The estimated error of the force that the coupling leaves [1], over the steps."""
+    overlap_count: int
+    """At closest approach, as the next."""
+    overlap_share: float
+    """Of the force."""
+    marked: int
+    """Number of steps without an equilibrium, or with more overlap than the interaction can describe."""
+
+
+def sum_coupled(
+    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, names: list[str]
+) -> CoupledTotals:
+    """Return the totals of an ensemble at separations [m]; SceneError where a variable is not to be had."""
+    from roughmdr.interaction.solve import solve_path
+
+    if asked := [name for name in names if name in UNAVAILABLE]:
+        raise SceneError(f"variables: {', '.join(asked)} cannot be computed with interaction 'pairwise' yet")
+    coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
+    steps = coupled.steps
+    total = np.zeros((totals.ROWS, separation.size))
+    for row, values in (
+        (totals.FORCE, [step.force for step in steps]),
+        (totals.RADIUS, [step.radius_sum for step in steps]),
+        (totals.AREA, [step.area for step in steps]),
+        (totals.STIFFNESS, [step.stiffness for step in steps]),
+        (totals.COUNT, [step.contacts for step in steps]),
+        (totals.ERROR, [step.error for step in steps]),
+    ):
+        total[row] = values
+    solved = np.isfinite(total[totals.ERROR])
+    total[:, ~solved] = np.nan
+    share, close = (np.array([getattr(step.overlap, name) for step in steps]) for name in ("share", "close_share"))
+    if ensemble.nominal_area is None:
+        fraction = np.full(separation.size, math.nan)
+    else:
+        fraction = total[totals.AREA] / ensemble.nominal_area
+    beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
+    error = coupling_error(np.nan_to_num(fraction), close, share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    closest = steps[int(np.argmin(separation))].overlap
+    return CoupledTotals(
+        total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, int(np.sum(beyond | ~solved))
+    )

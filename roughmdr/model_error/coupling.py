@@ -1,0 +1,45 @@
+"""The error of the force of asperities that are coupled in pairs, to second order in their distance."""
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+
+_SEPARATED, _POWER = 0.2, 2.5
+"""Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
+_CLOSE = 0.008
+"""Of contacts that nearly overlap, over their share of the force."""
+_OVERLAP, _CROWDED = 0.12, 0.45
+"""Of contacts that overlap, over their share of the force; and so much more over the contact fraction as well."""
+_SUMMITS = 0.26
+"""Of the summits of a continuous surface, whose flanks are no paraboloids: the most of -10 to -26 %."""
+
+WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
+MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
+"""Shares of the force of overlapping contacts, and contact fractions, from which there is a warning or a mark."""
+
+
+def coupling_error(contact_fraction: Floats, close: Floats, overlap: Floats, *, of_surface: bool = False) -> Floats:
+    """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
+
+    ``contact_fraction`` is the summed contact area over the nominal area, ``close`` and ``overlap`` the shares of the
+    force of contacts that nearly overlap, and that overlap; shape (n,) each.
+    """
+    error = _SEPARATED * contact_fraction**_POWER + _CLOSE * close + overlap * (_OVERLAP + _CROWDED * contact_fraction)
+    return np.minimum(error + (_SUMMITS if of_surface else 0.0) * (contact_fraction > 0.0), 1.0)
+
+
+def coupling_warnings(contact_fraction: float, overlap: float, marked: float) -> list[str]:
+    """Return the warnings of the largest contact fraction and overlap of a path."""
+    lines = []
+    if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
+        lines.append(
+            f"a summed contact area of up to {contact_fraction:.2g} of the nominal area, of which overlapping contacts "
+            f"carry {overlap:.2g} of the force at closest approach: they are coupled only roughly (warned of above "
+            f"{WARNED_FRACTION:g} of the area and {WARNED_SHARE:g} of the force)"
+        )
+    if marked > 0:
+        lines.append(
+            f"{marked:.0f} steps are marked: without an equilibrium, then they have no value, or with more than "
+            f"{MARKED_SHARE:g} of the force in overlapping contacts or {MARKED_FRACTION:g} of the area in contact"
+        )
+    return lines
