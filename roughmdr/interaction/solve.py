@@ -27,7 +27,7 @@ from roughmdr.numerics.arguments import Floats
 
 DENSE_UP_TO = 300
 """Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
-_MESH_ERROR = 0.3  # of the error asked for
+_MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
 _SMALLEST = np.finfo(np.float64).tiny
 
@@ -183,7 +183,7 @@ def solve_path(
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:
     """Return the equilibrium at a separation, with all asperities that can touch."""
-    error = candidates.interaction.error
+    error = _SOLVER_ERROR * candidates.interaction.error
     candidates.extend(h)
     while True:
         guess = candidates.system.asperities.height - h

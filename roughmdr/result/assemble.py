@@ -134,7 +134,8 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     jkr = diagnostics["adhesion_law"] == ADHESION_CODES.index("jkr")
     tabor = float(np.fmin.reduce(diagnostics["tabor_number"][jkr], initial=math.inf))
     slope, extent = (float(diagnostics[name].max()) for name in ("edge_slope", "profile_extent"))
-    largest_fraction = float(np.fmax.reduce(diagnostics["largest_contact_fraction"]))
+    independent = np.isnan(diagnostics["overlap_count"])  # coupled asperities have remarks of their own
+    largest_fraction = float(np.fmax.reduce(diagnostics["largest_contact_fraction"][independent], initial=0.0))
     return [*warnings, *ValidityLimits(slope, extent, tabor).warnings, *fraction_warnings(largest_fraction)]
 
 
