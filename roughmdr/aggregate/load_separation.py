@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation
+from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
+from roughmdr.interaction.mean_field import coupling_in, shift
 from roughmdr.interaction.placed import check_placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
@@ -60,23 +62,33 @@ def compute(
         check_placed(ensemble, interaction)
         if adhesion.work > 0.0:
             raise SceneError("interaction: does not go with adhesion (work > 0) yet")
-        return _coupled(ensemble, path, effective_modulus, interaction, names)
+        if interaction.model == "pairwise":
+            return _coupled(ensemble, path, effective_modulus, interaction, names)
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
-    total, radius, visits = loop.sum_over_asperities(
-        law,
-        ensemble.height,
-        columns,
-        effective_modulus,
-        adhesion,
-        path.separation,
-        path.memory,
-        {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)},
-    )
+    rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
+
+    def sums(along: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
+        return loop.sum_over_asperities(
+            law, ensemble.height, columns, effective_modulus, adhesion, along.separation, along.memory, rows
+        )
+
+    if coupling := coupling_in(ensemble, interaction, effective_modulus):
+
+        def independent(separation: Floats) -> tuple[Floats, Floats]:
+            found, _, _ = sums(LoadingPath(separation, no_memory(separation)), {totals.FORCE, totals.STIFFNESS})
+            return found[totals.FORCE], found[totals.STIFFNESS]
+
+        found = shift(independent, path.separation, coupling)
+        shifted = LoadingPath(found.separation, no_memory(found.separation))
+        total, radius, visits = sums(shifted, rows | {totals.STIFFNESS})
+        couple(total, found)
+    else:
+        total, radius, visits = sums(path, rows)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(

@@ -87,6 +87,8 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
+    if scene.interaction_model is not None and scene.interaction_model.boundary == "free" and not paired:
+        count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
     stratified = not source.reason_against("stratified")
     ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)
     if paired:
