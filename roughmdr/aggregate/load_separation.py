@@ -122,12 +122,8 @@ def _coupled(
         coupling_error=found.error,
     )
     result = LoadSeparation.of(found.total, names, path.separation, givens, assumptions, found.visits, math.inf, "none")
-    warnings = (
-        *ensemble.warnings,
-        *coupling_warnings(result.model_error.largest_fraction, found.overlap_share, found.marked),
-    )
     return result._replace(
-        warnings=warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
+        warnings=ensemble.warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
     )
 
 
@@ -145,8 +141,13 @@ def _overlap(ensemble: Ensemble, radius: Floats) -> float:
     return poisson_overlap(contact_radius, ensemble.nominal_area)
 
 
-def prepare(shape: str, adhesion: Adhesion) -> None:
-    """Compile the sum for a shape and an adhesion model, once, before several threads or a clock need it."""
+def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = None) -> None:
+    """Compile the sum for a shape, an adhesion model and an interaction, before several threads or a clock need it."""
+    if interaction is not None and interaction.model == "pairwise":
+        from roughmdr.interaction.solve import prepare as prepare_coupled
+
+        prepare_coupled(shape)
+        return
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
@@ -264,7 +265,10 @@ def load_separation(
             data[variable.name] = Array((), np.array(number), variable.attrs)
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
-    if coupling is None or coupling.model != "pairwise":  # which has warnings of its own
-        warnings += fraction_warnings(result.model_error.largest_fraction)
+    fraction, overlap = result.model_error.largest_fraction, result.model_error.overlap
+    if coupling is not None and coupling.model == "pairwise":
+        warnings += coupling_warnings(fraction, overlap, result.marked_steps)
+    else:
+        warnings += fraction_warnings(fraction)
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
     return Labelled(data, {"separation": distance, "branch": path.branch()}, attrs).to_xarray()

@@ -37,10 +37,13 @@ def seconds(cell: Cell, estimator: str) -> float:
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
     if cell.scene.needs_positions:
-        return (
-            begin + section.expected_count * _DRAW + steps * (_PAIRWISE_STEP + section.expected_count * _PAIRWISE_VISIT)
-        )
+        return begin + section.expected_count * _DRAW + paired_seconds(cell)
     return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
+
+
+def paired_seconds(cell: Cell) -> float:
+    """Return about how long one realisation takes [s] whose asperities feel each other in pairs."""
+    return cell.steps * (_PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT)
 
 
 def file_bytes(plan: Plan, runs: int) -> int:
