@@ -15,7 +15,7 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
-_MEAN_FIELD_PASSES = 7  # Newton's method with all steps at once: 5 to 9
+_MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-3, 4e-5  # a step of asperities that feel each other in pairs; each of them
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
