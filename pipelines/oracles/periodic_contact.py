@@ -1,4 +1,4 @@
-"""One indenter in a square periodic patch, by boundary integrals with a free edge; the mean displacement and E* are 0, 1.
+"""One indenter in a square periodic patch of zero mean displacement, by boundary integrals with a free edge; E* is 1.
 
 Its images load the surface through the part of the Green's function that is smooth at the contact (``two_contacts``).
 """

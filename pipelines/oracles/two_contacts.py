@@ -121,7 +121,7 @@ def press(
     if start is None:
         edge = np.zeros(degree + 4)
         edge[1] = indenter.lone_radius
-        amplitudes = np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0]
+        amplitudes: Floats = np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0]
     else:
         edge, amplitudes = start.edge.copy(), start.amplitudes
     free = np.array([0, 1, *range(3, edge.size)])
