@@ -121,9 +121,9 @@ def press(
     if start is None:
         edge = np.zeros(degree + 4)
         edge[1] = indenter.lone_radius
-        amplitudes: Floats = np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0]
+        amplitudes = np.asarray(np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0], dtype=float)
     else:
-        edge, amplitudes = start.edge.copy(), start.amplitudes
+        edge, amplitudes = start.edge.copy(), np.asarray(start.amplitudes, dtype=float)
     free = np.array([0, 1, *range(3, edge.size)])
     for _ in range(_MAX_ITERATIONS):
         left = mismatch(edge, amplitudes)
