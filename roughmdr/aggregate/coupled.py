@@ -26,7 +26,7 @@ class CoupledTotals(NamedTuple):
     error: Floats
     """The estimated error of the force that the coupling leaves [1], over the steps."""
     overlap_count: int
-    """At closest approach, as the next."""
+    """At the closest approach with an equilibrium, as the next."""
     overlap_share: float
     """Of the force."""
     marked: int
@@ -62,7 +62,7 @@ def sum_coupled(
         fraction = total[totals.AREA] / ensemble.nominal_area
     beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
     error = coupling_error(np.nan_to_num(fraction), close, share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
-    closest = steps[int(np.argmin(separation))].overlap
+    closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     return CoupledTotals(
         total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, int(np.sum(beyond | ~solved))
     )

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation
+from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
+from roughmdr.interaction.mean_field import coupling_in, shift
 from roughmdr.interaction.placed import check_placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
@@ -60,23 +62,33 @@ def compute(
         check_placed(ensemble, interaction)
         if adhesion.work > 0.0:
             raise SceneError("interaction: does not go with adhesion (work > 0) yet")
-        return _coupled(ensemble, path, effective_modulus, interaction, names)
+        if interaction.model == "pairwise":
+            return _coupled(ensemble, path, effective_modulus, interaction, names)
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
-    total, radius, visits = loop.sum_over_asperities(
-        law,
-        ensemble.height,
-        columns,
-        effective_modulus,
-        adhesion,
-        path.separation,
-        path.memory,
-        {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)},
-    )
+    rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
+
+    def sums(along: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
+        return loop.sum_over_asperities(
+            law, ensemble.height, columns, effective_modulus, adhesion, along.separation, along.memory, rows
+        )
+
+    if coupling := coupling_in(ensemble, interaction, effective_modulus):
+
+        def independent(separation: Floats) -> tuple[Floats, Floats]:
+            found, _, _ = sums(LoadingPath(separation, no_memory(separation)), {totals.FORCE, totals.STIFFNESS})
+            return found[totals.FORCE], found[totals.STIFFNESS]
+
+        found = shift(independent, path.separation, coupling)
+        shifted = LoadingPath(found.separation, no_memory(found.separation))
+        total, radius, visits = sums(shifted, rows | {totals.STIFFNESS})
+        couple(total, found)
+    else:
+        total, radius, visits = sums(path, rows)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
@@ -110,12 +122,8 @@ def _coupled(
         coupling_error=found.error,
     )
     result = LoadSeparation.of(found.total, names, path.separation, givens, assumptions, found.visits, math.inf, "none")
-    warnings = (
-        *ensemble.warnings,
-        *coupling_warnings(result.model_error.largest_fraction, found.overlap_share, found.marked),
-    )
     return result._replace(
-        warnings=warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
+        warnings=ensemble.warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
     )
 
 
@@ -133,8 +141,13 @@ def _overlap(ensemble: Ensemble, radius: Floats) -> float:
     return poisson_overlap(contact_radius, ensemble.nominal_area)
 
 
-def prepare(shape: str, adhesion: Adhesion) -> None:
-    """Compile the sum for a shape and an adhesion model, once, before several threads or a clock need it."""
+def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = None) -> None:
+    """Compile the sum for a shape, an adhesion model and an interaction, before several threads or a clock need it."""
+    if interaction is not None and interaction.model == "pairwise":
+        from roughmdr.interaction.solve import prepare as prepare_coupled
+
+        prepare_coupled(shape)
+        return
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
@@ -252,7 +265,10 @@ def load_separation(
             data[variable.name] = Array((), np.array(number), variable.attrs)
     distance = Array(("step",), path.separation, COORDINATES["separation"].attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
-    if coupling is None or coupling.model != "pairwise":  # which has warnings of its own
-        warnings += fraction_warnings(result.model_error.largest_fraction)
+    fraction, overlap = result.model_error.largest_fraction, result.model_error.overlap
+    if coupling is not None and coupling.model == "pairwise":
+        warnings += coupling_warnings(fraction, overlap, result.marked_steps)
+    else:
+        warnings += fraction_warnings(fraction)
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
     return Labelled(data, {"separation": distance, "branch": path.branch()}, attrs).to_xarray()

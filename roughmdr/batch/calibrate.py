@@ -86,7 +86,7 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
     parts have fewer steps, or of asperities that feel each other in pairs, whose parts have fewer of them, too.
     """
     whole, drawn = cell.scene.asperities, estimator != "expected"
-    total = whole.expected_count if drawn else 0.0
+    total = max(1.0, whole.expected_count) if drawn else 0.0
     sizes = list(dict.fromkeys((min(most, math.ceil(total)), min(steps, cell.steps)) for most, steps in _PARTS))
     sections = [whole.limited_to(asperities) if drawn else whole for asperities, _ in sizes]
     parts = [
@@ -99,7 +99,10 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
 
     def run(size: int) -> _Time:
         started = time.perf_counter()
-        simulate_realization(*parts[size], 0, variables, estimator)
+        if drawn:
+            simulate_ensemble(cell.scene, parts[size].path, _drawn(cell.scene, sizes[size][0], estimator), variables)
+        else:
+            simulate_realization(cell.scene, parts[size].path, 0, variables, estimator)
         return _Time(0.0, time.perf_counter() - started)
 
     def scaled(taken: _Time, size: int, other: int) -> float:
@@ -159,13 +162,20 @@ def _thinned(cell: Cell, steps: int) -> LoadingPath:
 
 def _draw_and_sum(scene: Scene, path: LoadingPath, count: int, estimator: str, variables: list[str]) -> _Time:
     started = time.perf_counter()
-    section = scene.asperities.limited_to(count)
-    ensemble = section.ensemble(scene.seed, 0, stratified=estimator == "stratified")
+    ensemble = _drawn(scene, count, estimator)
     drawn = time.perf_counter()
     some = _some_of(ensemble, count)
     began = time.perf_counter()
     simulate_ensemble(scene, path, some, variables)
     return _Time(drawn - started, time.perf_counter() - began)
+
+
+def _drawn(scene: Scene, count: int, estimator: str) -> Ensemble:
+    """Draw so many asperities, as many per area as the scene has; a few high ones of them never fill its whole area."""
+    ensemble = scene.asperities.limited_to(count).ensemble(
+        scene.seed, 0, stratified=estimator == "stratified", with_positions=scene.needs_positions
+    )
+    return replace(ensemble, nominal_area=scene.asperities.nominal_area)
 
 
 def _some_of(ensemble: Ensemble, count: int) -> Ensemble:

@@ -15,6 +15,7 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
+_MEAN_FIELD_PASSES = 7  # Newton's method with all steps at once: 5 to 9
 _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-3, 4e-5  # a step of asperities that feel each other in pairs; each of them
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
@@ -24,6 +25,8 @@ _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in me
 def seconds(cell: Cell, estimator: str) -> float:
     """Return about how long one run takes [s]."""
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
+    if cell.scene.interaction is not None and not cell.scene.needs_positions:
+        steps *= _MEAN_FIELD_PASSES
     simple = section.shape_name == "paraboloid" or not adhesion.work
     dugdale = "dugdale" in adhesion.candidates
     if estimator == "expected":
@@ -34,10 +37,13 @@ def seconds(cell: Cell, estimator: str) -> float:
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
     if cell.scene.needs_positions:
-        return (
-            begin + section.expected_count * _DRAW + steps * (_PAIRWISE_STEP + section.expected_count * _PAIRWISE_VISIT)
-        )
+        return begin + section.expected_count * _DRAW + paired_seconds(cell)
     return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
+
+
+def paired_seconds(cell: Cell) -> float:
+    """Return about how long one realisation takes [s] whose asperities feel each other in pairs."""
+    return cell.steps * (_PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT)
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
+from roughmdr.batch.costs import paired_seconds
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.errors import RoughmdrError, TooMuchContact
@@ -35,6 +36,9 @@ class Prospect(NamedTuple):
     foreseen: tuple[Foreseen, ...]
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
+    coupled_seconds: float
+    """About how long a realisation would take [s] if its asperities felt each other; inf with adhesion, where they
+    cannot."""
 
 
 def foresee_cells(plan: Plan) -> Prospect:
@@ -51,7 +55,8 @@ def foresee_cells(plan: Plan) -> Prospect:
             foreseen.append(_foreseen(cell.scene, path))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
-    return Prospect(tuple(foreseen), tuple(failures))
+    coupled = max(paired_seconds(cell) if cell.scene.work == 0.0 else math.inf for cell in plan.cells)
+    return Prospect(tuple(foreseen), tuple(failures), coupled)
 
 
 def check_foreseen(plan: Plan) -> None:
@@ -87,6 +92,8 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
+    if scene.interaction_model is not None and scene.interaction_model.boundary == "free" and not paired:
+        count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
     stratified = not source.reason_against("stratified")
     ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)
     if paired:

@@ -26,7 +26,12 @@ def simulate_realization(
 
         modulus, adhesion = scene.effective_modulus, scene.adhesion_model
         return expected.compute(
-            scene.asperities, path, effective_modulus=modulus, adhesion=adhesion, variables=variables
+            scene.asperities,
+            path,
+            effective_modulus=modulus,
+            adhesion=adhesion,
+            interaction=scene.interaction_model,
+            variables=variables,
         )
     ensemble = scene.asperities.ensemble(
         scene.seed, realization, stratified=estimator == "stratified", with_positions=scene.needs_positions

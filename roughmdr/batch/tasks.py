@@ -89,12 +89,12 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     for (scene, path), estimator in ((runs.cell, runs.estimator) for runs in ranges):
         adhesion, asperities = scene.adhesion_model, scene.asperities
         shape, draws = asperities.shape_name, estimator != "expected"
-        kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, draws
+        kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, draws, scene.needs_positions
         if kind in prepared:
             continue
         prepared.add(kind)
         if draws:
-            prepare(shape, adhesion)
+            prepare(shape, adhesion, scene.interaction_model)
             continue
         from roughmdr import expected
 

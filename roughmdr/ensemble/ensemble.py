@@ -130,13 +130,13 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return whether the asperities are summits of a surface, and the uncertainty of their radii, as far as attributes
-    have them; SceneError if these are no numbers.
+    """Return whether the asperities are summits of a surface, the uncertainty of their radii, and how far they keep
+    apart, as far as attributes have them; SceneError if these are no numbers.
     """
     try:
         return {
             name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)
-            for name in ("of_surface", "radius_uncertainty")
+            for name in ("of_surface", "radius_uncertainty", "exclusion_distance")
             if name in attrs
         }
     except OutOfRange as error:

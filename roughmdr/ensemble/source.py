@@ -18,6 +18,11 @@ from roughmdr.shapes import SharedProfile
 MAX_COUNT = 1_000_000_000
 """Asperities that a patch may hold."""
 
+HEXAGONAL_CONSTANT = 3.92103158
+"""Minus the sum of 1/r over a hexagonal lattice of unit density in a uniform background of the opposite sign: twice the
+energy of an electron in such a crystal (L. Bonsall, A. A. Maradudin, Phys. Rev. B 15 (1977) 1959).
+"""
+
 
 class Source(Section):
     """[asperities]: a source declares its keys and overrides what raises NotImplementedError, and defaults as
@@ -76,6 +81,11 @@ class Source(Section):
     def nominal_area(self) -> float | None:
         """[m2]; None where it is unknown."""
         raise NotImplementedError
+
+    @property
+    def exclusion_distance(self) -> float:
+        """Radius [m] of the empty disc around an asperity that stands for its lack of near neighbours; 0 for none."""
+        return 0.0
 
     @property
     def sigma(self) -> float:
@@ -166,8 +176,19 @@ class PatchSource(Source):
         return self.min_distance or 0.0
 
     @property
+    def exclusion_distance(self) -> float:
+        if self.placement == "hexagonal":
+            return 0.5 * HEXAGONAL_CONSTANT / math.pi * self.patch / math.sqrt(self.expected_count)
+        return self.core_distance
+
+    @property
     def nominal_area(self) -> float:
         return self.patch * self.patch
+
+    @property
+    def exclusion_attr(self) -> dict[str, float | int | str]:
+        """``exclusion_distance`` as an attribute of ensembles that have one."""
+        return {"exclusion_distance": self.exclusion_distance} if self.exclusion_distance > 0.0 else {}
 
     def positions(self, streams: Streams, count: int) -> dict[str, Floats]:
         """Return x and y [m] of ``count`` asperities; OutOfRange where they do not fit at the distance asked for."""

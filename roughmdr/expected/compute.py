@@ -10,8 +10,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
+from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, TOTAL_INDEX
+from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, STIFFNESS, TOTAL_INDEX
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -19,7 +20,10 @@ from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
+from roughmdr.interaction.mean_field import Shift, coupling_of, shift
+from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.interaction import poisson_overlap
 from roughmdr.numerics.arguments import Floats
@@ -31,9 +35,15 @@ _HEAVY_TAIL = 0.05  # tail index below which the heights left out bear a negligi
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused at the end
 def compute(
-    source: Source, path: LoadingPath, *, effective_modulus: float, adhesion: Adhesion, variables: Iterable[str]
+    source: Source,
+    path: LoadingPath,
+    *,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    variables: Iterable[str],
+    interaction: Interaction | None = None,
 ) -> LoadSeparation:
-    """Return the expected law of the asperities of a source along a path; E* [Pa].
+    """Return the expected law of the asperities of a source along a path; E* [Pa]. An interaction is a mean field.
 
     ``numerical_error`` is the error bound of the force, by what the integrals leave out and by how much it changes with
     the number of nodes. OutOfRange where the contact of an asperity is not representable.
@@ -44,9 +54,15 @@ def compute(
     coarse = _as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     validity = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
     problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
+    found = _shift(problem, interaction)
+    if found is not None:
+        rows = rows if STIFFNESS in rows else (*rows, STIFFNESS)
+        along = LoadingPath(found.separation, no_memory(found.separation))
+        problem = problem._replace(path=along, rows=rows)
+    separation = problem.path.separation
     split = KinkSplit.of(problem)
     rule, nodes, error, error_of_others = converge(problem, split, dissipating=dissipating)
-    total, products = totals_of(nodes, path.separation, rows, list(range(steps)))
+    total, products = totals_of(nodes, separation, rows, list(range(steps)))
     if dissipating:
         total[DISSIPATED] = dissipated_of(nodes, steps)
     if split is not None:
@@ -56,8 +72,10 @@ def compute(
         error_of_others = max(error_of_others, float(undecided_of(nodes, steps).max() / most))
     count = source.expected_count
     total *= count
+    if found is not None:
+        couple(total, found)
     largest = float(np.abs(total[FORCE]).max())
-    closest = float(path.separation.min())
+    closest = float(separation.min())
     total[ERROR] += (error + _KERNEL_ERROR) * largest + count * _tail_force(nodes, closest)
     if total[ERROR].max() == math.inf:
         raise OutOfRange(
@@ -82,6 +100,29 @@ def compute(
     warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, nodes, total[FORCE]))
+
+
+def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
+    """Return where the asperities have the force that they have under their mean field; None where there is none.
+
+    The rule over the shape parameters is that of independent asperities on the same path.
+    """
+    source, modulus = problem.source, problem.effective_modulus
+    if interaction is None or source.nominal_area is None:
+        return None
+    sides = math.sqrt(source.nominal_area), math.sqrt(source.nominal_area)
+    coupling = coupling_of(interaction, modulus, sides, source.exclusion_distance)
+    if coupling == 0.0:
+        return None
+    problem = problem._replace(rows=(FORCE, STIFFNESS), unjudged=())
+    rule, count = converge(problem, None, dissipating=False).rule, source.expected_count
+
+    def independent(separation: Floats) -> tuple[Floats, Floats]:
+        along = problem._replace(path=LoadingPath(separation, no_memory(separation)))
+        total, _ = totals_of(set_up(along, rule), separation, problem.rows, list(range(separation.size)))
+        return count * total[FORCE], count * total[STIFFNESS]
+
+    return shift(independent, problem.path.separation, coupling)
 
 
 @np.errstate(all="ignore")  # its numbers are not used

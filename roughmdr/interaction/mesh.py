@@ -31,6 +31,7 @@ _MESH_PER_SPACING = 5.0  # mesh points for each mean spacing of the contacts
 _FREE = 2.5  # side of the patch in which a free one lies
 _STEEPNESS = 10.0  # of the cut: erfc(5) is 2e-12
 _LEAST_MESH = 24
+_LARGE_MESH = 2**18  # points from which on a transform is worth several cores
 _MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 _NODES, _WEIGHTS = unit_gauss(60)
 
@@ -146,6 +147,7 @@ class Mesh:
         sides = around, around * patch.side_y
         per_side = max(_MESH_PER_SPACING * math.sqrt(x.size / patch.side_y), _LEAST_MESH / min(1.0, patch.side_y))
         self._shape = tuple(scipy.fft.next_fast_len(math.ceil(per_side * side), real=True) for side in sides)
+        self._workers = -1 if self._shape[0] * self._shape[1] >= _LARGE_MESH else 1
         finest = min(points / side for points, side in zip(self._shape, sides, strict=True))
         split = math.pi * finest / (2.0 * reach * _OVERSAMPLING)
         cutoff = reach / split
@@ -206,11 +208,11 @@ class Mesh:
     def _waves_of(self, load: Floats) -> Complex:
         mesh = np.zeros(self._shape)
         _scatter(load, self._spread, mesh)
-        return np.asarray(scipy.fft.rfft2(mesh, overwrite_x=True))
+        return np.asarray(scipy.fft.rfft2(mesh, overwrite_x=True, workers=self._workers))
 
     def _at_points(self, waves: Complex) -> Floats:
         values = np.zeros(self._count)
-        _gather(scipy.fft.irfft2(waves, s=self._shape, overwrite_x=True), self._spread, values)
+        _gather(scipy.fft.irfft2(waves, s=self._shape, overwrite_x=True, workers=self._workers), self._spread, values)
         return values
 
     def potential(self, load: Floats) -> Floats:

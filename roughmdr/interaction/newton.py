@@ -128,6 +128,7 @@ def _tangent(state: State) -> Floats:
     return values
 
 
+@np.errstate(all="ignore")  # a guess that no float holds is no equilibrium
 def solve(system: System, x: Floats, separation: float, error: float) -> Equilibrium:
     """Return the equilibrium at a separation, from a guess of x; ``error`` is that asked for of the total load."""
     state = evaluate(system, x, separation, None)

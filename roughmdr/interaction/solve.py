@@ -19,16 +19,18 @@ from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
 from roughmdr.interaction.placed import sides_of
-from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.settings import DEFAULT_ERROR, Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import SHAPES, SharedProfile
 
 DENSE_UP_TO = 300
 """Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
 _MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
+_ROUGH_ERROR = 1e-2  # of the force, until all asperities that can touch are taken
 _SMALLEST = np.finfo(np.float64).tiny
 
 
@@ -183,8 +185,9 @@ def solve_path(
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:
     """Return the equilibrium at a separation, with all asperities that can touch."""
-    error = _SOLVER_ERROR * candidates.interaction.error
+    asked = _SOLVER_ERROR * candidates.interaction.error
     candidates.extend(h)
+    complete = candidates.count == candidates.height.size
     while True:
         guess = candidates.system.asperities.height - h
         if x.size:
@@ -193,15 +196,17 @@ def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Flo
             advanced = x + rate * (last - h) if math.isfinite(last) else x
             lag = float(np.mean(advanced - guess[: x.size]))
             guess = np.concatenate([advanced, guess[x.size :] + min(lag, 0.0)])
-        found = solve(candidates.system, guess, h, error)
-        if candidates.count == candidates.height.size:
+        found = solve(candidates.system, guess, h, asked if complete else max(asked, _ROUGH_ERROR))
+        if candidates.count == candidates.height.size and complete:
             return found
         load, lift = found.state.contacts.load, found.state.contacts.lift
         least = candidates.system.coupling.least_displacement(load) if load.any() else 0.0
         apart = load == 0.0
         highest_lift = -float(lift[apart].min(initial=0.0))
-        if not candidates.extend(h + min(least, 0.0) - highest_lift):
+        extended = candidates.extend(h + min(least, 0.0) - highest_lift)
+        if complete and not extended:
             return found
+        complete = not extended
         x, moved, last = found.state.x, np.empty(0), math.inf
 
 
@@ -230,3 +235,17 @@ def _totals(
         overlap,
         found.state.lost,
     )
+
+
+def prepare(shape: str) -> None:
+    """Compile all that the asperities of a shape need, before several threads or a clock need it."""
+    kind = SHAPES[shape]
+    example = kind(**kind.example())
+    shared = example if isinstance(example, SharedProfile) else None
+    parameters = {} if shared else {name: np.full(3, float(value)) for name, value in example.parameters.items()}
+    height, place = np.array([2e-3, 1e-3, 0.0]), np.array([0.0, 1.0, 3.0])
+    ensemble = Ensemble(shape, height, parameters, None, {"x": place, "y": place}, {"patch": 10.0}, shared)
+    solve_path(ensemble, np.zeros(1), 1.0, Interaction(), stiffness=True)
+    mesh = Mesh(place / 10.0, place / 10.0, Periodic.of(1.0), True, DEFAULT_ERROR)
+    mesh.field(height)
+    mesh.of_moments(height, height, height)

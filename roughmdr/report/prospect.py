@@ -39,7 +39,10 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
     names = cells[0].law.model_error.named
     numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
-    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells])
+    coupled = not any(math.isnan(cell.law.overlap_count) for cell in cells)
+    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], coupled=coupled)
+    if not coupled and prospect.coupled_seconds < math.inf:
+        yield "", f"at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
 
 
 def _pressure_at_closest(cell: "Foreseen") -> float:

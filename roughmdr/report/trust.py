@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.model_error.coupling import coupling_error
 from roughmdr.model_error.interaction import ASPERITIES, MOST_TENSION, SUMMITS, TENSION, Coefficients, interaction_error
-from roughmdr.model_error.parts import PARTS, TRUSTED_FRACTION
+from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
@@ -18,17 +19,18 @@ _TINY = 1e-6
 _MORE = 1.0 + 1e-9
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
-_NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation"}
+_NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
 Numbers = Mapping[str, Any]
 """``ModelError.named``, numbers or arrays over the runs."""
 
 
-def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = ()) -> Iterator[tuple[str, str]]:
+def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = (), *, coupled: bool = False) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several.
 
-    ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none.
+    ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``coupled`` says
+    whether asperities feel each other in pairs.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -52,6 +54,11 @@ def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = ()) -> Iterator[tuple
     if not (known["model_error"] > 0.0).any():
         yield "trust", "no contact along the whole path"
         return
+    if coupled:
+        yield "model error", _coupling(known)
+        yield from _several("", others)
+        yield "trust", _trust_coupled(known)
+        return
     errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
     yield "model error", f"asperities are independent: force at given separation off by {errors[0]}"
     yield from (("", f"and by {error}") for error in errors[1:])
@@ -63,6 +70,8 @@ def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = ()) -> Iterator[tuple
         )
     yield from _several("", others)
     yield "trust", _trust(known, coefficients)
+    if not tension.size:
+        yield "", _advice(known, coefficients)
 
 
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
@@ -74,7 +83,8 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
             if name in result.variables
         ]
         numbers = {name: result.variables[name].values for name in _NAMES}
-        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]))
+        coupled = "overlap_count" in result.variables
+        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]), coupled=coupled)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 
@@ -85,13 +95,44 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients) -> str:
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
         whole = _percent(min(sum(parts.values()), 1.0))
-        rest = f"; below it asperities interact, which is not in the model: within {whole} at closest approach"
+        rest = f"; below it asperities interact, which this scene leaves out: within {whole} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients))
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
     error = sum(parts.values())
     if error < 1.0:
         return f"force within about {_percent(error)} {place}{rest}"
     return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
+
+
+def _coupling(known: dict[str, Floats]) -> str:
+    """Return the error of coupled asperities, and that of independent ones in their place."""
+    error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
+    independent = _interaction(float(known["largest_contact_fraction"].max()), ASPERITIES)
+    carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 else ""
+    return (
+        f"asperities are coupled in pairs: force at closest approach within {_percent(error)}{carried}; independent "
+        f"it would be off by {independent}"
+    )
+
+
+def _trust_coupled(known: dict[str, Floats]) -> str:
+    """Return within which error the force of coupled asperities holds, and up to where."""
+    parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
+    whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
+    if beyond.size:
+        lowest = format_quantity(float(beyond.max()), "m")
+        rest = f"; by the coupling within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
+    if whole >= 1.0:
+        return "none: the force may be off by all of it"
+    return f"force within about {_percent(whole)} along the whole path{rest}"
+
+
+def _advice(known: dict[str, Floats], coefficients: Coefficients) -> str:
+    """Return by how much [interaction] would better the error, if contacts overlap as often as those of this scene."""
+    fraction, overlap = (known[name].max(initial=0.0) for name in ("largest_contact_fraction", "overlap_fraction"))
+    share = np.array([overlap])
+    better = coupling_error(np.array([fraction]), share, share, of_surface=coefficients is SUMMITS)
+    return f'with [interaction] model = "pairwise" by the interaction within about {_percent(float(better[0]))}'
 
 
 def _coefficients(known: dict[str, Floats]) -> Coefficients:

@@ -13,6 +13,7 @@ from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.model_error import fraction_warnings
+from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.pull_off import pull_off_numbers
 from roughmdr.scene.sections import Accuracy
@@ -134,9 +135,12 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     jkr = diagnostics["adhesion_law"] == ADHESION_CODES.index("jkr")
     tabor = float(np.fmin.reduce(diagnostics["tabor_number"][jkr], initial=math.inf))
     slope, extent = (float(diagnostics[name].max()) for name in ("edge_slope", "profile_extent"))
-    independent = np.isnan(diagnostics["overlap_count"])  # coupled asperities have remarks of their own
-    largest_fraction = float(np.fmax.reduce(diagnostics["largest_contact_fraction"][independent], initial=0.0))
-    return [*warnings, *ValidityLimits(slope, extent, tabor).warnings, *fraction_warnings(largest_fraction)]
+    fraction = diagnostics["largest_contact_fraction"]
+    coupled = np.isfinite(diagnostics["overlap_count"])
+    warnings += ValidityLimits(slope, extent, tabor).warnings
+    warnings += fraction_warnings(float(np.fmax.reduce(fraction[~coupled], initial=0.0)))
+    numbers = (fraction, diagnostics["overlap_fraction"], diagnostics["marked_steps"])
+    return warnings + coupling_warnings(*(float(np.fmax.reduce(each[coupled], initial=0.0)) for each in numbers))
 
 
 def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str:

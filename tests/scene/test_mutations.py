@@ -34,6 +34,16 @@ BASES: dict[str, dict[str, Any]] = {
         "output": {"variables": ["force", "energy"], "keep": "statistics"},
         "sweep": {"mode": "zip", "adhesion.work": ["1 mJ/m^2", "2 mJ/m^2"]},
     },
+    "pairs": {
+        **{key: value for key, value in SCENE.items() if key != "adhesion"},
+        "interaction": {
+            "model": "pairwise",
+            "boundary": "periodic",
+            "order": 1,
+            "error": 1e-5,
+            "beyond": "boundary_elements",
+        },
+    },
     "cones": {
         **SCENE,
         "material": {"effective_modulus": "4 MPa"},

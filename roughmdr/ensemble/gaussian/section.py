@@ -22,7 +22,7 @@ _WAVES = ("hurst", "long_wave", "short_wave")
 _AMPLITUDES = ("rms_height", "rms_slope")
 _EITHER = "takes m0, m2 and m4, or hurst, long_wave, short_wave and one of rms_height and rms_slope"
 _RADII, _MAX_SCORE = 33, 9.0  # radii between their tails, and the score up to which ``product_of_score`` is right
-_SUMMIT_DISTANCE = 0.5
+SUMMIT_DISTANCE = 0.5
 """Least distance of two summits over their mean spacing, 1/sqrt(density), unless min_distance is given.
 
 Points that are placed at random at least so far apart have about the mean distance to the nearest neighbour that the
@@ -41,7 +41,7 @@ class NayakAsperities(PatchSource):
 
     Their number is density times area, rounded; their heights are from the mean plane of the surface. Positions, where
     they are needed, are independent of the heights, which those of a surface are not: its high summits cluster. Unless
-    another placement is given, they are a hard core apart, by default ``_SUMMIT_DISTANCE`` of the mean spacing.
+    another placement is given, they are a hard core apart, by default ``SUMMIT_DISTANCE`` of the mean spacing.
     """
 
     of_surface: ClassVar[bool] = True
@@ -110,7 +110,7 @@ class NayakAsperities(PatchSource):
     def core_distance(self) -> float:
         if self.min_distance is not None or self.placement != "hard_core":
             return self.min_distance or 0.0
-        return _SUMMIT_DISTANCE / math.sqrt(self.summits.density)
+        return SUMMIT_DISTANCE / math.sqrt(self.summits.density)
 
     @property
     def spectrum(self) -> SelfAffine | None:
@@ -170,6 +170,6 @@ class NayakAsperities(PatchSource):
         positions = self.positions(streams, self.count) if with_positions else {}
         attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
         attrs |= {"of_surface": 1, "density": self.summits.density, "alpha": self.summits.moments.alpha}
-        attrs |= self.summits.moments._asdict()
+        attrs |= self.summits.moments._asdict() | self.exclusion_attr
         radii = {"radius": summits.radius}
         return Ensemble(self.shape, summits.height, radii, self.nominal_area, positions, attrs).sorted()

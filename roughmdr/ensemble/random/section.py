@@ -203,7 +203,8 @@ class RandomAsperities(PatchSource):
         else:
             count = poisson(streams, self.expected_count)
         positions = self.positions(streams, count) if with_positions else {}
-        return self._drawn(streams, count, positions, {"patch": self.patch, "seed": seed, "realization": realization})
+        attrs = {"patch": self.patch, "seed": seed, "realization": realization, **self.exclusion_attr}
+        return self._drawn(streams, count, positions, attrs)
 
     def _drawn(self, streams: Streams, count: int, positions: dict[str, Floats], attrs: dict[str, Any]) -> Ensemble:
         height, parameters = self.populations.draw(streams, count)
