@@ -30,7 +30,7 @@ _OVERSAMPLING = 1.6  # mesh points for each half wave that is kept
 _MESH_PER_SPACING = 5.0  # mesh points for each mean spacing of the contacts
 _FREE = 2.5  # side of the patch in which a free one lies
 _STEEPNESS = 10.0  # of the cut: erfc(5) is 2e-12
-_LEAST_MESH = 24
+_LEAST_MESH, _LEAST_FREE_MESH = 24, 120  # mesh points for the shorter side; the cut must be resolved
 _LARGE_MESH = 2**18  # points from which on a transform is worth several cores
 _MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 _NODES, _WEIGHTS = unit_gauss(60)
@@ -145,7 +145,8 @@ class Mesh:
         self._count, reach = x.size, float(erfcinv(error))
         around = 1.0 if periodic else _FREE
         sides = around, around * patch.side_y
-        per_side = max(_MESH_PER_SPACING * math.sqrt(x.size / patch.side_y), _LEAST_MESH / min(1.0, patch.side_y))
+        least = _LEAST_MESH if periodic else _LEAST_FREE_MESH
+        per_side = max(_MESH_PER_SPACING * math.sqrt(x.size / patch.side_y), least / min(1.0, patch.side_y))
         self._shape = tuple(scipy.fft.next_fast_len(math.ceil(per_side * side), real=True) for side in sides)
         self._workers = -1 if self._shape[0] * self._shape[1] >= _LARGE_MESH else 1
         finest = min(points / side for points, side in zip(self._shape, sides, strict=True))

@@ -30,7 +30,7 @@ def within_reach(
     farthest = float(np.hypot(*extent))
     size = np.ceil(np.log2(reach[reaching]))
     for each in np.unique(size):
-        members, far = reaching[size == each], min(2.0**each, farthest)
+        members, far = reaching[size == each], float(min(2.0**each, farthest))
         expected = min(density * math.pi * far * far, at.shape[0]) + 1.0
         parts = np.array_split(members, math.ceil(members.size * expected / _PAIRS_AT_A_TIME))
         for part in parts:
