@@ -16,8 +16,9 @@ from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels
 from roughmdr.numerics.arguments import Floats
 
-_MAX_STEPS = 60
-_RTOL, _MAX_ITERATIONS = 0.03, 200  # of a step
+_MAX_STEPS = 40
+_RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
+_LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
 _STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
 
@@ -136,6 +137,8 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
     for number in range(_MAX_STEPS):
         stiffness = state.contacts.stiffness
         touching = stiffness > 0.0
+        if not np.isfinite(state.residual).all():
+            break
         if not touching.any() and not (state.residual < 0.0).any():
             return Equilibrium(state, 0.0)
         values = _tangent(state)
@@ -155,7 +158,7 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         ratio = size / before if number and before > 0.0 else 1.0
         stated = size * ratio / (1.0 - ratio) if ratio < _SLOW else size
         state, before = new, size
-        if not np.isfinite(size):
+        if number >= _LOST[0] and size > _LOST[1]:
             break
         if stated <= error:
             return Equilibrium(state, stated)

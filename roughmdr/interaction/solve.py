@@ -31,6 +31,7 @@ DENSE_UP_TO = 300
 _MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
 _ROUGH_ERROR = 1e-2  # of the force, until all asperities that can touch are taken
+_FAILURES = 3  # separations without an equilibrium, one after the other, below which none is looked for
 _SMALLEST = np.finfo(np.float64).tiny
 
 
@@ -168,15 +169,20 @@ def solve_path(
     steps, visits, x, moved = list[Step](), 0, np.empty(0), np.empty(0)
     last = math.inf
     state: State | None = None
+    failures = 0
     for h in (-distinct / length).tolist():
+        if failures == _FAILURES:
+            steps.append(Step(error=math.inf))
+            continue
         found = _settle(candidates, h, last, x, moved)
-        state = found.state
         visits += candidates.count
-        before = x
-        x = state.x
-        moved = np.where(np.isfinite(last), (x[: before.size] - before) / (last - h), np.nan) if before.size else before
-        last = h
         steps.append(_totals(candidates, found, h, length, effective_modulus, stiffness))
+        failures += 1
+        if math.isfinite(found.error):
+            state, before, failures = found.state, x, 0
+            x = state.x
+            rate = (x[: before.size] - before) / (last - h) if math.isfinite(last) else np.full(before.size, np.nan)
+            moved, last = rate, h
     radius = np.zeros_like(ensemble.height)
     if state is not None:
         radius[candidates.kept[: state.x.size]] = state.contacts.radius * length
@@ -197,7 +203,7 @@ def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Flo
             lag = float(np.mean(advanced - guess[: x.size]))
             guess = np.concatenate([advanced, guess[x.size :] + min(lag, 0.0)])
         found = solve(candidates.system, guess, h, asked if complete else max(asked, _ROUGH_ERROR))
-        if candidates.count == candidates.height.size and complete:
+        if not math.isfinite(found.error) or (complete and candidates.count == candidates.height.size):
             return found
         load, lift = found.state.contacts.load, found.state.contacts.lift
         least = candidates.system.coupling.least_displacement(load) if load.any() else 0.0
@@ -214,10 +220,12 @@ def _totals(
     candidates: Candidates, found: Equilibrium, h: float, length: float, modulus: float, stiffness: bool
 ) -> Step:
     """Return the totals of an equilibrium in SI."""
+    if not math.isfinite(found.error):
+        return Step(error=math.inf)
     contacts, pairs = found.state.contacts, found.state.pairs
     touching = contacts.load > 0.0
     if not touching.any():
-        return Step(error=0.0 if math.isfinite(found.error) else math.inf)
+        return Step()
     near = np.zeros((2, touching.size), dtype=np.bool_)
     close.mark_overlaps(pairs, contacts.radius, near[0], near[1])
     load = math.fsum(contacts.load.tolist())

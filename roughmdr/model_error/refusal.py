@@ -35,7 +35,7 @@ def check_contact_fraction(fraction: Floats, separation: Floats, givens: Givens)
     """Raise TooMuchContact, with the likely cause, where the contact area is larger than the nominal area."""
     if not (fraction > 1.0).any():
         return
-    step = int(np.argmax(fraction))
+    step = int(np.nanargmax(fraction))
     h = float(separation[step])
     raise TooMuchContact(
         f"the summed contact area is {fraction[step]:.3g} times the nominal area at a separation of "
