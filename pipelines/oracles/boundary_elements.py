@@ -24,7 +24,7 @@ class Pressed(NamedTuple):
     force: float
     """[N]"""
     contact_area: float
-    """[m2], of all grid cells under pressure"""
+    """[m2], of all grid cells under pressure; ``contact_areas`` has better ones"""
 
 
 class HeightMap:
@@ -38,6 +38,11 @@ class HeightMap:
         self.effective_modulus = effective_modulus
         self._half_space = PeriodicFFTElasticHalfSpace(self.height.shape, 1.0, (1.0, 1.0), stiffness_q0=0.0)
         self._forces = np.zeros_like(self.height)  # [E* size m] of the grid cells, at the last separation
+
+    @property
+    def pressure(self) -> Floats:
+        """[Pa], of the grid cells at the last separation."""
+        return np.asarray(self._forces * (self.effective_modulus * self._forces.size / self.size))
 
     def press(self, separation: float) -> Pressed:
         """Return force and contact area at ``separation`` [m] of the datum plane from the deformed mean plane.

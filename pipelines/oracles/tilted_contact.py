@@ -2,7 +2,7 @@
 
 Of all flat punches that carry the displacement, the contact is the one with the largest load (J. R. Barber, J. Appl.
 Mech. 41 (1974) 813). Among discs of radius a and centre (b, 0) the load is ∫ u/√(a² - r²) dA/π. The edge differs
-from a disc in the second order of the tilt, and as the load is stationary, so it is right up to the third order. E* is 1.
+from a disc in the second order of the tilt; as the load is stationary, it is right up to the third order. E* is 1.
 """
 
 import math
@@ -51,7 +51,7 @@ def _disc(radius: float, centre: float) -> _Disc:
 
 
 def press_tilted(indenter: Indenter, tilt: float) -> Tilted:
-    """Return the contact of an indenter at its approach on a surface displaced by ``tilt`` x; OutOfRange if it fails."""
+    """Return the contact of an indenter on a surface displaced by ``tilt`` x; OutOfRange where none is found."""
     n, slope, approach = indenter
     unit = indenter.lone_radius
 

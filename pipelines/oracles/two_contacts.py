@@ -2,7 +2,7 @@
 
 No multipole and no formula of the method of dimensionality reduction is in it. The edge of a contact is an unknown,
 together with its pressure (``mapped_disc``): Newton's method finds both from the displacement in the contact, which is
-approach - f less the displacement from outside. Two contacts are solved in turn until neither changes. All is
+approach - f less the displacement from outside. Unequal contacts are solved in turn until neither changes. All is
 symmetric about the x-axis, on which the indenters stand.
 """
 
@@ -23,6 +23,8 @@ _DIFFERENCE = 1e-5  # of a coefficient of the edge, for a derivative
 _RTOL_STEP, _RTOL_FORCE = 1e-11, 1e-14
 
 Displacement = Callable[[Complexes], Floats]
+Influence = Callable[[Complexes, Complexes], Floats]
+"""(points, sources) -> displacement at each point by a unit force at each source."""
 disc_of = lru_cache(maxsize=4)(MappedDisc)
 
 
@@ -73,9 +75,10 @@ class Contact(NamedTuple):
         """Area inside the edge."""
         return math.pi * float(np.arange(self.edge.size) @ self.edge**2)
 
-    def displacement(self, z: Complexes) -> Floats:
-        """Return the displacement of the surface at points ``z`` outside the contact."""
-        return np.asarray(np.sum(self.load / np.abs(z[:, None] - self.position), axis=1) / math.pi)
+
+def direct(z: Complexes, source: Complexes) -> Floats:
+    """Return the influence of forces on a free half-space."""
+    return np.asarray(1.0 / (math.pi * np.abs(z[:, None] - source)))
 
 
 def undisturbed(z: Complexes) -> Floats:
@@ -84,47 +87,65 @@ def undisturbed(z: Complexes) -> Floats:
 
 
 def press(
-    indenter: Indenter, outside: Displacement = undisturbed, degree: int = DEGREE, start: Contact | None = None
+    indenter: Indenter,
+    outside: Displacement = undisturbed,
+    images: Influence | None = None,
+    degree: int = DEGREE,
+    start: Contact | None = None,
 ) -> Contact:
     """Return the contact of an indenter on a surface that is displaced by ``outside`` already.
 
-    ``degree`` of the polynomials says how fine it is. With an odd exponent the tip is not smooth, and the error falls
-    slowly. OutOfRange where Newton's method does not converge.
+    ``images`` of the contact load the surface as the contact itself does. ``degree`` of the polynomials says how fine
+    it is. With an odd exponent the tip is not smooth, and the error falls slowly. OutOfRange where Newton's method does
+    not converge.
     """
     disc = disc_of(degree)
+    whole = disc.whole
 
     def wanted(edge: Floats) -> Floats:
         z, _ = evaluate(edge, disc.points)
         return np.asarray(indenter.approach - indenter.slope * np.abs(z) ** indenter.exponent - outside(z))
 
+    def imaged(edge: Floats, modes: Floats) -> Floats | float:
+        if images is None:
+            return 0.0
+        position, area = evaluate(edge, whole.zeta)
+        influence = images(evaluate(edge, disc.points)[0], position) * (whole.weight * area)
+        return np.asarray(influence @ modes)
+
     def mismatch(edge: Floats, amplitudes: Floats) -> Floats:
-        return disc.root_weight * (disc.own_displacement(edge, amplitudes) - wanted(edge))
+        return np.asarray(
+            disc.own_displacement(edge, amplitudes) + imaged(edge, whole.modes @ amplitudes) - wanted(edge)
+        )
 
     if start is None:
         edge = np.zeros(degree + 4)
         edge[1] = indenter.lone_radius
-        amplitudes = np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0]
+        amplitudes = np.asarray(np.linalg.lstsq(disc.own_displacement(edge), wanted(edge), rcond=None)[0], dtype=float)
     else:
-        edge, amplitudes = start.edge.copy(), start.amplitudes
+        edge, amplitudes = start.edge.copy(), np.asarray(start.amplitudes, dtype=float)
     free = np.array([0, 1, *range(3, edge.size)])
     for _ in range(_MAX_ITERATIONS):
+        left = mismatch(edge, amplitudes)
         step = _DIFFERENCE * edge[1]
-        by_edge = [
-            (mismatch(edge + shift, amplitudes) - mismatch(edge - shift, amplitudes)) / (2.0 * step)
-            for shift in step * np.eye(edge.size)[free]
-        ]
-        jacobian = np.column_stack((disc.root_weight[:, None] * disc.own_displacement(edge), *by_edge))
-        change = np.linalg.lstsq(jacobian, -mismatch(edge, amplitudes), rcond=None)[0]
+        by_edge = [(mismatch(edge + step * unit, amplitudes) - left) / step for unit in np.eye(edge.size)[free]]
+        by_pressure = disc.own_displacement(edge) + imaged(edge, whole.modes)
+        jacobian = disc.root_weight[:, None] * np.column_stack((by_pressure, *by_edge))
+        change = np.linalg.lstsq(jacobian, -disc.root_weight * left, rcond=None)[0]
         amplitudes = amplitudes + change[: amplitudes.size]
         edge[free] += change[amplitudes.size :]
         if np.abs(change[amplitudes.size :]).max() <= _RTOL_STEP * edge[1]:
             break
     else:
         raise OutOfRange(f"degree is {degree}: the edge of the contact is not found")
-    position, area = evaluate(edge, disc.whole.zeta)
-    load = disc.whole.weight * area * (disc.whole.modes @ amplitudes)
-    residual = float(np.abs(mismatch(edge, amplitudes) / disc.root_weight).max()) / indenter.approach
-    return Contact(edge, amplitudes, position, load, residual)
+    position, area = evaluate(edge, whole.zeta)
+    load = whole.weight * area * (whole.modes @ amplitudes)
+    return Contact(edge, amplitudes, position, load, float(np.abs(left).max()) / indenter.approach)
+
+
+def equal_pair(indenter: Indenter, distance: float, degree: int = DEGREE) -> Contact:
+    """Return the contact of either of two equal indenters, in coordinates whose x points to the other."""
+    return press(indenter, images=lambda z, source: direct(z, distance - source.conj()), degree=degree)
 
 
 def pair(first: Indenter, second: Indenter, distance: float, degree: int = DEGREE) -> tuple[Contact, Contact]:
@@ -134,13 +155,15 @@ def pair(first: Indenter, second: Indenter, distance: float, degree: int = DEGRE
     """
 
     def pressed(indenter: Indenter, other: Contact, start: Contact) -> Contact:
-        return press(indenter, lambda z: other.displacement(distance - z.conj()), degree, start)
+        return press(
+            indenter, lambda z: direct(z, distance - other.position.conj()) @ other.load, degree=degree, start=start
+        )
 
     one, two = press(first, degree=degree), press(second, degree=degree)
     for _ in range(_MAX_SWEEPS):
         before = one.force
         one = pressed(first, two, one)
-        two = one if first == second else pressed(second, one, two)
+        two = pressed(second, one, two)
         if abs(one.force - before) <= _RTOL_FORCE * before:
             return one, two
     raise OutOfRange(f"distance is {distance:g}: the two contacts do not come to rest")

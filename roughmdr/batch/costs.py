@@ -4,6 +4,8 @@ Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipeli
 about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
+import numpy as np
+
 from roughmdr.batch.plan import Cell, Plan
 
 START_UP = 1.2
@@ -15,8 +17,10 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
-_MEAN_FIELD_PASSES = 7  # Newton's method with all steps at once: 5 to 9
-_PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-3, 4e-5  # a step of asperities that feel each other in pairs; each of them
+_MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
+# Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
+# of the asperities there (``pipelines/coupling.py``).
+_PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 2e-5
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
@@ -43,7 +47,8 @@ def seconds(cell: Cell, estimator: str) -> float:
 
 def paired_seconds(cell: Cell) -> float:
     """Return about how long one realisation takes [s] whose asperities feel each other in pairs."""
-    return cell.steps * (_PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT)
+    each = _PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT
+    return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

@@ -18,7 +18,7 @@ from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of, undecided_of
+from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, moved, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.interaction.mean_field import Shift, coupling_of, shift
 from roughmdr.interaction.settings import Interaction
@@ -115,11 +115,13 @@ def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
     if coupling == 0.0:
         return None
     problem = problem._replace(rows=(FORCE, STIFFNESS), unjudged=())
-    rule, count = converge(problem, None, dissipating=False).rule, source.expected_count
+    chosen, count = converge(problem, None, dissipating=False), source.expected_count
 
     def independent(separation: Floats) -> tuple[Floats, Floats]:
-        along = problem._replace(path=LoadingPath(separation, no_memory(separation)))
-        total, _ = totals_of(set_up(along, rule), separation, problem.rows, list(range(separation.size)))
+        along = LoadingPath(separation, no_memory(separation))
+        deeper = separation.min() < problem.path.separation.min()
+        nodes = set_up(problem._replace(path=along), chosen.rule) if deeper else moved(chosen.nodes, along)
+        total, _ = totals_of(nodes, separation, problem.rows, list(range(separation.size)))
         return count * total[FORCE], count * total[STIFFNESS]
 
     return shift(independent, problem.path.separation, coupling)

@@ -81,6 +81,13 @@ def set_up(problem: Problem, rule: Rule) -> list[QuadratureNode]:
     ]
 
 
+def moved(nodes: list[QuadratureNode], path: LoadingPath) -> list[QuadratureNode]:
+    """Return the nodes along another path, which comes no closer than that of their tables."""
+    parts = [contact_intervals(node.contact, path.relative_to(node.heights.origin)) for node in nodes]
+    pairs = zip(nodes, parts, strict=True)
+    return [node._replace(in_contact=in_contact, jumped=jumped) for node, (in_contact, jumped) in pairs]
+
+
 def totals_of(
     nodes: list[QuadratureNode], separation: Floats, rows: tuple[int, ...], steps: list[int]
 ) -> tuple[Floats, int]:

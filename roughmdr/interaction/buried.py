@@ -39,6 +39,8 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.b
     hidden = np.zeros(height.size, dtype=np.bool_)
     for i, j, away in within_reach(at, _reach(ensemble), sides):
         lower = np.flatnonzero(height[j] < height[i])
+        if not lower.size:
+            continue
         flank = height[i[lower]] - drop(ensemble, i[lower], away[lower])
         hidden[j[lower][flank > height[j[lower]]]] = True
     return hidden

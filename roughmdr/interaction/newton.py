@@ -3,7 +3,8 @@
 For each asperity x + lift + U = z - h, where x > 0 carries a load P(x) (``contacts.py``), U is the displacement by all
 loads and moments, and lift depends on the slopes and the curvature of U. Each step solves (1/k + G) dP = -residual
 for the contacts, with the coupling of first order, that of close pairs in full: what the second order adds to it is a
-few per cent, and so each step leaves a few per cent of the error.
+few per cent, and so each step leaves a few per cent of the error. A contact that moves back and forth, as one that
+opens and closes, goes to where its last two steps cross 0.
 """
 
 from typing import NamedTuple, Protocol
@@ -18,7 +19,6 @@ from roughmdr.numerics.arguments import Floats
 _MAX_STEPS = 60
 _RTOL, _MAX_ITERATIONS = 0.03, 200  # of a step
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
-_DAMPED = 20, 0.5  # from this step on so much of a step is taken
 _STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
 
 
@@ -132,7 +132,7 @@ def _tangent(state: State) -> Floats:
 def solve(system: System, x: Floats, separation: float, error: float) -> Equilibrium:
     """Return the equilibrium at a separation, from a guess of x; ``error`` is that asked for of the total load."""
     state = evaluate(system, x, separation, None)
-    before, stated = np.inf, np.inf
+    before, taken, last = np.inf, np.ones_like(x), np.zeros_like(x)
     for number in range(_MAX_STEPS):
         stiffness = state.contacts.stiffness
         touching = stiffness > 0.0
@@ -145,13 +145,15 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
             potential = system.coupling.potential(change)
             close.add_tangent(state.pairs, values, change, potential)
             moved = np.where(touching, change / np.where(touching, stiffness, 1.0), -state.residual - potential)
-        part = 1.0 if number < _DAMPED[0] else _DAMPED[1]
+        back = moved * last < 0.0
+        taken = np.where(back, taken * np.abs(last) / (np.abs(last) + np.abs(moved)), np.minimum(2.0 * taken, 1.0))
+        last = moved
         total = state.contacts.load.sum()
-        new = evaluate(system, state.x + part * moved, separation, state.pairs)
-        made = new.contacts.load - state.contacts.load
-        size = float(np.abs(made).sum() / max(total, new.contacts.load.sum()))
+        new = evaluate(system, state.x + taken * moved, separation, state.pairs)
+        made = np.maximum(np.abs(new.contacts.load - state.contacts.load), np.abs(change))
+        size = float(made.sum() / max(total, new.contacts.load.sum()))
         ratio = size / before if number and before > 0.0 else 1.0
-        stated = size * ratio / (1.0 - ratio) if ratio < _SLOW and part == 1.0 else size
+        stated = size * ratio / (1.0 - ratio) if ratio < _SLOW else size
         state, before = new, size
         if not np.isfinite(size):
             break

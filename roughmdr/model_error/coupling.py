@@ -40,7 +40,7 @@ def coupling_warnings(contact_fraction: float, overlap: float, marked: float) ->
     if marked > 0:
         lines.append(
             f"up to {marked:.0f} steps of a realisation are marked: without an equilibrium, so that they have no "
-            f"value, or with more than {MARKED_SHARE:g} of the force in overlapping contacts or {MARKED_FRACTION:g} of the area "
-            "in contact"
+            f"value, or with more than {MARKED_SHARE:g} of the force in overlapping contacts or {MARKED_FRACTION:g} "
+            "of the area in contact"
         )
     return lines

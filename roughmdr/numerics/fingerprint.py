@@ -5,9 +5,19 @@ from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent.parent
-COMPILED = ("aggregate", "ensemble/placement.py", "expected", "fields", "kernels", "loading", "numerics", "shapes")
+COMPILED = (
+    "aggregate",
+    "ensemble/placement.py",
+    "expected",
+    "fields",
+    "interaction",
+    "kernels",
+    "loading",
+    "numerics",
+    "shapes",
+)
 """All that jitted functions are made of."""
-NUMBERS = (*COMPILED, "asperity", "batch", "ensemble", "interaction", "scene", "schema", "spectrum.py")
+NUMBERS = (*COMPILED, "asperity", "batch", "ensemble", "scene", "schema", "spectrum.py")
 """All that decides the numbers of a realisation, given its scene."""
 
 
