@@ -51,6 +51,7 @@ class Contacts(NamedTuple):
     stiffness: Floats
     """Slope of the load over x."""
     radius: Floats
+    """Of the contact; that of a flat punch, which is its own, also out of contact."""
     lift: Floats
     """By how much its indentation exceeds x."""
     second_moment: Floats
@@ -171,7 +172,8 @@ def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
     """Fill state, load, stiffness and radius of contacts that carry their load alone."""
     depth, size, params = asperities.depth, asperities.size, asperities.params
     for i in range(x.size):
-        contacts.state[i] = contacts.load[i] = contacts.stiffness[i] = contacts.radius[i] = 0.0
+        contacts.state[i] = contacts.load[i] = contacts.stiffness[i] = 0.0
+        contacts.radius[i] = size[i] if law.pinned else 0.0
         if x[i] > 0.0:
             own = law.params_of(params, i)
             t = law.state(x[i] / depth[i], own)

@@ -185,7 +185,8 @@ def solve_path(
             moved, last = rate, h
     radius = np.zeros_like(ensemble.height)
     if state is not None:
-        radius[candidates.kept[: state.x.size]] = state.contacts.radius * length
+        touching = state.contacts.load > 0.0
+        radius[candidates.kept[: state.x.size]] = np.where(touching, state.contacts.radius, 0.0) * length
     return Coupled([steps[i] for i in index.ravel()], radius, visits, ensemble.height.size - candidates.kept.size)
 
 
@@ -227,7 +228,7 @@ def _totals(
     if not touching.any():
         return Step()
     near = np.zeros((2, touching.size), dtype=np.bool_)
-    close.mark_overlaps(pairs, contacts.radius, near[0], near[1])
+    close.mark_overlaps(pairs, np.where(touching, contacts.radius, 0.0), near[0], near[1])
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
     shares = [float(contacts.load[own].sum()) / load for own in near]
