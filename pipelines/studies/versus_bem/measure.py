@@ -1,6 +1,10 @@
-"""Independent asperities against boundary elements at the same separations: forces, and contacts that overlap."""
+"""Asperities against boundary elements at the same separations: forces, areas, numbers of contacts, and run times.
+
+Asperities are independent, displaced by the mean pressure, or coupled in pairs to first and second order.
+"""
 
 import math
+import time
 import warnings
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -11,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
+from oracles.contact_spots import spots
 from studies.study import named
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
 from studies.versus_bem.maps import MapCase
@@ -19,8 +24,17 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 
 MODULUS = 1e9  # [Pa], E*
-FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.3])
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])
 PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
+FINE, _FINE_FRACTION = 1024, 0.1
+"""Grid of the cases that are to show more digits than the others, and their largest contact fraction."""
+MODELS: dict[str, object] = {
+    "force": None,
+    "force_mean": "mean_field",
+    "force_first": {"model": "pairwise", "order": 1},
+    "force_second": {"model": "pairwise", "order": 2},
+}
+"""Interactions, by the names of their forces."""
 CASES: list[Case | MapCase] = [
     *(Case(where, "paraboloid", 64, rough, 256, seed)
       for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),
@@ -29,6 +43,8 @@ CASES: list[Case | MapCase] = [
     *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
     *(Case(where, "paraboloid", count, 0.1, points, 5)
       for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),
+    *(Case("hard_core 0.7", "lognormal", count, 0.2, FINE, seed)
+      for seed, count in enumerate((40, 52, 64, 80, 100), start=11)),
 ]  # fmt: skip
 QUICK: list[Case | MapCase] = [
     Case("random", "paraboloid", 25, 0.2, 96, 1),
@@ -43,10 +59,21 @@ _NAMES = {
     "force_bem": ("force of boundary elements, infinite in full contact", "N"),
     "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
     "force_coarse": ("force of boundary elements with half as many points a side", "N"),
+    "force_mean": ("force of asperities displaced by the mean pressure", "N"),
+    "force_first": ("force of coupled asperities, to first order", "N"),
+    "force_second": ("force of coupled asperities, to second order", "N"),
+    "contact_fraction_second": ("contact fraction to second order", "1"),
+    "contact_count_second": ("contacts to second order", "1"),
+    "contact_count_bem": ("contacts of boundary elements", "1"),
+    "stated": ("stated model error to second order", "1"),
+    "seconds_second": ("run time of a load to second order", "s"),
+    "seconds_bem": ("run time of a load by boundary elements", "s"),
+    "seconds_coarse": ("run time of a load with half as many points a side", "s"),
     "overlap": ("share of contacts whose circle meets another", "1"),
     "overlap_poisson": ("the share for these radii at random places", "1"),
     "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
 }
+_VARIABLES = ("force", "contact_fraction", "contact_count", "model_error_curve")
 _SEARCHED = 2000  # separations in which those of given contact fractions are found
 
 
@@ -59,6 +86,16 @@ class Step(NamedTuple):
     force_bem: float
     contact_fraction_bem: float
     force_coarse: float
+    force_mean: float
+    force_first: float
+    force_second: float
+    contact_fraction_second: float
+    contact_count_second: float
+    contact_count_bem: float
+    stated: float
+    seconds_second: float
+    seconds_bem: float
+    seconds_coarse: float
     overlap: float
     overlap_poisson: float
     radius_points: float
@@ -85,13 +122,51 @@ def overlaps(radius: Floats, distance: Floats) -> tuple[float, float]:
     return float(share), float(np.mean(-np.expm1(-math.pi * reach.sum(axis=1) / SIZE**2)))
 
 
-def force_on(surface: HeightMap, separation: float) -> tuple[float, float]:
-    """Return force [N] and contact fraction; NaN where boundary elements do not converge, as next to full contact."""
+class Pressed(NamedTuple):
+    """Boundary elements at one separation; NaN where they do not converge, as next to full contact."""
+
+    force: float
+    contact_fraction: float
+    contact_count: float
+    seconds: float
+
+
+def press(surface: HeightMap, separation: float) -> Pressed:
+    """Return what boundary elements find at a separation [m]."""
+    started = time.perf_counter()
     try:
-        force, area = surface.press(separation)
+        force = surface.press(separation).force
     except rm.OutOfRange:
-        return math.nan, math.nan
-    return force, area / SIZE**2
+        return Pressed(math.nan, math.nan, math.nan, math.nan)
+    seconds = time.perf_counter() - started
+    found = spots(surface.pressure)
+    return Pressed(force, found.area, found.count, seconds) if math.isfinite(force) else Pressed(force, 1.0, 1, seconds)
+
+
+def law_by(ensemble: xr.Dataset, separation: Floats, interaction: object) -> dict[str, Floats]:
+    """Return the law at separations [m], in falling order; NaN from where it has more contact than the patch."""
+    for steps in range(separation.size, 0, -1):
+        try:
+            law = rm.load_separation(
+                ensemble,
+                separation=separation[:steps],
+                effective_modulus=MODULUS,
+                variables=_VARIABLES,
+                interaction=interaction,
+            )
+        except rm.RoughmdrError:
+            continue
+        beyond = np.full(separation.size - steps, np.nan)
+        return {name: np.concatenate([law[name].to_numpy(), beyond]) for name in _VARIABLES}
+    return {name: np.full(separation.size, np.nan) for name in _VARIABLES}
+
+
+def by_models(ensemble: xr.Dataset, separation: Floats) -> tuple[dict[str, dict[str, Floats]], float]:
+    """Return the law by each of ``MODELS``, and the run time [s] of a load to second order."""
+    laws = {name: law_by(ensemble, separation, interaction) for name, interaction in MODELS.items()}
+    started = time.perf_counter()  # all is compiled by now
+    law_by(ensemble, separation, MODELS["force_second"])
+    return laws, (time.perf_counter() - started) / separation.size
 
 
 def compare(case: Case | MapCase) -> list[Step]:
@@ -99,24 +174,32 @@ def compare(case: Case | MapCase) -> list[Step]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
         ensemble, *maps = case.build()
-        along = separations(ensemble, FRACTIONS)
+        along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
         along = along[np.isfinite(along)]
-        names = ["force", "contact_fraction", "contact_count"]
-        law = rm.load_separation(ensemble, separation=along, effective_modulus=MODULUS, variables=names)
+        laws, seconds = by_models(ensemble, along)
     fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
     distance = distances(ensemble)
     steps = []
     for i, h in enumerate(along.tolist()):
         radius = contact_radii(ensemble, h)
-        force, fraction = force_on(fine, h)
+        found, rough = press(fine, h), press(coarse, h)
         share, expected_share = overlaps(radius, distance)
+        alone, second = ({key: float(values[i]) for key, values in laws[name].items()}
+                         for name in ("force", "force_second"))  # fmt: skip
         step = Step(
-            contact_fraction=float(law["contact_fraction"][i]),
-            contact_count=float(law["contact_count"][i]),
-            force=float(law["force"][i]),
-            force_bem=force,
-            contact_fraction_bem=fraction,
-            force_coarse=force_on(coarse, h)[0],
+            contact_fraction=alone["contact_fraction"],
+            contact_count=alone["contact_count"],
+            **{name: float(law["force"][i]) for name, law in laws.items()},
+            force_bem=found.force,
+            contact_fraction_bem=found.contact_fraction,
+            force_coarse=rough.force,
+            contact_fraction_second=second["contact_fraction"],
+            contact_count_second=second["contact_count"],
+            contact_count_bem=found.contact_count,
+            stated=second["model_error_curve"],
+            seconds_second=seconds,
+            seconds_bem=found.seconds,
+            seconds_coarse=rough.seconds,
             overlap=share,
             overlap_poisson=expected_share,
             radius_points=float(np.sqrt(np.mean(radius[radius > 0.0] ** 2))) * case.points / SIZE,
