@@ -20,6 +20,7 @@ _MAX_STEPS = 40
 _RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
+_REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
 
 
@@ -133,7 +134,7 @@ def _tangent(state: State) -> Floats:
 def solve(system: System, x: Floats, separation: float, error: float) -> Equilibrium:
     """Return the equilibrium at a separation, from a guess of x; ``error`` is that asked for of the total load."""
     state = evaluate(system, x, separation, None)
-    before, taken, last = np.inf, np.ones_like(x), np.zeros_like(x)
+    before, largest, taken, last = np.inf, [np.inf], np.ones_like(x), np.zeros_like(x)
     for number in range(_MAX_STEPS):
         stiffness = state.contacts.stiffness
         touching = stiffness > 0.0
@@ -160,8 +161,12 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         state, before = new, size
         if number >= _LOST[0] and size > _LOST[1]:
             break
+        largest = [*largest[1 - _REMEMBERED :], size]
         if stated <= error:
             return Equilibrium(state, stated)
+    else:
+        if max(largest) <= _LOST[1]:  # a contact that opens and closes keeps all others from rest
+            return Equilibrium(state, max(largest))
     return Equilibrium(state, np.inf)
 
 
