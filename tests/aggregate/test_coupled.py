@@ -25,7 +25,13 @@ DENSER = ASPERITIES | {"count": 400, "patch": "0.5 mm"}
 
 def coupled(**changes: Any) -> dict[str, Any]:
     path = {"separation": {"start": "2 sigma", "stop": "0 sigma", "steps": 6}}
-    plain = {"adhesion": None, "interaction": PAIRWISE, "asperities": DENSER, "path": path, "batch": {"realizations": 6}}
+    plain = {
+        "adhesion": None,
+        "interaction": PAIRWISE,
+        "asperities": DENSER,
+        "path": path,
+        "batch": {"realizations": 6},
+    }
     return scene(**plain | changes)
 
 
@@ -78,12 +84,12 @@ def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeyp
 
 
 def test_far_into_the_surface_it_is_refused_or_marked() -> None:
-    path = {"separation": ["0 um", "-1 um", "-8 um"]}
+    path = {"separation": ["0 um", "-1 um", "-3 um"]}
     found = rm.run(coupled(path=path, batch=None))
     assert float(found.marked_steps) >= 1
     assert "marked" in found.attrs["warnings"]
     with pytest.raises(rm.OutOfRange, match="nominal area"):
-        rm.run(coupled(path={"separation": ["0 um", "-1 mm"]}, batch=None))
+        rm.run(coupled(path={"separation": ["0 um", "-8 um"]}, batch=None))
 
 
 _IMPORTED = """
@@ -105,7 +111,6 @@ def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interacti
     said = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
     loaded = set(said[said.index("loaded:") :].split())
     solvers = {f"roughmdr.interaction.{name}" for name in ("solve", "mesh", "dense", "newton", "close", "contacts")}
-    heavy = {"scipy.fft", "scipy.sparse.linalg", "scipy.spatial"}
     assert (solvers <= loaded) == (interaction is not None)
     if interaction is None:
-        assert not (solvers | heavy | {"roughmdr.aggregate.coupled"}) & loaded
+        assert not sorted((solvers | {"scipy.sparse.linalg", "roughmdr.aggregate.coupled"}) & loaded)

@@ -15,10 +15,16 @@ def error(fraction: float, close: float, overlap: float, of_surface: bool = Fals
 
 
 @given(share, share, share, st.floats(0.0, 0.5))
-def test_it_grows_with_each_share_and_stays_a_fraction(fraction: float, close: float, overlap: float, more: float) -> None:
+def test_it_grows_with_each_share_and_stays_a_fraction(
+    fraction: float, close: float, overlap: float, more: float
+) -> None:
     here = error(fraction, close, overlap)
     assert 0.0 <= here <= 1.0
-    for grown in ((fraction + more, close, overlap), (fraction, close + more, overlap), (fraction, close, overlap + more)):
+    for grown in (
+        (fraction + more, close, overlap),
+        (fraction, close + more, overlap),
+        (fraction, close, overlap + more),
+    ):
         assert error(*grown) >= here
     assert error(fraction, close, overlap, of_surface=True) >= here
 
