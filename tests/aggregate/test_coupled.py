@@ -86,7 +86,7 @@ def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeyp
 def test_far_into_the_surface_it_is_refused_or_marked() -> None:
     path = {"separation": ["0 um", "-1 um", "-3 um"]}
     found = rm.run(coupled(path=path, batch=None))
-    assert float(found.marked_steps) >= 1
+    assert float(found.marked_steps.max()) >= 1
     assert "marked" in found.attrs["warnings"]
     with pytest.raises(rm.OutOfRange, match="nominal area"):
         rm.run(coupled(path={"separation": ["0 um", "-8 um"]}, batch=None))
@@ -113,4 +113,4 @@ def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interacti
     solvers = {f"roughmdr.interaction.{name}" for name in ("solve", "mesh", "dense", "newton", "close", "contacts")}
     assert (solvers <= loaded) == (interaction is not None)
     if interaction is None:
-        assert not sorted((solvers | {"scipy.sparse.linalg", "roughmdr.aggregate.coupled"}) & loaded)
+        assert not sorted((solvers | {"roughmdr.aggregate.coupled"}) & loaded)

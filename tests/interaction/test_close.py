@@ -1,14 +1,15 @@
 """Contacts that nearly touch or overlap: integrals over both springs, definite at any overlap, smooth in between."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import ensemble
 from scipy.integrate import quad
 from scipy.spatial.distance import pdist, squareform
-from scenes import ensemble
 
 import roughmdr as rm
 from roughmdr.interaction import close
@@ -23,7 +24,7 @@ def punches_by_quadrature(s: float, t: float, away: float) -> float:
         return math.asin(high) - math.asin(low)
 
     breaks = sorted({-s, s, *(z for z in (away - t, t - away, -away - t, away + t) if -s < z < s)})
-    parts = zip(breaks[:-1], breaks[1:], strict=True)
+    parts = itertools.pairwise(breaks)
     return sum(quad(inner, *part, epsabs=1e-14, epsrel=1e-12)[0] for part in parts) / (4.0 * s * t)
 
 
