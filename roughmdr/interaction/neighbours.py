@@ -26,7 +26,7 @@ def within_reach(
     wrapped = at if sides is None else np.clip(at - sides * np.floor(at / sides), 0.0, np.nextafter(sides, 0.0))
     whole = cKDTree(wrapped, boxsize=sides)
     extent = np.ptp(at, axis=0) if sides is None else sides
-    density = at.shape[0] / max(float(extent[0] * extent[1]), np.finfo(np.float64).tiny)
+    density = at.shape[0] / max(float(extent[0] * extent[1]), float(np.finfo(np.float64).tiny))
     farthest = float(np.hypot(*extent))
     size = np.ceil(np.log2(reach[reaching]))
     for each in np.unique(size):

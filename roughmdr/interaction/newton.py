@@ -19,6 +19,7 @@ from roughmdr.numerics.arguments import Floats
 _MAX_STEPS = 40
 _RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
+_LEAST_RATIO = 0.1  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
@@ -156,7 +157,7 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         new = evaluate(system, state.x + taken * moved, separation, state.pairs)
         made = np.maximum(np.abs(new.contacts.load - state.contacts.load), np.abs(change))
         size = float(made.sum() / max(total, new.contacts.load.sum()))
-        ratio = size / before if number and before > 0.0 else 1.0
+        ratio = max(size / before, _LEAST_RATIO) if number and before > 0.0 else 1.0
         stated = size * ratio / (1.0 - ratio) if ratio < _SLOW else size
         state, before = new, size
         if number >= _LOST[0] and size > _LOST[1]:

@@ -35,7 +35,9 @@ CURVATURES = 0.0, 0.15, 40.0
 def one(shape: Shape) -> tuple[CoupledKernels, Asperities]:
     """Its kernels, in a patch of side 1 m."""
     width, rise, params = shape.nondimensional()
-    columns = Columns(np.array([width]), np.array([rise]), np.atleast_1d(params)[None] if np.ndim(params) else np.array([params]))
+    columns = Columns(
+        np.array([width]), np.array([rise]), np.atleast_1d(params)[None] if np.ndim(params) else np.array([params])
+    )
     law = coupled_kernels(choose(shape.name, Adhesion(), columns.params))
     made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, 1, 0.0)
     (depth, _), size, _, _ = law.scales(1.0, 0.0, width, rise, law.params_of(made, 0))
@@ -59,7 +61,9 @@ def integral(shape: Shape, power: int, a: float) -> float:
     """∫ x^power g dx from 0 to a, with a break where a flat ends."""
     flat = min(shape.parameters.get("flat_radius", 0.0), a)
     parts = [(flat, a)] if flat else [(0.0, a)]
-    return sum(quad(lambda x: x**power * float(shape.g(x)), *part, epsabs=0.0, epsrel=1e-11, limit=400)[0] for part in parts)
+    return sum(
+        quad(lambda x: x**power * float(shape.g(x)), *part, epsabs=0.0, epsrel=1e-11, limit=400)[0] for part in parts
+    )
 
 
 def least_radius(shape: Shape) -> float:

@@ -1,4 +1,4 @@
-"""Coupled asperities along a path: against solutions without multipoles, in other units, orders, places and extremes."""
+"""Coupled asperities along a path: against solutions without multipoles; other units, orders, places, extremes."""
 
 from typing import Any
 

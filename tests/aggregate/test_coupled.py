@@ -1,0 +1,116 @@
+"""Batches of coupled asperities: bits, files, marked steps, and nothing of it where there is no [interaction]."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from batches import assert_same
+from scenes import ASPERITIES, scene
+
+import roughmdr as rm
+from roughmdr.batch.plan import make_plan
+from roughmdr.interaction import newton
+from roughmdr.runner.backend import Backend
+from roughmdr.runner.run import execute
+from roughmdr.scene import read
+
+PAIRWISE = {"model": "pairwise"}
+DENSER = ASPERITIES | {"count": 400, "patch": "0.5 mm"}
+
+
+def coupled(**changes: Any) -> dict[str, Any]:
+    path = {"separation": {"start": "2 sigma", "stop": "0 sigma", "steps": 6}}
+    plain = {
+        "adhesion": None,
+        "interaction": PAIRWISE,
+        "asperities": DENSER,
+        "path": path,
+        "batch": {"realizations": 6},
+    }
+    return scene(**plain | changes)
+
+
+@pytest.fixture(scope="module")
+def base() -> xr.Dataset:
+    return rm.run(coupled())
+
+
+@pytest.mark.parametrize(("workers", "runs_per_task"), [(1, 1), (1, 4), (2, 2)])
+def test_the_same_bits_for_any_workers_and_tasks(
+    base: xr.Dataset, tmp_path: Path, workers: int, runs_per_task: int
+) -> None:
+    out = tmp_path / "out.nc"
+    execute(make_plan(read(coupled())), out, Backend(workers=workers, runs_per_task=runs_per_task))
+    with xr.open_dataset(out) as found:
+        assert_same(found.load(), base)
+
+
+def test_a_run_says_how_many_contacts_overlap(base: xr.Dataset) -> None:
+    assert (base.marked_steps == 0).all()
+    assert (base.overlap_count >= 0).all()
+    assert (base.numerical_error <= 1e-6).all()
+    assert ((base.model_error > 0.0) & (base.model_error < 1.0)).all()
+    assert (base.force.diff("step") > 0.0).all()
+
+
+def test_coupled_asperities_carry_more_on_a_periodic_patch_and_less_on_a_free_one() -> None:
+    """Their mean plane is held up by the flat on the one; on the other it gives way."""
+    force = {
+        name: rm.run(coupled(interaction=asked)).force.mean("realization").to_numpy()[-1]
+        for name, asked in (("none", None), ("free", PAIRWISE | {"boundary": "free"}))
+    }
+    assert force["free"] < force["none"]
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here for want of iterations: the first contacts, which are few, are found; the last ones are not."""
+    monkeypatch.setattr(newton, "_MAX_STEPS", 3)
+    out = tmp_path / "out.nc"
+    made = execute(make_plan(read(coupled(output={"keep": keep}))), out, Backend(workers=1))
+    assert made is None or "marked" in made.attrs.get("warnings", "marked")
+    with xr.open_dataset(out) as found:
+        assert float(found.marked_steps.max()) > 0
+        assert "marked" in found.attrs["warnings"]
+        if keep == "curves":
+            force = found.force.to_numpy()
+            assert np.isnan(force).any()
+            assert (np.isnan(force).sum(axis=1) <= found.marked_steps.to_numpy()).all()
+
+
+def test_far_into_the_surface_it_is_refused_or_marked() -> None:
+    path = {"separation": ["0 um", "-1 um", "-3 um"]}
+    found = rm.run(coupled(path=path, batch=None))
+    assert float(found.marked_steps.max()) >= 1
+    assert "marked" in found.attrs["warnings"]
+    with pytest.raises(rm.OutOfRange, match="nominal area"):
+        rm.run(coupled(path={"separation": ["0 um", "-8 um"]}, batch=None))
+
+
+_IMPORTED = """
+import sys
+from roughmdr.cli import main
+try:
+    main(["run", sys.argv[1], "-o", "out.nc", "--workers", "1"])
+except SystemExit as end:
+    assert not end.code
+print("loaded:", *sorted(sys.modules))
+"""
+
+
+@pytest.mark.parametrize("interaction", [None, PAIRWISE])
+def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interaction: dict[str, Any] | None) -> None:
+    table = coupled(interaction=interaction, batch=None)
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
+    command = [sys.executable, "-c", _IMPORTED, "scene.toml"]
+    said = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    loaded = set(said[said.index("loaded:") :].split())
+    solvers = {f"roughmdr.interaction.{name}" for name in ("solve", "mesh", "dense", "newton", "close", "contacts")}
+    assert (solvers <= loaded) == (interaction is not None)
+    if interaction is None:
+        assert not sorted((solvers | {"roughmdr.aggregate.coupled"}) & loaded)
