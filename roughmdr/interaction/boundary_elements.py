@@ -25,7 +25,7 @@ _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0
 class Patches(NamedTuple):
     """The connected contacts."""
 
-    count: int
+    contacts: int
     area: float
     """In the square of the unit of the sides."""
     radius_sum: float
@@ -138,6 +138,5 @@ def _connected(loaded: NDArray[np.bool_]) -> tuple[NDArray[np.int64], int]:
     other = np.concatenate([labels[-1], labels[:, -1]])
     both = (one > 0) & (other > 0)
     pairs = coo_array((np.ones(both.sum()), (one[both], other[both])), shape=(count + 1, count + 1))
-    merged, number = connected_components(pairs, directed=False)
-    order = np.argsort(np.unique(number, return_index=True)[1])
-    return np.argsort(order)[number][labels].astype(np.int64), merged - 1
+    merged, number = connected_components(pairs, directed=False)  # the outside, joined with nothing, is number 0
+    return number[labels].astype(np.int64), merged - 1

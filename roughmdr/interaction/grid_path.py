@@ -67,7 +67,7 @@ def _along(grid: BoundaryElements, downwards: list[float], stiffness: bool) -> t
         rigidity = grid.stiffness(h) if stiffness else 0.0
         failed = not math.isfinite(rigidity)
         steps.append(
-            Step(force, patches.radius_sum, patches.area, rigidity, patches.count, math.inf if failed else 0.0)
+            Step(force, patches.radius_sum, patches.area, rigidity, patches.contacts, math.inf if failed else 0.0)
         )
     solved = [h for h, step in zip(downwards, steps, strict=True) if math.isfinite(step.error)]
     if solved:

@@ -30,7 +30,7 @@ def coupling_error(contact_fraction: Floats, close: Floats, overlap: Floats, *, 
 
 def summits_error(contact_area: Floats, *, of_surface: bool) -> Floats:
     """Return the part of it that asperities cause by standing for the summits of a surface [1], where any touch."""
-    return (_SUMMITS if of_surface else 0.0) * (contact_area > 0.0)
+    return np.where(contact_area > 0.0, _SUMMITS if of_surface else 0.0, 0.0)
 
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float) -> list[str]:
