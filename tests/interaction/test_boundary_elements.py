@@ -35,7 +35,7 @@ def paraboloid(side: float, points: int) -> Floats:
 
 
 def crowded(**changes: Any) -> Any:
-    return rm.generate({**CROWDED, **changes}, seed=3, positions=True)
+    return rm.generate({**CROWDED, **changes}, seed=3)
 
 
 @pytest.mark.parametrize("side", OVER_HERTZ)
@@ -47,7 +47,7 @@ def test_a_periodic_paraboloid(side: float) -> None:
     assert patches.contacts == 1
     assert patches.radius_sum == pytest.approx(math.sqrt(patches.area / math.pi))
     rates = [BoundaryElements(grid.height, grid.sides).press(-1.0 + change) for change in (-0.1, 0.1)]
-    assert grid.stiffness(-1.0) == pytest.approx((rates[0] - rates[1]) / 0.2, rel=2e-3)
+    assert grid.stiffness(-1.0) == pytest.approx((rates[0] - rates[1]) / 0.2, rel=0.01)
 
 
 def test_another_program_finds_the_same_forces_and_pressures() -> None:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scenes import WIDER_SHAPES
 
-import roughmdr as rm
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.buried import drop
 from roughmdr.interaction.union_map import grid_shape, union_map
@@ -72,8 +71,4 @@ def test_cells_are_about_square_and_even_in_number() -> None:
 
 
 def test_an_asperity_below_the_floor_is_nowhere() -> None:
-    ensemble = Ensemble.from_dataset(
-        rm.generate({"source": "random", "shape": "paraboloid", "count": 3, "patch": "1 mm", "radius": "50 um",
-                     "height": {"distribution": "normal", "std": "1 um"}}, seed=1, positions=True)
-    )  # fmt: skip
-    assert np.isneginf(union_map(ensemble, np.array([1e-3, 1e-3]), (32, 32), 1e-3)).all()
+    assert np.isneginf(union_map(asperities("paraboloid"), SIDES, (36, 22), 1e-3)).all()
