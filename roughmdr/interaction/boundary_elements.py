@@ -16,7 +16,8 @@ from roughmdr.numerics.arguments import Floats
 _RESIDUAL = 1e-6
 """The largest gap in contact, or overlap outside it, over the deepest overlap: about the error of the force."""
 _MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50 to 100
-_DIFFERENCE = 0.01  # of the deepest overlap, each way: the stiffness is then accurate to 1 %, as cells at the edges come into contact one by one
+_DIFFERENCE = 0.01
+"""Of the deepest overlap, each way. The stiffness is then accurate to 1 %: cells at an edge touch one by one."""
 _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0
 """Of the cells' sides at the edge of contacts that are not in contact, in the mean over all directions of the edge
 (V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114 (2017), 161)."""
