@@ -97,7 +97,7 @@ def test_the_error_of_the_grid_covers_that_of_a_paraboloid() -> None:
     assert abs(step.force - 4.0 / 3.0 * OVER_HERTZ[20.0]) <= step.error <= 0.1 * step.force
 
 
-def test_the_order_of_the_path_changes_nothing_and_units_scale() -> None:
+def test_the_order_of_the_path_changes_nothing() -> None:
     ensemble, path = Ensemble.from_dataset(crowded()), np.array([2e-6, 0.5e-6, 1e-6, 0.5e-6])
     found = solve_on_grid(ensemble, path, 1e6, stiffness=True, points=64).steps
     back = solve_on_grid(ensemble, path[::-1], 1e6, stiffness=True, points=64).steps[::-1]
@@ -106,8 +106,8 @@ def test_the_order_of_the_path_changes_nothing_and_units_scale() -> None:
     assert 0.0 < found[0].force < found[2].force < found[1].force
 
 
-def test_the_surface_rises_no_lower_than_the_map_reaches() -> None:
-    """Near full contact the map is made again, farther down, until nothing of it is missing."""
+def test_a_deeper_map_changes_nothing() -> None:
+    """A map that reaches farther down, as a longer path has it, gives the force that the first one does."""
     ensemble = Ensemble.from_dataset(crowded(count=16))
     deep, far = np.array([-8e-6]), np.array([-8e-6, -40e-6])
     one, both = (solve_on_grid(ensemble, path, 1e6, stiffness=False, points=64).steps for path in (deep, far))
