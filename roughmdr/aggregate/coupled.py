@@ -1,16 +1,20 @@
 """The totals of asperities that feel each other, as those of the sum over independent ones."""
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
-from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error
+from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error, summits_error
 from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from roughmdr.interaction.solve import Step
 
 UNAVAILABLE = ("energy", "dissipated_energy")
 
@@ -31,6 +35,7 @@ class CoupledTotals(NamedTuple):
     """Of the force."""
     marked: int
     """Number of steps without an equilibrium, or with more overlap than the interaction can describe."""
+    warnings: tuple[str, ...] = ()
 
 
 def sum_coupled(
@@ -43,7 +48,25 @@ def sum_coupled(
         raise SceneError(f"variables: {', '.join(asked)} cannot be computed with interaction 'pairwise' yet")
     coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
     steps = coupled.steps
-    total = np.zeros((totals.ROWS, separation.size))
+    total, solved = _totals(steps)
+    share, close = (np.array([getattr(step.overlap, name) for step in steps]) for name in ("share", "close_share"))
+    if ensemble.nominal_area is None:
+        fraction = np.full(separation.size, math.nan)
+    else:
+        fraction = total[totals.AREA] / ensemble.nominal_area
+    beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
+    error = coupling_error(np.nan_to_num(fraction), close, share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
+    marked = int(np.sum(beyond | ~solved))
+    found = CoupledTotals(total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, marked)
+    if marked and interaction.beyond == "boundary_elements":
+        return _on_grid(found, ensemble, separation, effective_modulus, names)
+    return found
+
+
+def _totals(steps: "list[Step]") -> tuple[Floats, NDArray[np.bool_]]:
+    """Return totals [row, step], and which steps have an equilibrium: NaN where there is none."""
+    total = np.zeros((totals.ROWS, len(steps)))
     for row, values in (
         (totals.FORCE, [step.force for step in steps]),
         (totals.RADIUS, [step.radius_sum for step in steps]),
@@ -55,14 +78,22 @@ def sum_coupled(
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])
     total[:, ~solved] = np.nan
-    share, close = (np.array([getattr(step.overlap, name) for step in steps]) for name in ("share", "close_share"))
-    if ensemble.nominal_area is None:
-        fraction = np.full(separation.size, math.nan)
-    else:
-        fraction = total[totals.AREA] / ensemble.nominal_area
-    beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
-    error = coupling_error(np.nan_to_num(fraction), close, share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
-    closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
-    return CoupledTotals(
-        total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, int(np.sum(beyond | ~solved))
+    return total, solved
+
+
+def _on_grid(
+    pairwise: CoupledTotals, ensemble: Ensemble, separation: Floats, effective_modulus: float, names: list[str]
+) -> CoupledTotals:
+    """Return the totals of the whole path by boundary elements, in place of those of contacts coupled in pairs."""
+    from roughmdr.interaction.grid_path import solve_on_grid
+
+    found = solve_on_grid(ensemble, separation, effective_modulus, "stiffness" in names)
+    total, solved = _totals(found.steps)
+    nx, ny = found.shape
+    warning = (
+        f"computed by boundary elements on a grid of {nx} x {ny} points: realisations of which steps were marked, as "
+        'interaction.beyond = "boundary_elements" asks; their contacts are connected patches'
     )
+    in_contact = np.nan_to_num(total[totals.AREA])
+    error = summits_error(in_contact, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    return pairwise._replace(total=total, error=error, marked=int(np.sum(~solved)), warnings=(warning,))

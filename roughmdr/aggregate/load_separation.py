@@ -123,7 +123,9 @@ def _coupled(
     )
     result = LoadSeparation.of(found.total, names, path.separation, givens, assumptions, found.visits, math.inf, "none")
     return result._replace(
-        warnings=ensemble.warnings, overlap_count=float(found.overlap_count), marked_steps=float(found.marked)
+        warnings=(*ensemble.warnings, *found.warnings),
+        overlap_count=float(found.overlap_count),
+        marked_steps=float(found.marked),
     )
 
 

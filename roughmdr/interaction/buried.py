@@ -37,7 +37,7 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.b
     """Return which summits lie below a flank; positions [asperity, 2] and ``sides`` of a patch that repeats [m]."""
     height = ensemble.height
     hidden = np.zeros(height.size, dtype=np.bool_)
-    for i, j, away in within_reach(at, _reach(ensemble), sides):
+    for i, j, away in within_reach(at, reach(ensemble, height - height.min()), sides):
         lower = np.flatnonzero(height[j] < height[i])
         if not lower.size:
             continue
@@ -46,17 +46,17 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.b
     return hidden
 
 
-def _reach(ensemble: Ensemble) -> Floats:
-    """Return about the radius [m] at which the flank of each asperity is as low as the lowest summit, at least."""
-    every, deepest = np.arange(ensemble.height.size), ensemble.height - ensemble.height.min()
+def reach(ensemble: Ensemble, depth: Floats) -> Floats:
+    """Return about the radius [m] at which the flank of each asperity is ``depth`` [m] below its summit, at least."""
+    every = np.arange(ensemble.height.size)
     low, high = np.zeros(every.size), ensemble.nondimensional().width.copy()
     for _ in range(_DOUBLINGS):
-        above = drop(ensemble, every, high) < deepest
+        above = drop(ensemble, every, high) < depth
         if not above.any():
             break
         low, high = np.where(above, high, low), np.where(above, 2.0 * high, high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        above = drop(ensemble, every, middle) < deepest
+        above = drop(ensemble, every, middle) < depth
         low, high = np.where(above, middle, low), np.where(above, high, middle)
-    return np.where(deepest > 0.0, high, 0.0)
+    return np.where(depth > 0.0, high, 0.0)

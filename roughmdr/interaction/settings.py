@@ -47,6 +47,10 @@ class Interaction(NamedTuple):
             if getattr(asked, name) not in values or isinstance(getattr(asked, name), bool):
                 given = short_repr(getattr(asked, name))
                 raise RoughmdrError(f"interaction.{name} is {given}; there are {', '.join(map(repr, values))}")
+        if asked.beyond == "boundary_elements" and (asked.model, asked.boundary) != ("pairwise", "periodic"):
+            raise RoughmdrError(
+                f"interaction.beyond is {asked.beyond!r}; it goes with model 'pairwise' and boundary 'periodic' only"
+            )
         if isinstance(asked.error, bool | str) or not LEAST_ERROR <= asked.error <= MOST_ERROR:
             given = short_repr(asked.error)
             raise RoughmdrError(f"interaction.error is {given}; it must be from {LEAST_ERROR:g} to {MOST_ERROR:g}")

@@ -25,7 +25,12 @@ def coupling_error(contact_fraction: Floats, close: Floats, overlap: Floats, *, 
     force of contacts that nearly overlap, and that overlap; shape (n,) each.
     """
     error = _SEPARATED * contact_fraction**_POWER + _CLOSE * close + overlap * (_OVERLAP + _CROWDED * contact_fraction)
-    return np.minimum(error + (_SUMMITS if of_surface else 0.0) * (contact_fraction > 0.0), 1.0)
+    return np.minimum(error + summits_error(contact_fraction, of_surface=of_surface), 1.0)
+
+
+def summits_error(contact_area: Floats, *, of_surface: bool) -> Floats:
+    """Return the part of it that asperities cause by standing for the summits of a surface [1], where any touch."""
+    return np.where(contact_area > 0.0, _SUMMITS if of_surface else 0.0, 0.0)
 
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float) -> list[str]:

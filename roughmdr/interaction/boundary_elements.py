@@ -1,0 +1,143 @@
+"""A rigid height map pressed into an elastic half-space that repeats, by boundary elements, without adhesion.
+
+The pressures of the grid cells are found by constrained conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231
+(1999), 206) and displace the surface by the Green's function of the half-space in wave numbers, 2/(E* q). The mean
+displacement is 0: separations count from the mean plane of the deformed half-space.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.numerics.arguments import Floats
+
+_RESIDUAL = 1e-6
+"""The largest gap in contact, or overlap outside it, over the deepest overlap: about the error of the force."""
+_MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50 to 100
+_DIFFERENCE = 0.01
+"""Of the deepest overlap, each way. The stiffness is then accurate to 1 %: cells at an edge touch one by one."""
+_EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0
+"""Of the cells' sides at the edge of contacts that are not in contact, in the mean over all directions of the edge
+(V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114 (2017), 161)."""
+
+
+class Patches(NamedTuple):
+    """The connected contacts."""
+
+    contacts: int
+    area: float
+    """In the square of the unit of the sides."""
+    radius_sum: float
+    """In the unit of the sides, of discs of these areas."""
+
+
+class BoundaryElements:
+    """A height map over a patch of ``sides``, all in one unit, which E* = 1 goes with; -inf is never touched.
+
+    It keeps the pressures of the last separation, from which the next one starts.
+    """
+
+    def __init__(self, height: Floats, sides: Floats) -> None:
+        from scipy import fft
+
+        self.height, self.sides = height, sides
+        self.cell_area = float(sides[0] * sides[1]) / height.size
+        x, y = (fft.fftfreq(height.shape[0]) / (sides[0] / height.shape[0]), fft.rfftfreq(height.shape[1]))
+        wave = np.hypot(x[:, None], y / (sides[1] / height.shape[1]))
+        wave[0, 0] = np.inf
+        self._compliance = 1.0 / (math.pi * wave)
+        self.pressure = np.zeros_like(height)
+        """[E*], at the last separation."""
+
+    def displacement(self) -> Floats:
+        """Return that of the surface, into the half-space."""
+        return self._displaced(self.pressure)
+
+    def _displaced(self, pressure: Floats) -> Floats:
+        from scipy import fft
+
+        spectrum = fft.rfft2(pressure)
+        return np.asarray(fft.irfft2(self._compliance * spectrum, s=pressure.shape, overwrite_x=True))
+
+    def press(self, separation: float) -> float:
+        """Return the force at a separation; NaN where none is found, as from the mean height of the map down."""
+        with np.errstate(invalid="ignore"):
+            overlap = self.height - separation
+        deepest = float(overlap.max())
+        if deepest <= 0.0:
+            self.pressure = np.zeros_like(overlap)
+            return 0.0
+        if overlap.mean() >= 0.0:
+            return math.nan
+        overlap /= deepest
+        pressure = self._start(overlap)
+        before, direction = 0.0, np.zeros_like(overlap)
+        for _ in range(_MAX_ITERATIONS):
+            gap = self._displaced(pressure) - overlap
+            loaded = pressure > 0.0
+            rest = np.where(loaded, gap, 0.0)
+            if max(float(np.abs(rest).max()), -float(gap.min())) <= _RESIDUAL:
+                self.pressure = pressure * deepest
+                return self.cell_area * float(self.pressure.sum())
+            square = float(np.vdot(rest, rest))
+            direction = rest + (square / before * np.where(loaded, direction, 0.0) if before > 0.0 else 0.0)
+            curvature = float(np.vdot(direction, self._displaced(direction)))
+            if not curvature > 0.0:
+                break
+            step = float(np.vdot(rest, direction)) / curvature
+            pressure = np.maximum(pressure - step * direction, 0.0)
+            hit = (pressure == 0.0) & (gap < 0.0)
+            pressure[hit] -= step * gap[hit]
+            before = 0.0 if hit.any() else square
+        return math.nan
+
+    def _start(self, overlap: Floats) -> Floats:
+        """Return the last pressures, or else such as the overlap, to the best scale."""
+        for pressure in (self.pressure, overlap.clip(0.0)):
+            if pressure.any():
+                work = float(np.vdot(pressure, np.where(pressure > 0.0, overlap, 0.0)))
+                if work > 0.0:
+                    return np.asarray(pressure * (work / float(np.vdot(pressure, self._displaced(pressure)))))
+        raise ArithmeticError("nothing overlaps")
+
+    def stiffness(self, separation: float) -> float:
+        """Return -dF/dh by a central difference; the pressures stay as they are."""
+        kept = self.pressure
+        change = _DIFFERENCE * (float(self.height.max()) - separation)
+        if change <= 0.0:
+            return 0.0
+        nearer = self.press(separation - change)
+        farther = self.press(separation + change)
+        self.pressure = kept
+        return (nearer - farther) / (2.0 * change)
+
+    def patches(self) -> Patches:
+        """Return the connected contacts, with the mean share of the cells at their edges taken off."""
+        loaded = self.pressure > 0.0
+        labels, count = _connected(loaded)
+        cells = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
+        edges = np.zeros(count + 1)
+        for axis in (0, 1):
+            for way in (1, -1):
+                edge = loaded & ~np.roll(loaded, way, axis)
+                edges += np.bincount(labels[edge], minlength=count + 1)
+        area = (cells - _EDGE_SHARE * edges)[1:] * self.cell_area
+        radius_sum = math.fsum(np.sqrt(area / math.pi).tolist())
+        return Patches(count, math.fsum(area.tolist()), radius_sum)
+
+
+def _connected(loaded: NDArray[np.bool_]) -> tuple[NDArray[np.int64], int]:
+    """Return the number from 1 of the patch of each cell, 0 outside, and their count; across the rim too."""
+    from scipy.ndimage import label
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    labels, count = label(loaded)
+    one = np.concatenate([labels[0], labels[:, 0]])
+    other = np.concatenate([labels[-1], labels[:, -1]])
+    both = (one > 0) & (other > 0)
+    pairs = coo_array((np.ones(both.sum()), (one[both], other[both])), shape=(count + 1, count + 1))
+    merged, number = connected_components(pairs, directed=False)  # the outside, joined with nothing, is number 0
+    return number[labels].astype(np.int64), merged - 1

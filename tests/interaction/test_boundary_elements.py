@@ -1,0 +1,156 @@
+"""Boundary elements: a periodic paraboloid, another program's solution, contacts, stiffness, and runs on the grid."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.boundary_elements import HeightMap
+from scenes import scene
+
+import roughmdr as rm
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.interaction.boundary_elements import BoundaryElements
+from roughmdr.interaction.grid_path import solve_on_grid
+from roughmdr.numerics.arguments import Floats
+
+OVER_HERTZ = {20.0: 1.145247762211, 12.0: 1.273263599777, 8.0: 1.489602436784, 6.0: 1.814344884220, 5.0: 2.2277808930}
+"""Force of a periodic paraboloid over 4/3 for E* = R = delta = 1, by the side of the square."""
+CROWDED = {
+    "source": "random",
+    "shape": "paraboloid",
+    "count": 100,
+    "patch": "200 um",
+    "radius": {"distribution": "lognormal", "mean": "50 um", "std": "5 um"},
+    "height": {"distribution": "normal", "std": "1 um"},
+    "placement": "random",
+}
+GRID = {"model": "pairwise", "beyond": "boundary_elements"}
+
+
+def paraboloid(side: float, points: int) -> Floats:
+    x = np.arange(points) * side / points
+    x = np.minimum(x, side - x)
+    return -0.5 * (x[:, None] ** 2 + x**2)
+
+
+def crowded(**changes: Any) -> Any:
+    return rm.generate({**CROWDED, **changes}, seed=3)
+
+
+@pytest.mark.parametrize("side", OVER_HERTZ)
+def test_a_periodic_paraboloid(side: float) -> None:
+    expected = 4.0 / 3.0 * OVER_HERTZ[side]
+    grid = BoundaryElements(paraboloid(side, 256), np.array([side, side]))
+    assert grid.press(-1.0) == pytest.approx(expected, rel=1e-4)
+    patches = grid.patches()
+    assert patches.contacts == 1
+    assert patches.radius_sum == pytest.approx(math.sqrt(patches.area / math.pi))
+    rates = [BoundaryElements(grid.height, grid.sides).press(-1.0 + change) for change in (-0.1, 0.1)]
+    assert grid.stiffness(-1.0) == pytest.approx((rates[0] - rates[1]) / 0.2, rel=0.01)
+
+
+def test_another_program_finds_the_same_forces_and_pressures() -> None:
+    rng = np.random.default_rng(2)
+    waves = np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64)) * 64
+    amplitude = np.where((waves > 1.5) & (waves < 12.0), np.maximum(waves, 1.0) ** -1.8, 0.0)
+    height = np.fft.irfft2(amplitude * np.fft.rfft2(rng.normal(size=(64, 64))))
+    height *= 1e-8 / height.std()
+    side = 3e-6
+    ours, theirs = BoundaryElements(height / side, np.ones(2)), HeightMap(height, side)
+    for share in (2.5, 1.5, 0.5, 0.1):
+        separation = share * 1e-8
+        force, other = ours.press(separation / side) * side**2, theirs.press(separation).force
+        assert force == pytest.approx(other, rel=2e-5)
+        np.testing.assert_allclose(ours.pressure, theirs.pressure, atol=2e-4 * float(ours.pressure.max()))
+    assert math.isnan(ours.press(-1e-9 / side))
+
+
+def test_a_rectangular_patch_of_two_squares_bears_twice_the_force() -> None:
+    one = paraboloid(6.0, 96)
+    single = BoundaryElements(one, np.array([6.0, 6.0]))
+    double = BoundaryElements(np.concatenate([one, one], axis=1), np.array([6.0, 12.0]))
+    assert double.press(-1.0) == pytest.approx(2.0 * single.press(-1.0), rel=1e-5)
+    assert double.patches().contacts == 2
+
+
+def test_contacts_are_connected_across_the_rim() -> None:
+    grid = BoundaryElements(np.zeros((8, 8)), np.ones(2))
+    grid.pressure[[0, 7, 0, 7, 4], [0, 0, 7, 7, 4]] = 1.0
+    assert grid.patches().contacts == 2
+
+
+def test_without_overlap_there_is_no_force_and_later_the_start_is_as_good() -> None:
+    height = paraboloid(8.0, 64)
+    grid = BoundaryElements(height, np.array([8.0, 8.0]))
+    assert grid.press(0.5) == 0.0
+    assert grid.patches() == (0, 0.0, 0.0)
+    assert grid.stiffness(0.5) == 0.0
+    grid.press(-0.3)
+    warm = grid.press(-1.0)
+    assert warm == pytest.approx(BoundaryElements(height, grid.sides).press(-1.0), rel=1e-5)
+
+
+def test_the_error_of_the_grid_covers_that_of_a_paraboloid() -> None:
+    ensemble = Ensemble("paraboloid", np.zeros(1), {"radius": np.ones(1)}, 400.0, {"x": np.zeros(1), "y": np.zeros(1)})
+    step = solve_on_grid(ensemble, np.array([-1.0]), 1.0, stiffness=False, points=64).steps[0]
+    assert abs(step.force - 4.0 / 3.0 * OVER_HERTZ[20.0]) <= step.error <= 0.1 * step.force
+
+
+def test_the_order_of_the_path_changes_nothing() -> None:
+    ensemble, path = Ensemble.from_dataset(crowded()), np.array([2e-6, 0.5e-6, 1e-6, 0.5e-6])
+    found = solve_on_grid(ensemble, path, 1e6, stiffness=True, points=64).steps
+    back = solve_on_grid(ensemble, path[::-1], 1e6, stiffness=True, points=64).steps[::-1]
+    assert found == back
+    assert found[1] == found[3]
+    assert 0.0 < found[0].force < found[2].force < found[1].force
+
+
+def test_a_deeper_map_changes_nothing() -> None:
+    """A map that reaches farther down, as a longer path has it, gives the force that the first one does."""
+    ensemble = Ensemble.from_dataset(crowded(count=16))
+    deep, far = np.array([-8e-6]), np.array([-8e-6, -40e-6])
+    one, both = (solve_on_grid(ensemble, path, 1e6, stiffness=False, points=64).steps for path in (deep, far))
+    assert both[0].force == pytest.approx(one[0].force, rel=1e-4)
+
+
+def test_a_marked_path_is_computed_on_the_grid_as_a_whole() -> None:
+    separation = [2.2e-6, 1e-6, 0.0]
+    asked = {"separation": separation, "effective_modulus": 1e6, "variables": ["force", "contact_area", "stiffness"]}
+    with pytest.warns(rm.LimitWarning):
+        pairs = rm.load_separation(crowded(), interaction="pairwise", **asked)
+    with pytest.warns(rm.LimitWarning, match="boundary elements on a grid of 512 x 512 points"):
+        grid = rm.load_separation(crowded(), interaction=GRID, **asked)
+    assert pairs.marked_steps > 0.0
+    assert grid.marked_steps == 0.0
+    assert grid.overlap_count == pairs.overlap_count
+    assert grid.interaction_error == 0.0
+    assert 0.0 < grid.numerical_error < 0.02
+    np.testing.assert_allclose(grid.force[0], pairs.force[0], rtol=0.01)  # where next to nothing overlaps
+    steps = solve_on_grid(Ensemble.from_dataset(crowded()), np.array(separation), 1e6, stiffness=False).steps
+    np.testing.assert_allclose(grid.force, [step.force for step in steps], rtol=1e-5)
+
+
+def test_a_path_without_marks_stays_with_pairs() -> None:
+    asked = {"separation": [3e-6, 2.2e-6], "effective_modulus": 1e6}
+    pairs, grid = (rm.load_separation(crowded(), interaction=each, **asked) for each in ("pairwise", GRID))
+    assert grid.identical(pairs)
+
+
+def test_a_run_says_which_grid_it_used() -> None:
+    table = scene(
+        adhesion=None,
+        asperities=CROWDED,
+        interaction=GRID,
+        path={"separation": ["2 um", "0.5 um"]},
+        batch={"realizations": 2},
+    )
+    result = rm.run(table)
+    assert (result["marked_steps"] == 0.0).all()
+    assert np.isfinite(result["force"]).all()
+    assert "boundary elements on a grid of 512 x 512 points" in result.attrs["warnings"]
+
+
+def test_a_free_patch_has_no_grid() -> None:
+    with pytest.raises(rm.SceneError, match="goes with model 'pairwise' and boundary 'periodic' only"):
+        rm.load_separation(crowded(), separation=1e-6, effective_modulus=1e6, interaction={**GRID, "boundary": "free"})
