@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from benchmarks.process import peak_memory
+
 from studies.coupling.methods import coupled
 from studies.versus_bem.ensembles import Case
 from studies.versus_bem.measure import separations

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 from benchmarks.process import in_new_process
+
 from studies.coupling.costs import COUNTS, Cost, cost
 from studies.coupling.methods import compare
 from studies.study import named

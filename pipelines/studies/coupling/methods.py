@@ -9,12 +9,12 @@ from unittest.mock import patch
 import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
-from studies.versus_bem.ensembles import SIZE, Case, height_map
-from studies.versus_bem.measure import MODULUS, separations
 
 import roughmdr as rm
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
+from studies.versus_bem.ensembles import SIZE, Case, height_map
+from studies.versus_bem.measure import MODULUS, separations
 
 FRACTIONS = np.array([0.01, 0.02, 0.03, 0.05])
 GRIDS = {False: (64, 128, 256, 512, 1024), True: (64, 128)}

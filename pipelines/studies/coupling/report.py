@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+
 from studies.coupling.measure import crossover
 from studies.study import table
 
@@ -43,7 +44,8 @@ def report(result: xr.Dataset) -> str:
     ]  # fmt: skip
     costs = [
         [f"{float(one['asperities']):,.0f}", _milliseconds(one["seconds_dense"]), _milliseconds(one["seconds_mesh"]),
-         "" if one["difference"].isnull() else f"{float(one['difference']):.1g}", f"{float(one['memory']) / 1e6:.0f} MB"]
+         "" if one["difference"].isnull() else f"{float(one['difference']):.1g}",
+         f"{float(one['memory']) / 1e6:.0f} MB"]
         for one in (result.isel(asperities=i) for i in range(result.sizes["asperities"]))
     ]  # fmt: skip
     return f"""The largest error of the force of 100 separated paraboloids of lognormal radii, up to 5 % contact:
