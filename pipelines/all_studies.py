@@ -10,7 +10,10 @@ from studies.study import OUTPUT, QUICK
 
 from roughmdr.storage.files import replace_atomically
 
-NAMES = ("work_precision", "stability", "left_out", "stated_error", "random_scenes", "versus_bem", "trust", "traps")
+NAMES = (
+    "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem", "trust",
+    "traps",
+)  # fmt: skip
 
 
 @click.command(help=__doc__)

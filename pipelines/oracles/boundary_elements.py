@@ -41,11 +41,6 @@ class HeightMap:
 
     @property
     def pressure(self) -> Floats:
-        """The pressure of the cells at the last separation, on a scale of its own."""
-        return np.maximum(self._forces, 0.0)
-
-    @property
-    def pressure(self) -> Floats:
         """[Pa], of the grid cells at the last separation."""
         return np.asarray(self._forces * (self.effective_modulus * self._forces.size / self.size))
 

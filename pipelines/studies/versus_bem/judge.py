@@ -42,6 +42,13 @@ def grid_errors(result: xr.Dataset) -> Floats:
     return np.where(resolved(result), off, np.nan)
 
 
+def signed_errors(result: xr.Dataset, name: str) -> Floats:
+    """Return the relative error of a force [case, step], by its name; NaN where it is not known, or in full contact."""
+    known = resolved(result) & np.isfinite(result["force_bem"].to_numpy())
+    with np.errstate(invalid="ignore"):
+        return np.where(known, result[name].to_numpy() / result["force_bem"].to_numpy() - 1.0, np.nan)
+
+
 def groups(result: xr.Dataset) -> NDArray[np.str_]:
     """Return the group of each case and step."""
     placed = np.array([_CELLS.get(name, name) for name in result["placement"].to_numpy().tolist()])

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
-from oracles.contact_spots import spots
+from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
 from studies.study import named
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
 from studies.versus_bem.maps import MapCase
@@ -131,16 +131,19 @@ class Pressed(NamedTuple):
     seconds: float
 
 
-def press(surface: HeightMap, separation: float) -> Pressed:
-    """Return what boundary elements find at a separation [m]."""
+def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> Pressed:
+    """Return what boundary elements find at a separation [m]; areas of separated paraboloids by their pressure."""
     started = time.perf_counter()
     try:
         force = surface.press(separation).force
     except rm.OutOfRange:
         return Pressed(math.nan, math.nan, math.nan, math.nan)
     seconds = time.perf_counter() - started
-    found = spots(surface.pressure)
-    return Pressed(force, found.area, found.count, seconds) if math.isfinite(force) else Pressed(force, 1.0, 1, seconds)
+    if not math.isfinite(force):
+        return Pressed(force, 1.0, 1.0, seconds)
+    area = of_half_ellipsoids if separated_paraboloids else by_perimeter
+    count = np.unique(label_contacts(surface.pressure)).size - 1
+    return Pressed(force, area(surface.pressure), count, seconds)
 
 
 def law_by(ensemble: xr.Dataset, separation: Floats, interaction: object) -> dict[str, Floats]:
@@ -182,8 +185,9 @@ def compare(case: Case | MapCase) -> list[Step]:
     steps = []
     for i, h in enumerate(along.tolist()):
         radius = contact_radii(ensemble, h)
-        found, rough = press(fine, h), press(coarse, h)
         share, expected_share = overlaps(radius, distance)
+        whole = "radius" in ensemble and isinstance(case, Case) and share == 0.0
+        found, rough = (press(surface, h, whole) for surface in (fine, coarse))
         alone, second = ({key: float(values[i]) for key, values in laws[name].items()}
                          for name in ("force", "force_second"))  # fmt: skip
         step = Step(

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from studies.study import table
+from studies.versus_bem.coupled import draw_models, report_coupled
 from studies.versus_bem.judge import FACTOR, GROUPS, errors, estimates, grid_errors, groups, judge
 
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
@@ -21,8 +22,8 @@ def draw(result: xr.Dataset) -> "Figure":
     """Draw the error over the contact fraction with its estimate, and overlaps over the estimate by Poisson."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12, 5.2), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    figure = Figure(figsize=(17, 5.2), layout="constrained")
+    left, right, models = figure.subplots(1, 3)
     fraction, error, group = result["contact_fraction"].to_numpy(), errors(result), groups(result)
     along = np.geomspace(5e-4, 1.0, 200)
     for name, kind, style in (("estimate", ASPERITIES, "-"), ("estimate for maps", SUMMITS, "--")):
@@ -37,7 +38,8 @@ def draw(result: xr.Dataset) -> "Figure":
     left.legend(fontsize=9)
     right.plot([0.0, 1.0], [0.0, 1.0], color="k", lw=1)
     right.set(xlabel="1 - exp(-n pi <(a_i + a_j)^2>)", ylabel="share of contacts that meet another", title="Overlap")
-    for panel in (left, right):
+    draw_models(models, result)
+    for panel in (left, right, models):
         panel.grid(color="0.92")
         panel.set_axisbelow(True)
     return figure
@@ -73,4 +75,5 @@ def report(result: xr.Dataset) -> str:
 
 Forces of boundary elements on half as many points differ by {100.0 * float(np.median(grid)):.2g} % (median), at most
 {100.0 * float(grid.max()):.2g} %.
-"""
+
+{report_coupled(result)}"""

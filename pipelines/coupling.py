@@ -1,0 +1,10 @@
+"""Error against run time of coupled asperities, and run time against their number: python pipelines/coupling.py."""
+
+from studies.coupling.measure import measure
+from studies.coupling.report import draw, report
+from studies.study import Study
+
+STUDY = Study("coupling", "Coupled asperities: error and run time", measure, draw, report)
+
+if __name__ == "__main__":
+    STUDY.command()

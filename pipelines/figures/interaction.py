@@ -1,0 +1,92 @@
+"""The asperities of the first scene without adhesion, independent and coupled: force over separation, and its ratio."""
+
+import warnings
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from studies.study import named
+
+import roughmdr as rm
+
+UM = 1e-6
+MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
+PATCH = 1e-3  # [m]
+MODELS: dict[str, object] = {
+    "independent": None,
+    "mean field": "mean_field",
+    "pairwise, order 1": {"model": "pairwise", "order": 1},
+    "pairwise, order 2": "pairwise",
+}
+COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
+
+
+def ensemble_of(count: int) -> xr.Dataset:
+    """Return paraboloids at random, as dense as in the scene."""
+    return rm.generate(
+        {
+            "source": "random",
+            "shape": "paraboloid",
+            "count": count,
+            "patch": PATCH * (count / 2000) ** 0.5,
+            "placement": "random",
+            "height": {"distribution": "normal", "std": UM},
+            "radius": {"distribution": "lognormal", "mean": 50 * UM, "std": 5 * UM},
+        },
+        seed=2026,
+    )
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Return force and contact fraction by each of ``MODELS``; of a tenth of the asperities where ``quick``."""
+    ensemble = ensemble_of(200 if quick else 2000)
+    separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
+    laws = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        for interaction in MODELS.values():
+            law = rm.load_separation(
+                ensemble,
+                separation=separation,
+                effective_modulus=MODULUS,
+                variables=["force", "contact_fraction"],
+                interaction=interaction,
+            )
+            laws.append([law["force"].to_numpy(), law["contact_fraction"].to_numpy()])
+    force, fraction = np.moveaxis(np.array(laws), 1, 0)
+    over = ("model", "step")
+    return xr.Dataset(
+        {
+            "force": (over, force, named("force", "N")),
+            "contact_fraction": (over, fraction, named("contact fraction")),
+        },
+        {"model": list(MODELS), "separation": ("step", separation, named("separation", "m"))},
+    )
+
+
+def draw(result: xr.Dataset) -> Figure:
+    """Draw forces over the separation, and over that of independent asperities."""
+    figure = Figure(figsize=(10, 4.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    alone = result["force"].sel(model="independent")
+    for name, colour in zip(MODELS, COLOURS, strict=True):
+        own = result.sel(model=name)
+        left.semilogy(result["separation"] / UM, 1e3 * own["force"].where(own["force"] > 0.0), color=colour, label=name)
+        right.plot(100.0 * own["contact_fraction"], own["force"] / alone, color=colour, label=name)
+    left.set(xlabel="separation [µm]", ylabel="force [mN]", title="2000 paraboloids on 1 mm²")
+    right.set(xlabel="contact area [% of the patch]", ylabel="force over that of independent asperities")
+    left.legend(fontsize=9)
+    for panel in (left, right):
+        panel.grid(color="0.92")
+    return figure
+
+
+def report(result: xr.Dataset) -> str:
+    """Return the force over that of independent asperities at closest approach."""
+    last = result.isel(step=-1)
+    ratio = last["force"] / last["force"].sel(model="independent")
+    return "\n".join(
+        f"{name}: force {float(ratio.sel(model=name)):.4g} times that of independent asperities, "
+        f"contact {100.0 * float(last['contact_fraction'].sel(model=name)):.3g} %"
+        for name in MODELS
+    )

@@ -1,0 +1,1 @@
+"""The study of coupled asperities: error against run time, and run time against their number."""
