@@ -1,6 +1,7 @@
 """The asperities of the first scene without adhesion, independent and coupled: force over separation, and its ratio."""
 
 import warnings
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ import roughmdr as rm
 UM = 1e-6
 MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
 PATCH = 1e-3  # [m]
-MODELS: dict[str, object] = {
+MODELS: dict[str, Any] = {
     "independent": None,
     "mean field": "mean_field",
     "pairwise, order 1": {"model": "pairwise", "order": 1},

@@ -48,7 +48,7 @@ def sum_coupled(
         raise SceneError(f"variables: {', '.join(asked)} cannot be computed with interaction 'pairwise' yet")
     coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
     steps = coupled.steps
-    total, solved = _totals(steps)
+    total, solved = _totals(steps, ensemble.nominal_area)
     share, close = (np.array([getattr(step.overlap, name) for step in steps]) for name in ("share", "close_share"))
     if ensemble.nominal_area is None:
         fraction = np.full(separation.size, math.nan)
@@ -64,8 +64,11 @@ def sum_coupled(
     return found
 
 
-def _totals(steps: "list[Step]") -> tuple[Floats, NDArray[np.bool_]]:
-    """Return totals [row, step], and which steps have an equilibrium: NaN where there is none."""
+def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return totals [row, step], and which steps have an equilibrium: NaN where there is none.
+
+    Contacts with more area than the patch are none.
+    """
     total = np.zeros((totals.ROWS, len(steps)))
     for row, values in (
         (totals.FORCE, [step.force for step in steps]),
@@ -77,6 +80,8 @@ def _totals(steps: "list[Step]") -> tuple[Floats, NDArray[np.bool_]]:
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])
+    if nominal_area is not None:
+        solved &= total[totals.AREA] <= nominal_area
     total[:, ~solved] = np.nan
     return total, solved
 
@@ -88,7 +93,7 @@ def _on_grid(
     from roughmdr.interaction.grid_path import solve_on_grid
 
     found = solve_on_grid(ensemble, separation, effective_modulus, "stiffness" in names)
-    total, solved = _totals(found.steps)
+    total, solved = _totals(found.steps, ensemble.nominal_area)
     nx, ny = found.shape
     warning = (
         f"computed by boundary elements on a grid of {nx} x {ny} points: realisations of which steps were marked, as "

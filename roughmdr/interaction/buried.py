@@ -8,6 +8,7 @@ from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
 
+_NEAREST = 1e-5  # of the side of the patch: 1/r^3 is then 1e15 times what is smooth on the patch
 _DOUBLINGS, _HALVINGS = 200, 30
 
 
@@ -34,7 +35,10 @@ def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
 
 
 def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.bool_]:
-    """Return which summits lie below a flank; positions [asperity, 2] and ``sides`` of a patch that repeats [m]."""
+    """Return which summits lie below a flank; positions [asperity, 2] and ``sides`` of a patch that repeats [m].
+
+    Of summits so near to each other that no digits are left of what tells them apart, all but the highest do.
+    """
     height = ensemble.height
     hidden = np.zeros(height.size, dtype=np.bool_)
     for i, j, away in within_reach(at, reach(ensemble, height - height.min()), sides):
@@ -43,6 +47,10 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.b
             continue
         flank = height[i[lower]] - drop(ensemble, i[lower], away[lower])
         hidden[j[lower][flank > height[j[lower]]]] = True
+    if sides is not None:
+        for i, j, away in within_reach(at, np.full(height.size, _NEAREST * sides.max()), sides):
+            later = (away < _NEAREST * sides.max()) & (i < j)  # heights descend
+            hidden[j[later & ~hidden[i]]] = True
     return hidden
 
 

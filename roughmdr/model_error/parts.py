@@ -64,7 +64,7 @@ class ModelError(NamedTuple):
     def named(self) -> dict[str, float]:
         """The largest error over the steps and all that describes it, by their names in results."""
         return {
-            "model_error": float(np.fmax.reduce(self.curve, initial=0.0)),
+            "model_error": math.nan if math.isnan(self.largest_fraction) else float(np.nanmax(self.curve, initial=0.0)),
             **self.parts,
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,

@@ -83,13 +83,15 @@ def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeyp
             assert (np.isnan(force).sum(axis=1) <= found.marked_steps.to_numpy()).all()
 
 
-def test_far_into_the_surface_it_is_refused_or_marked() -> None:
+def test_far_into_the_surface_steps_are_marked_and_have_no_value() -> None:
     path = {"separation": ["0 um", "-1 um", "-3 um"]}
     found = rm.run(coupled(path=path, batch=None))
     assert float(found.marked_steps.max()) >= 1
     assert "marked" in found.attrs["warnings"]
-    with pytest.raises(rm.OutOfRange, match="nominal area"):
-        rm.run(coupled(path={"separation": ["0 um", "-8 um"]}, batch=None))
+    deep = rm.run(coupled(path={"separation": ["0 um", "-8 um"]}, batch=None))
+    assert np.isfinite(deep.force.values[..., 0]).all()
+    assert np.isnan(deep.force.values[..., 1]).all()
+    assert float(deep.marked_steps.max()) >= 1
 
 
 _IMPORTED = """

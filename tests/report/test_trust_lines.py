@@ -17,7 +17,7 @@ from roughmdr.report.trust import trust_lines
 NUMBERS = {
     "model_error": 0.3, "interaction_error": 0.28, "slope_error": 0.02, "profile_end_error": 0.0,
     "adhesion_range_error": 0.0, "resolution_error": 0.0, "largest_contact_fraction": 0.035,
-    "trusted_separation": 1.1e-6,
+    "trusted_separation": 1.1e-6, "overlap_fraction": 0.05,
 }  # fmt: skip
 NONE = dict.fromkeys(NUMBERS, math.nan)
 
@@ -33,8 +33,8 @@ def test_the_block_reads_as_it_should() -> None:
         "asperities are independent: force at given separation off by about 13 % (7.9 to 25) at pull-off"
     )
     assert told["trust"] == (
-        "force within about 24 % down to h = 1.1 um (contact 2 %); below it asperities interact, which is not in the "
-        "model: within 30 % at closest approach"
+        "force within about 24 % down to h = 1.1 um (contact 2 %); below it asperities interact, which this scene "
+        "leaves out: within 30 % at closest approach"
     )
 
 

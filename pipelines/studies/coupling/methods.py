@@ -3,7 +3,8 @@
 import time
 import warnings
 from collections.abc import Callable
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -43,7 +44,7 @@ def timed(action: Callable[[], Floats], loads: int) -> tuple[Floats, float]:
     return force, min(seconds)
 
 
-def coupled(ensemble: xr.Dataset, separation: Floats, interaction: object, dense: bool = True) -> Floats:
+def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: bool = True) -> Floats:
     """Return forces [N] at separations [m], of pairs one by one or, not ``dense``, on a mesh."""
     with warnings.catch_warnings(), patch.object(solve, "DENSE_UP_TO", 10**9 if dense else 0):
         warnings.simplefilter("ignore", rm.LimitWarning)
@@ -68,19 +69,19 @@ def compare(quick: bool) -> list[Point]:
     grids = {points: by_boundary_elements(ensemble, along, points) for points in GRIDS[quick]}
     fine, coarse = (grids[points][0] for points in sorted(grids, reverse=True)[:2])
     exact = fine + (fine - coarse) / 3.0
-    asked: list[tuple[str, str, object, bool]] = [
+    asked: list[tuple[str, str, Any, bool]] = [
         ("independent", "-", None, True),
         ("mean field", "-", "mean_field", True),
     ]
     for order in (1, 2):
-        table = {"model": "pairwise", "order": order}
+        table: dict[str, Any] = {"model": "pairwise", "order": order}
         asked.append((_PAIRWISE.format(order=order), "dense", table, True))
         asked += [(f"{_PAIRWISE.format(order=order)}, mesh", f"error {error:g}", {**table, "error": error}, False)
                   for error in ((1e-6,) if quick else (1e-3, 1e-6, 1e-9))]  # fmt: skip
     found = []
-    for method, setting, table, dense in asked:
-        coupled(ensemble, along, table, dense)
-        force, seconds = timed(lambda table=table, dense=dense: coupled(ensemble, along, table, dense), along.size)
+    for method, setting, *how in asked:
+        coupled(ensemble, along, *how)
+        force, seconds = timed(partial(coupled, ensemble, along, *how), along.size)
         found.append(Point(method, setting, _worst(force, exact), seconds))
     for points, (force, seconds) in grids.items():
         found.append(Point("boundary elements", f"{points} points", _worst(force, exact), seconds))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import product
 from multiprocessing import get_context
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,7 +28,7 @@ FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])
 PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
 FINE, _FINE_FRACTION = 1024, 0.1
 """Grid of the cases that are to show more digits than the others, and their largest contact fraction."""
-MODELS: dict[str, object] = {
+MODELS: dict[str, Any] = {
     "force": None,
     "force_mean": "mean_field",
     "force_first": {"model": "pairwise", "order": 1},
@@ -146,7 +146,7 @@ def press(surface: HeightMap, separation: float, separated_paraboloids: bool) ->
     return Pressed(force, area(surface.pressure), count, seconds)
 
 
-def law_by(ensemble: xr.Dataset, separation: Floats, interaction: object) -> dict[str, Floats]:
+def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> dict[str, Floats]:
     """Return the law at separations [m], in falling order; NaN from where it has more contact than the patch."""
     for steps in range(separation.size, 0, -1):
         try:
