@@ -99,6 +99,6 @@ def _on_grid(
         f"computed by boundary elements on a grid of {nx} x {ny} points: realisations of which steps were marked, as "
         'interaction.beyond = "boundary_elements" asks; their contacts are connected patches'
     )
-    in_contact = np.nan_to_num(total[totals.AREA])
-    error = summits_error(in_contact, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    fraction = np.nan_to_num(total[totals.AREA]) / (ensemble.nominal_area or math.inf)
+    error = summits_error(fraction, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
     return pairwise._replace(total=total, error=error, marked=int(np.sum(~solved)), warnings=(warning,))

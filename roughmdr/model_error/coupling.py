@@ -6,12 +6,12 @@ from roughmdr.numerics.arguments import Floats
 
 _SEPARATED, _POWER = 0.2, 2.5
 """Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
-_CLOSE = 0.008
+_CLOSE = 0.02
 """Of contacts that nearly overlap, over their share of the force."""
-_OVERLAP, _CROWDED = 0.12, 0.45
+_OVERLAP, _CROWDED = 0.15, 0.5
 """Of contacts that overlap, over their share of the force; and so much more over the contact fraction as well."""
-_SUMMITS = 0.26
-"""Of the summits of a continuous surface, whose flanks are no paraboloids: the most of -10 to -26 %."""
+_SUMMITS = 1.3
+"""Of the summits of a continuous surface, whose flanks are no paraboloids, over the root of the contact fraction."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -28,9 +28,9 @@ def coupling_error(contact_fraction: Floats, close: Floats, overlap: Floats, *, 
     return np.minimum(error + summits_error(contact_fraction, of_surface=of_surface), 1.0)
 
 
-def summits_error(contact_area: Floats, *, of_surface: bool) -> Floats:
-    """Return the part of it that asperities cause by standing for the summits of a surface [1], where any touch."""
-    return np.where(contact_area > 0.0, _SUMMITS if of_surface else 0.0, 0.0)
+def summits_error(contact_fraction: Floats, *, of_surface: bool) -> Floats:
+    """Return the part of it that asperities cause by standing for the summits of a surface [1]."""
+    return np.asarray((_SUMMITS if of_surface else 0.0) * np.sqrt(contact_fraction))
 
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float) -> list[str]:
