@@ -114,6 +114,7 @@ def test_a_deeper_map_changes_nothing() -> None:
     assert both[0].force == pytest.approx(one[0].force, rel=1e-4)
 
 
+@pytest.mark.large
 def test_a_marked_path_is_computed_on_the_grid_as_a_whole() -> None:
     separation = [2.2e-6, 1e-6, 0.0]
     asked = {"separation": separation, "effective_modulus": 1e6, "variables": ["force", "contact_area", "stiffness"]}
