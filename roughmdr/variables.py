@@ -143,6 +143,12 @@ RUN_DIAGNOSTICS = _diagnostics(
         merge="maximum",
         in_result=_pairwise,
     ),
+    Diagnostic(
+        "grid_points",
+        "1",
+        "points of the grid of boundary elements; 0 where contacts are coupled in pairs",
+        in_result=_pairwise,
+    ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
     Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
     Diagnostic(

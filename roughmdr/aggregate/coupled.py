@@ -35,6 +35,8 @@ class CoupledTotals(NamedTuple):
     """Of the force."""
     marked: int
     """Number of steps without an equilibrium, or with more overlap than the interaction can describe."""
+    grid_points: int = 0
+    """Of the boundary elements that all of this is from; 0 where contacts are coupled in pairs."""
     warnings: tuple[str, ...] = ()
 
 
@@ -49,13 +51,13 @@ def sum_coupled(
     coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
     steps = coupled.steps
     total, solved = _totals(steps, ensemble.nominal_area)
-    share, close = (np.array([getattr(step.overlap, name) for step in steps]) for name in ("share", "close_share"))
+    share = np.array([step.overlap.share for step in steps])
     if ensemble.nominal_area is None:
         fraction = np.full(separation.size, math.nan)
     else:
         fraction = total[totals.AREA] / ensemble.nominal_area
     beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
-    error = coupling_error(np.nan_to_num(fraction), close, share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    error = coupling_error(np.nan_to_num(fraction), share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
     found = CoupledTotals(total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, marked)
@@ -101,4 +103,6 @@ def _on_grid(
     )
     fraction = np.nan_to_num(total[totals.AREA]) / (ensemble.nominal_area or math.inf)
     error = summits_error(fraction, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
-    return pairwise._replace(total=total, error=error, marked=int(np.sum(~solved)), warnings=(warning,))
+    return pairwise._replace(
+        total=total, error=error, marked=int(np.sum(~solved)), grid_points=nx * ny, warnings=(warning,)
+    )

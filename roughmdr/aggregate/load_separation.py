@@ -126,6 +126,7 @@ def _coupled(
         warnings=(*ensemble.warnings, *found.warnings),
         overlap_count=float(found.overlap_count),
         marked_steps=float(found.marked),
+        grid_points=float(found.grid_points),
     )
 
 
@@ -206,7 +207,7 @@ def load_separation(
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
         where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m],
         pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact; with pairwise interaction
-        overlap_count [1] and marked_steps [1].
+        overlap_count [1], marked_steps [1] and grid_points [1].
 
     Raises
     ------
@@ -260,7 +261,7 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     if coupling is not None and coupling.model == "pairwise":
-        errors |= {"overlap_count": result.overlap_count, "marked_steps": result.marked_steps}
+        errors |= {name: getattr(result, name) for name in ("overlap_count", "marked_steps", "grid_points")}
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     if (np.diff(path.separation) > 0.0).any():
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
@@ -269,8 +270,9 @@ def load_separation(
     warnings = [*result.warnings, *result.extremes.warnings]
     fraction, overlap = result.model_error.largest_fraction, result.model_error.overlap
     if coupling is not None and coupling.model == "pairwise":
-        warnings += coupling_warnings(fraction, overlap, result.marked_steps)
+        warnings += coupling_warnings(fraction, overlap, result.marked_steps, on_grid=result.grid_points > 0.0)
     else:
         warnings += fraction_warnings(fraction)
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
+    attrs |= {} if coupling is None else {"interaction": coupling.model}
     return Labelled(data, {"separation": distance, "branch": path.branch()}, attrs).to_xarray()

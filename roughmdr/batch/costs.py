@@ -20,7 +20,8 @@ _FIRST_RULE = 8
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
-_PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 2e-5
+_PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1e-5
+_GRID_STEP = 1.2  # of boundary elements, should they be needed
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
@@ -46,8 +47,10 @@ def seconds(cell: Cell, estimator: str) -> float:
 
 
 def paired_seconds(cell: Cell) -> float:
-    """Return about how long one realisation takes [s] whose asperities feel each other in pairs."""
-    each = _PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT
+    """Return about how long one realisation takes [s] whose asperities feel each other in pairs, at most."""
+    beyond = None if cell.scene.interaction is None else cell.scene.interaction.beyond
+    grid = _GRID_STEP if beyond == "boundary_elements" else 0.0
+    each = grid + _PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 

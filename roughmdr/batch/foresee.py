@@ -10,6 +10,7 @@ from roughmdr.batch.costs import paired_seconds
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.errors import RoughmdrError, TooMuchContact
+from roughmdr.interaction import Interaction
 from roughmdr.interaction.placed import part_of
 from roughmdr.scene import Scene
 
@@ -39,6 +40,8 @@ class Prospect(NamedTuple):
     coupled_seconds: float
     """About how long a realisation would take [s] if its asperities felt each other; inf with adhesion, where they
     cannot."""
+    interaction: Interaction | None
+    """How asperities feel each other."""
 
 
 def foresee_cells(plan: Plan) -> Prospect:
@@ -56,7 +59,7 @@ def foresee_cells(plan: Plan) -> Prospect:
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     coupled = max(paired_seconds(cell) if cell.scene.work == 0.0 else math.inf for cell in plan.cells)
-    return Prospect(tuple(foreseen), tuple(failures), coupled)
+    return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction_model)
 
 
 def check_foreseen(plan: Plan) -> None:
@@ -89,7 +92,7 @@ def _reason(cell: Cell) -> str:
 
 
 def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
-    """Return the law of a part of the asperities on a part of the patch."""
+    """Return the law of a part of the asperities on a part of the patch; coupled in pairs, never on a grid."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
     if scene.interaction_model is not None and scene.interaction_model.boundary == "free" and not paired:
@@ -99,6 +102,8 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     if paired:
         ensemble = part_of(ensemble, count)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
+    if scene.interaction is not None and paired:
+        scene = scene.model_copy(update={"interaction": scene.interaction.model_copy(update={"beyond": "flag"})})
     law = simulate_ensemble(scene, path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     return Foreseen(path, law, law.pull_off.contact_area / area)

@@ -27,11 +27,12 @@ from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
 
 _OVERSAMPLING = 1.6  # mesh points for each half wave that is kept
-_MESH_PER_SPACING = 5.0  # mesh points for each mean spacing of the contacts
+_MESH_PER_REACH = 1.0  # mesh points for each mean spacing of the contacts, over erfc^-1(error)
 _FREE = 2.5  # side of the patch in which a free one lies
 _STEEPNESS = 10.0  # of the cut: erfc(5) is 2e-12
 _LEAST_MESH, _LEAST_FREE_MESH = 24, 120  # mesh points for the shorter side; the cut must be resolved
 _LARGE_MESH = 2**18  # points from which on a transform is worth several cores
+_ROWS_AT_A_TIME = 8  # of the mesh, along which points follow each other, so that their cells are in the cache
 _MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 _NODES, _WEIGHTS = unit_gauss(60)
 
@@ -146,7 +147,8 @@ class Mesh:
         around = 1.0 if periodic else _FREE
         sides = around, around * patch.side_y
         least = _LEAST_MESH if periodic else _LEAST_FREE_MESH
-        per_side = max(_MESH_PER_SPACING * math.sqrt(x.size / patch.side_y), least / min(1.0, patch.side_y))
+        per_spacing = _MESH_PER_REACH * reach
+        per_side = max(per_spacing * math.sqrt(x.size / patch.side_y), least / min(1.0, patch.side_y))
         self._shape = tuple(scipy.fft.next_fast_len(math.ceil(per_side * side), real=True) for side in sides)
         self._workers = -1 if self._shape[0] * self._shape[1] >= _LARGE_MESH else 1
         finest = min(points / side for points, side in zip(self._shape, sides, strict=True))
@@ -156,6 +158,8 @@ class Mesh:
             split, cutoff = 2.0 * reach / min(sides), 0.5 * min(sides)
         own = Periodic(patch.side_y, split)
         at = np.column_stack([x, y])
+        self._order = self._along_rows(at / sides)
+        at = at[self._order]
         self._pairs = self._near_pairs(at, cutoff, np.array([1.0, patch.side_y]) if periodic else None)
         self._fields = np.empty((self._pairs.shape[0], 4))
         _near_fields(self._pairs, at, own, periodic, self._fields)
@@ -188,6 +192,17 @@ class Mesh:
             self._laplace[0, 0] = 0.0
         self._own, self._own_laplacian = far_part_at_load(split)
 
+    def _along_rows(self, at: Floats) -> NDArray[np.int64]:
+        """Return the order of points ``at`` [side of the mesh] in which they are kept: along a few rows at a time."""
+        cell = np.floor(at * np.array(self._shape)).astype(np.int64)
+        return np.lexsort((cell[:, 1], cell[:, 0] // _ROWS_AT_A_TIME))
+
+    def _as_given(self, values: Floats) -> Floats:
+        """Return values [..., point] in the order in which the points were given."""
+        result = np.empty_like(values)
+        result[..., self._order] = values
+        return result
+
     @staticmethod
     def _near_pairs(at: Floats, cutoff: float, box: Floats | None) -> NDArray[np.int64]:
         wrapped = at if box is None else np.minimum(at % box, np.nextafter(box, 0.0))
@@ -218,32 +233,37 @@ class Mesh:
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement of each point by point loads."""
+        load = load[self._order]
         result = self._at_points(self._waves_of(load) * self._green) - self._own * load
         _add_near_potential(self._pairs, self._fields, load, result)
-        return result
+        return self._as_given(result)
 
     def least_displacement(self, load: Floats) -> float:
         """Return about the least displacement between the points by compressive point loads."""
+        load = load[self._order]
         far = self._at_points(self._waves_of(load) * self._green) - self._own * load
         return float(far.min() - _MARGIN * np.ptp(far))
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""
+        load = load[self._order]
         waves = self._waves_of(load) * self._green
         rows = [self._at_points(waves * kind) for kind in (1.0, self._kx, self._ky, self._laplace)]
         rows[0] -= self._own * load
         rows[3] -= self._own_laplacian * load
         result = np.array(rows)
         _add_near_field(self._pairs, self._fields, load, result)
-        return result
+        return self._as_given(result)
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
-        kinds = (laplacian, self._laplace), (along_x, self._kx), (along_y, self._ky)
-        waves = sum((self._waves_of(source) * kind for source, kind in kinds), start=np.zeros(1, np.complex128))
-        result = self._at_points(waves * self._green) - self._own_laplacian * laplacian
-        _add_near_moments(self._pairs, self._fields, np.array([laplacian, along_x, along_y]), result)
-        return result
+        sources = np.array([laplacian, along_x, along_y])[:, self._order]
+        kinds = self._laplace, self._kx, self._ky
+        waves = sum((self._waves_of(source) * kind for source, kind in zip(sources, kinds, strict=True)),
+                    start=np.zeros(1, np.complex128))  # fmt: skip
+        result = self._at_points(waves * self._green) - self._own_laplacian * sources[0]
+        _add_near_moments(self._pairs, self._fields, sources, result)
+        return self._as_given(result)
 
 
 @njit

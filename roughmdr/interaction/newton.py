@@ -22,7 +22,7 @@ _LOST = 15, 0.05  # after so many steps one that changes so much of the load lea
 _LEAST_RATIO = 0.1  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
-_STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 2, 1e-5
+_STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 8, 1e-5
 
 
 class Coupling(Protocol):
@@ -53,6 +53,8 @@ class System(NamedTuple):
     kernels: CoupledKernels
     asperities: Asperities
     coupling: Coupling
+    tangent: Coupling
+    """That of the steps, which are less accurate."""
     at: Floats
     """Positions, [asperity, 2]."""
     sides: Floats | None
@@ -116,7 +118,7 @@ def _step(system: System, state: State, values: Floats, right: Floats, rtol: flo
 
     def product(scaled: Floats) -> Floats:
         load = root * scaled.ravel()
-        potential = system.coupling.potential(load)
+        potential = system.tangent.potential(load)
         close.add_tangent(state.pairs, values, load, potential)
         return scaled.ravel() + root * potential
 
@@ -147,7 +149,7 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         change = _step(system, state, values, -state.residual, _RTOL) if touching.any() else np.zeros_like(x)
         moved = -state.residual
         if touching.any():
-            potential = system.coupling.potential(change)
+            potential = system.tangent.potential(change)
             close.add_tangent(state.pairs, values, change, potential)
             moved = np.where(touching, change / np.where(touching, stiffness, 1.0), -state.residual - potential)
         back = moved * last < 0.0
@@ -185,5 +187,8 @@ def total_stiffness(system: System, state: State, separation: float) -> float:
         scale = probe / float(np.abs(moved).max())
         other = evaluate(system, state.x + scale * moved, separation, state.pairs)
         left = np.where(touching, (other.residual - state.residual) / scale, 0.0)
-        change = change + _step(system, state, values, right - left, _STIFFNESS_RTOL)
+        more = _step(system, state, values, right - left, _STIFFNESS_RTOL)
+        change = change + more
+        if abs(more.sum()) <= _STIFFNESS_RTOL * abs(change.sum()):
+            break
     return float(change.sum())

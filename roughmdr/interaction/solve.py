@@ -29,6 +29,7 @@ from roughmdr.shapes import SHAPES, SharedProfile
 DENSE_UP_TO = 300
 """Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
 _MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
+_TANGENT_ERROR = 1e-3  # of the mesh for the steps, each of which leaves a few per cent
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
 _ROUGH_ERROR = 1e-2  # of the force, until all asperities that can touch are taken
 _FAILURES = 3  # separations without an equilibrium, one after the other, below which none is looked for
@@ -36,13 +37,11 @@ _SMALLEST = np.finfo(np.float64).tiny
 
 
 class Overlap(NamedTuple):
-    """Contacts that overlap a neighbour's, and those that nearly do."""
+    """Contacts that overlap a neighbour's."""
 
     contacts: int
     share: float
     """Of the force."""
-    close_share: float
-    """Of the force, of all contacts that the expansion in distances does not hold for."""
 
 
 class Step(NamedTuple):
@@ -55,7 +54,7 @@ class Step(NamedTuple):
     contacts: int = 0
     error: float = 0.0
     """About that of the force [N]; inf where there is no equilibrium."""
-    overlap: Overlap = Overlap(0, 0.0, 0.0)
+    overlap: Overlap = Overlap(0, 0.0)
     lost: int = 0
     """Number of contacts that are no discs."""
 
@@ -83,7 +82,7 @@ class Candidates:
             sides = (whole, whole) if whole > 0.0 else (1.0, 1.0)
         self.length, self.interaction = sides[0], interaction
         self.patch = Periodic.of(sides[1] / sides[0])
-        _check_apart(at / self.length, self.sides)
+        _check_apart(ensemble, at / self.length, self.sides)
         hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
         self.kept = np.flatnonzero(~hidden)
         """The numbers of the asperities that are not buried."""
@@ -115,11 +114,14 @@ class Candidates:
         at, periodic = self.at[:count], self.interaction.boundary == "periodic"
         x, y = np.ascontiguousarray(at.T)
         coupling: Coupling
+        tangent: Coupling
         if count <= DENSE_UP_TO:
-            coupling = Dense(x, y, self.patch, periodic)
+            coupling = tangent = Dense(x, y, self.patch, periodic)
         else:
-            coupling = Mesh(x, y, self.patch, periodic, _MESH_ERROR * self.interaction.error)
-        return System(self.kernels, asperities, coupling, at, self.sides, self.interaction.order)
+            error = _MESH_ERROR * self.interaction.error
+            coupling = Mesh(x, y, self.patch, periodic, error)
+            tangent = Mesh(x, y, self.patch, periodic, _TANGENT_ERROR) if error < _TANGENT_ERROR else coupling
+        return System(self.kernels, asperities, coupling, tangent, at, self.sides, self.interaction.order)
 
     def extend(self, lowest: float) -> bool:
         """Take asperities down to a height [side of the patch], and some more; whether that changed anything."""
@@ -144,15 +146,18 @@ def _natural_scales(kernels: Kernels, columns: Columns, material: Material, coun
     return found[0], found[1]
 
 
-def _check_apart(at: Floats, sides: Floats | None) -> None:
-    """Raise SceneError where two asperities have the same position."""
+def _check_apart(ensemble: Ensemble, at: Floats, sides: Floats | None) -> None:
+    """Raise SceneError where two asperities have the same position; ``at`` over the side of the patch."""
     wrapped = at if sides is None else at - sides * np.floor(at / sides)
     order = np.lexsort(wrapped.T)
     same = (np.diff(wrapped[order], axis=0) == 0.0).all(axis=1)
     if same.any():
-        first = int(np.argmax(same))
-        i, j = sorted((int(order[first]), int(order[first + 1])))
-        raise SceneError(f"ensemble: asperities {i} and {j} have the same position; interaction needs them apart")
+        first = int(order[np.argmax(same)])
+        x, y = (float(ensemble.positions[name][first]) for name in ("x", "y"))
+        raise SceneError(
+            f"ensemble: two asperities have the same position, x = {x:.6g} m, y = {y:.6g} m; "
+            "interaction needs them apart"
+        )
 
 
 def solve_path(
@@ -227,12 +232,11 @@ def _totals(
     touching = contacts.load > 0.0
     if not touching.any():
         return Step()
-    near = np.zeros((2, touching.size), dtype=np.bool_)
-    close.mark_overlaps(pairs, np.where(touching, contacts.radius, 0.0), near[0], near[1])
+    overlapping = np.zeros(touching.size, dtype=np.bool_)
+    close.mark_overlaps(pairs, np.where(touching, contacts.radius, 0.0), overlapping)
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
-    shares = [float(contacts.load[own].sum()) / load for own in near]
-    overlap = Overlap(int(near[0].sum()), *shares)
+    overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
     rigidity = total_stiffness(candidates.system, found.state, h) if stiffness else 0.0
     return Step(
         force,

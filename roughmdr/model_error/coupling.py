@@ -4,11 +4,9 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
-_SEPARATED, _POWER = 0.2, 2.5
+_SEPARATED, _POWER = 0.15, 2.5
 """Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
-_CLOSE = 0.02
-"""Of contacts that nearly overlap, over their share of the force."""
-_OVERLAP, _CROWDED = 0.15, 0.5
+_OVERLAP, _CROWDED = 0.15, 0.2
 """Of contacts that overlap, over their share of the force; and so much more over the contact fraction as well."""
 _SUMMITS = 1.3
 """Of the summits of a continuous surface, whose flanks are no paraboloids, over the root of the contact fraction."""
@@ -18,13 +16,13 @@ MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
 """Shares of the force of overlapping contacts, and contact fractions, from which there is a warning or a mark."""
 
 
-def coupling_error(contact_fraction: Floats, close: Floats, overlap: Floats, *, of_surface: bool = False) -> Floats:
+def coupling_error(contact_fraction: Floats, overlap: Floats, *, of_surface: bool = False) -> Floats:
     """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
 
-    ``contact_fraction`` is the summed contact area over the nominal area, ``close`` and ``overlap`` the shares of the
-    force of contacts that nearly overlap, and that overlap; shape (n,) each.
+    ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of contacts
+    that overlap; shape (n,) each.
     """
-    error = _SEPARATED * contact_fraction**_POWER + _CLOSE * close + overlap * (_OVERLAP + _CROWDED * contact_fraction)
+    error = _SEPARATED * contact_fraction**_POWER + overlap * (_OVERLAP + _CROWDED * contact_fraction)
     return np.minimum(error + summits_error(contact_fraction, of_surface=of_surface), 1.0)
 
 
@@ -33,9 +31,15 @@ def summits_error(contact_fraction: Floats, *, of_surface: bool) -> Floats:
     return np.asarray((_SUMMITS if of_surface else 0.0) * np.sqrt(contact_fraction))
 
 
-def coupling_warnings(contact_fraction: float, overlap: float, marked: float) -> list[str]:
-    """Return the warnings of the largest contact fraction and overlap of a path."""
+def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False) -> list[str]:
+    """Return the warnings of the largest contact fraction and overlap of a path; ``on_grid``: by boundary elements."""
     lines = []
+    if on_grid:
+        if marked > 0:
+            lines.append(
+                f"up to {marked:.0f} steps of a realisation have no value: no equilibrium was found on the grid"
+            )
+        return lines
     if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
         lines.append(
             f"a summed contact area of up to {contact_fraction:.2g} of the nominal area, of which overlapping contacts "

@@ -39,9 +39,15 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
     names = cells[0].law.model_error.named
     numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
-    coupled = not any(math.isnan(cell.law.overlap_count) for cell in cells)
-    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], coupled=coupled)
-    if not coupled and prospect.coupled_seconds < math.inf:
+    numbers["grid_points"] = np.array([cell.law.grid_points for cell in cells])
+    model = None if prospect.interaction is None else prospect.interaction.model
+    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], interaction=model)
+    marked = sum(cell.law.marked_steps > 0.0 for cell in cells)
+    if marked and prospect.interaction is not None:
+        on_grid = prospect.interaction.beyond == "boundary_elements"
+        becomes = "realisations are computed by boundary elements" if on_grid else "steps are marked"
+        yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
+    if model is None and prospect.coupled_seconds < math.inf:
         yield "", f"at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
 
 

@@ -181,6 +181,8 @@ def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[st
     status = values("status")
     done, failed = int((status == DONE).sum()), int((status == FAILED).sum())
     outcome = (f"{failed} failed" if done else "failed") if failed else ("done" if done else "not run")
+    if "marked_steps" in result.variables and (marked := np.nanmax(values("marked_steps"), initial=0.0)) > 0.0:
+        outcome += f", {marked:.0f} steps marked"
     count = int(values("realization_count")[0]) if "realization_count" in result.variables else status.size
     time, error = values("run_time"), values("numerical_error")
     reached = values("accuracy_reached")[0] if "accuracy_reached" in result.variables else np.nan

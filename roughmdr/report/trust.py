@@ -19,6 +19,10 @@ _TINY = 1e-6
 _MORE = 1.0 + 1e-9
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
+_OPENINGS = {
+    None: "asperities are independent: force at given separation off by",
+    "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
+}
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
@@ -26,11 +30,13 @@ Numbers = Mapping[str, Any]
 """``ModelError.named``, numbers or arrays over the runs."""
 
 
-def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = (), *, coupled: bool = False) -> Iterator[tuple[str, str]]:
+def trust_lines(
+    numbers: Numbers, at_pull_off: ArrayLike = (), *, interaction: str | None = None
+) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several.
 
-    ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``coupled`` says
-    whether asperities feel each other in pairs.
+    ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``interaction``
+    is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -54,13 +60,13 @@ def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = (), *, coupled: bool 
     if not (known["model_error"] > 0.0).any():
         yield "trust", "no contact along the whole path"
         return
-    if coupled:
+    if interaction == "pairwise":
         yield "model error", _coupling(known)
         yield from _several("", others)
         yield "trust", _trust_coupled(known)
         return
     errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
-    yield "model error", f"asperities are independent: force at given separation off by {errors[0]}"
+    yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
     yield from (("", f"and by {error}") for error in errors[1:])
     if len(places) > 1:
         root = math.sqrt(float(tension.max()))
@@ -69,8 +75,8 @@ def trust_lines(numbers: Numbers, at_pull_off: ArrayLike = (), *, coupled: bool 
             f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}",
         )
     yield from _several("", others)
-    yield "trust", _trust(known, coefficients)
-    if not tension.size:
+    yield "trust", _trust(known, coefficients, interaction)
+    if interaction is None and not tension.size:
         yield "", _advice(known, coefficients)
 
 
@@ -82,20 +88,21 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
             for name in (_AT_PULL_OFF, f"{_AT_PULL_OFF}_min", f"{_AT_PULL_OFF}_max")
             if name in result.variables
         ]
-        numbers = {name: result.variables[name].values for name in _NAMES}
-        coupled = "overlap_count" in result.variables
-        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]), coupled=coupled)
+        numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
+        interaction = result.attrs.get("interaction")
+        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]), interaction=interaction)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 
 
-def _trust(known: dict[str, Floats], coefficients: Coefficients) -> str:
+def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: str | None) -> str:
     """Return within which error the force holds, and up to where."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
         whole = _percent(min(sum(parts.values()), 1.0))
-        rest = f"; below it asperities interact, which this scene leaves out: within {whole} at closest approach"
+        left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
+        rest = f"; below it {left_out}: within {whole} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients))
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
     error = sum(parts.values())
@@ -105,13 +112,17 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients) -> str:
 
 
 def _coupling(known: dict[str, Floats]) -> str:
-    """Return the error of coupled asperities, and that of independent ones in their place."""
+    """Return how asperities are coupled, the error, and that of independent ones in their place."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     independent = _interaction(float(known["largest_contact_fraction"].max()), ASPERITIES)
-    carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 else ""
+    on_grid = int((known["grid_points"] > 0.0).sum())
+    paired = known["grid_points"].size - on_grid
+    carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 and paired else ""
+    how = "asperities are coupled in pairs" if paired else "computed by boundary elements"
+    also = f", in {on_grid} of {on_grid + paired} by boundary elements" if on_grid and paired else ""
     return (
-        f"asperities are coupled in pairs: force at closest approach within {_percent(error)}{carried}; independent "
-        f"it would be off by {independent}"
+        f"{how}{also}: force at closest approach within {_percent(error)}{carried}; with independent asperities off by "
+        f"{independent}"
     )
 
 
@@ -121,7 +132,7 @@ def _trust_coupled(known: dict[str, Floats]) -> str:
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size:
         lowest = format_quantity(float(beyond.max()), "m")
-        rest = f"; by the coupling within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
+        rest = f"; as far as interaction goes within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
     if whole >= 1.0:
         return "none: the force may be off by all of it"
     return f"force within about {_percent(whole)} along the whole path{rest}"
@@ -130,8 +141,7 @@ def _trust_coupled(known: dict[str, Floats]) -> str:
 def _advice(known: dict[str, Floats], coefficients: Coefficients) -> str:
     """Return by how much [interaction] would better the error, if contacts overlap as often as those of this scene."""
     fraction, overlap = (known[name].max(initial=0.0) for name in ("largest_contact_fraction", "overlap_fraction"))
-    share = np.array([overlap])
-    better = coupling_error(np.array([fraction]), share, share, of_surface=coefficients is SUMMITS)
+    better = coupling_error(np.array([fraction]), np.array([overlap]), of_surface=coefficients is SUMMITS)
     return f'with [interaction] model = "pairwise" by the interaction within about {_percent(float(better[0]))}'
 
 

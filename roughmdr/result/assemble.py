@@ -73,6 +73,8 @@ def assemble(
         "left_out": "\n".join(plan.left_out),
         "versions": versions(),
     }
+    if scene.interaction is not None:
+        attrs["interaction"] = scene.interaction.model
     if plan.path_notes:
         attrs["path"] = "\n".join(plan.path_notes)
     if plan.map_lines:
@@ -136,11 +138,14 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     tabor = float(np.fmin.reduce(diagnostics["tabor_number"][jkr], initial=math.inf))
     slope, extent = (float(diagnostics[name].max()) for name in ("edge_slope", "profile_extent"))
     fraction = diagnostics["largest_contact_fraction"]
-    coupled = np.isfinite(diagnostics["overlap_count"])
+    coupled, on_grid = np.isfinite(diagnostics["overlap_count"]), diagnostics["grid_points"] > 0.0
     warnings += ValidityLimits(slope, extent, tabor).warnings
     warnings += fraction_warnings(float(np.fmax.reduce(fraction[~coupled], initial=0.0)))
     numbers = (fraction, diagnostics["overlap_fraction"], diagnostics["marked_steps"])
-    return warnings + coupling_warnings(*(float(np.fmax.reduce(each[coupled], initial=0.0)) for each in numbers))
+    for runs, grid in ((coupled & ~on_grid, False), (on_grid, True)):
+        largest = (float(np.fmax.reduce(each[runs], initial=0.0)) for each in numbers)
+        warnings += coupling_warnings(*largest, on_grid=grid)
+    return warnings
 
 
 def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str:

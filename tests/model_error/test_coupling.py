@@ -9,34 +9,28 @@ from roughmdr.model_error.coupling import WARNED_FRACTION, WARNED_SHARE, couplin
 share = st.floats(0.0, 1.0)
 
 
-def error(fraction: float, close: float, overlap: float, of_surface: bool = False) -> float:
-    columns = (np.array([value]) for value in (fraction, close, overlap))
+def error(fraction: float, overlap: float, of_surface: bool = False) -> float:
+    columns = (np.array([value]) for value in (fraction, overlap))
     return float(coupling_error(*columns, of_surface=of_surface)[0])
 
 
-@given(share, share, share, st.floats(0.0, 0.5))
-def test_it_grows_with_each_share_and_stays_a_fraction(
-    fraction: float, close: float, overlap: float, more: float
-) -> None:
-    here = error(fraction, close, overlap)
+@given(share, share, st.floats(0.0, 0.5))
+def test_it_grows_with_each_share_and_stays_a_fraction(fraction: float, overlap: float, more: float) -> None:
+    here = error(fraction, overlap)
     assert 0.0 <= here <= 1.0
-    for grown in (
-        (fraction + more, close, overlap),
-        (fraction, close + more, overlap),
-        (fraction, close, overlap + more),
-    ):
+    for grown in ((fraction + more, overlap), (fraction, overlap + more)):
         assert error(*grown) >= here
-    assert error(fraction, close, overlap, of_surface=True) >= here
+    assert error(fraction, overlap, of_surface=True) >= here
 
 
 def test_without_contact_there_is_none() -> None:
-    assert error(0.0, 0.0, 0.0) == error(0.0, 0.0, 0.0, of_surface=True) == 0.0
+    assert error(0.0, 0.0) == error(0.0, 0.0, of_surface=True) == 0.0
 
 
 def test_separated_contacts_are_within_what_the_lattice_showed() -> None:
     """On a square lattice it is off by 8e-5 at 6.4 % of area, 6e-4 at 12.8 % and 2.6e-3 at 21 %."""
     for fraction, measured in ((0.064, 8e-5), (0.128, 6e-4), (0.21, 2.6e-3)):
-        assert measured < error(fraction, 0.0, 0.0) < 6.0 * measured
+        assert measured < error(fraction, 0.0) < 6.0 * measured
 
 
 def test_warnings_come_from_their_limits_on() -> None:

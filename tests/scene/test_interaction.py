@@ -99,7 +99,7 @@ def test_the_plan_says_what_is_left_out_and_what_a_realisation_costs() -> None:
 
 
 def test_what_only_pairs_have_is_in_results_of_pairs_alone() -> None:
-    for name in ("overlap_count", "marked_steps"):
+    for name in ("overlap_count", "marked_steps", "grid_points"):
         declared = RUN_DIAGNOSTICS[name]
         assert declared.in_result(read(coupled()))
         assert not declared.in_result(read(coupled(MEAN_FIELD)))
