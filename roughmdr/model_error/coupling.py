@@ -19,8 +19,8 @@ MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
 def coupling_error(contact_fraction: Floats, overlap: Floats, *, of_surface: bool = False) -> Floats:
     """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
 
-    ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of contacts
-    that overlap; shape (n,) each.
+    ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
+    contacts that overlap; shape (n,) each.
     """
     error = _SEPARATED * contact_fraction**_POWER + overlap * (_OVERLAP + _CROWDED * contact_fraction)
     return np.minimum(error + summits_error(contact_fraction, of_surface=of_surface), 1.0)
@@ -36,9 +36,7 @@ def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *,
     lines = []
     if on_grid:
         if marked > 0:
-            lines.append(
-                f"up to {marked:.0f} steps of a realisation have no value: no equilibrium was found on the grid"
-            )
+            lines.append(f"up to {marked:.0f} steps of a realisation have no value: boundary elements did not converge")
         return lines
     if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
         lines.append(

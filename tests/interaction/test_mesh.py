@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import erfcinv
 
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
-from roughmdr.interaction.mesh import _MESH_PER_SPACING as MESH_PER_SPACING
+from roughmdr.interaction.mesh import _MESH_PER_REACH as MESH_PER_REACH
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.numerics.arguments import Floats
 
@@ -94,7 +95,7 @@ def test_one_or_two_loads_among_many_points(apart: float, error: float, periodic
     patch, spacing = Periodic.of(1.0), 1.0 / math.sqrt(count)
     dense, mesh = Dense(x, y, patch, periodic), Mesh(x, y, patch, periodic, error)
     exact, found = (np.vstack([each.field(load), each.of_moments(load, none, none)]) for each in (dense, mesh))
-    highest = math.pi * MESH_PER_SPACING
+    highest = math.pi * MESH_PER_REACH * float(erfcinv(error))
     for row, power in ((0, 0), (1, 1), (2, 1), (3, 2), (4, 2)):
         scale = np.abs(exact[row, :2]).max() if apart == 1e-6 else 0.0  # the derivatives of 1/r there lose digits
         bound = load.sum() * error * highest**power / spacing ** (power + 1) + 1e-10 * scale
