@@ -3,7 +3,8 @@
 Each asperity is computed at a given indentation, force and contact radius, their sum along a loading and unloading
 path, without adhesion, with JKR and with Dugdale adhesion; all are compared with 60 digits. A refusal counts as one
 only where a float does not hold what the exact result needs. Added are changes of the problem with a known effect, and
-the equilibria that the kernels evaluate to find one contact, counted in a process in which nothing is compiled.
+the equilibria that the kernels evaluate to find one contact, counted in a process in which nothing is compiled, and
+crowds of asperities that feel each other.
 """
 
 import cProfile
@@ -23,6 +24,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.closed import jkr_power
 from roughmdr.kernels.dugdale import equilibrium
 from studies.stability.cases import AXES, Case, design
+from studies.stability.crowding import Steps, crowded
 from studies.stability.judge import MODELS, OUTCOMES, REFUSED, Verdict, verdicts
 from studies.stability.metamorphic import checks
 from studies.study import named
@@ -42,12 +44,14 @@ def measure(quick: bool) -> xr.Dataset:
     cases = design(max(counts.values()))
     models = [[model for model in MODELS if number < counts[model]] for number in range(len(cases))]
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        changes = pool.submit(checks, quick)
+        changes, crowds = pool.submit(checks, quick), pool.submit(crowded, quick)
         counted = COUNTED_QUICKLY if quick else COUNTED
         tried = pool.submit(in_new_process, equilibria_tried, counted, NUMBA_DISABLE_JIT="1")
         found = list(pool.map(judge_case, cases, models, chunksize=1 if quick else 4))
     changed = zip(("name", "law", "kind", "error", "allowed"), zip(*changes.result(), strict=True), strict=True)
     result = of_verdicts(cases, found).assign({f"change_{name}": ("change", list(values)) for name, values in changed})
+    for name, values in zip(Steps._fields, zip(*crowds.result(), strict=True), strict=True):
+        result[f"crowd_{name}"] = ("crowd", list(values))
     return result.assign(
         tried=(("counted_case", "counted_law"), tried.result(), named("equilibria evaluated to find a contact")),
         counted_law=list(EQUILIBRIUM),

@@ -36,12 +36,19 @@ def report(result: xr.Dataset) -> str:
         chosen = result.isel(change=np.flatnonzero(result.change_name == name))
         numbers = float(chosen.change_error.max()), float(chosen.change_allowed.max())
         changes.append([name, str(chosen.sizes["change"]), *(f"{number:.1e}" if number else "0" for number in numbers)])
+    crowded = []
+    for name in dict.fromkeys(result.crowd_name.to_numpy().tolist()):
+        chosen = result.isel(crowd=np.flatnonzero(result.crowd_name == name))
+        counted = (str(int(chosen[f"crowd_{each}"].sum())) for each in ("steps", "marked", "without"))
+        crowded.append([name, *counted, f"{float(chosen.crowd_excess.max()):.2g}"])
     return "\n\n".join([
         f"{wrong} answers are wrong." if wrong else "No answer is wrong.",
         table(["law", "cases", *OUTCOMES, "worst error over what is allowed"], outcomes),
         table(["law", "answers", "reason"], [list(map(str, row)) for row in reasons]),
         table(["law", "equilibria evaluated for a contact: median", "99 %", "most"], evaluated),
         table(["change", "laws and shapes", "worst difference", "allowed"], changes),
+        table(["crowded asperities, coupled in pairs", "steps", "marked", "without an equilibrium",
+               "worst error over the stated one"], crowded),
     ])  # fmt: skip
 
 
