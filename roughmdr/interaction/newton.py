@@ -19,7 +19,7 @@ from roughmdr.numerics.arguments import Floats
 _MAX_STEPS = 40
 _RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
-_LEAST_RATIO = 0.1  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
+_LEAST_RATIO = 0.25  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 8, 1e-5

@@ -19,14 +19,14 @@ from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
 from roughmdr.interaction.placed import sides_of
-from roughmdr.interaction.settings import DEFAULT_ERROR, Interaction
+from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, SharedProfile
 
-DENSE_UP_TO = 300
+DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
 """Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
 _MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
 _TANGENT_ERROR = 1e-3  # of the mesh for the steps, each of which leaves a few per cent
@@ -115,7 +115,7 @@ class Candidates:
         x, y = np.ascontiguousarray(at.T)
         coupling: Coupling
         tangent: Coupling
-        if count <= DENSE_UP_TO:
+        if count <= DENSE_UP_TO[self.interaction.boundary]:
             coupling = tangent = Dense(x, y, self.patch, periodic)
         else:
             error = _MESH_ERROR * self.interaction.error
@@ -128,7 +128,7 @@ class Candidates:
         needed = int(np.searchsorted(-self.height, -lowest, side="right"))
         if needed <= self.count:
             return False
-        target = max(min(DENSE_UP_TO, self.height.size), math.ceil(_GROWTH * needed))
+        target = max(DENSE_UP_TO[self.interaction.boundary], math.ceil(_GROWTH * needed))
         self.system = self._system(min(target, self.height.size))
         return True
 

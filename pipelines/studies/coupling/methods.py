@@ -46,7 +46,8 @@ def timed(action: Callable[[], Floats], loads: int) -> tuple[Floats, float]:
 
 def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: bool = True) -> Floats:
     """Return forces [N] at separations [m], of pairs one by one or, not ``dense``, on a mesh."""
-    with warnings.catch_warnings(), patch.object(solve, "DENSE_UP_TO", 10**9 if dense else 0):
+    limit = dict.fromkeys(solve.DENSE_UP_TO, 10**9 if dense else 0)
+    with warnings.catch_warnings(), patch.object(solve, "DENSE_UP_TO", limit):
         warnings.simplefilter("ignore", rm.LimitWarning)
         law = rm.load_separation(
             ensemble, separation=separation, effective_modulus=MODULUS, variables="force", interaction=interaction

@@ -11,6 +11,7 @@ from roughmdr.numerics.arguments import Floats
 
 SIZE = 1e-3  # [m], side of the patch
 _RADIUS = 1.0  # [m], mean, so large that no slope matters: of contacts and roughness only the ratios are left
+_SLOPE = 1e-4  # of a Gaussian surface
 _DROP = 1e-7  # [m], of a cone and of r^4 at the mean spacing, for as small a slope
 
 
@@ -20,10 +21,11 @@ class Case(NamedTuple):
     placement: str
     """random, hexagonal, square, or hard_core with the smallest distance over the mean spacing: "hard_core 0.7"."""
     shape: str
-    """paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, or quartic (r^4)."""
+    """paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, quartic (r^4), or nayak."""
     asperities: int
     roughness: float
-    """Standard deviation of the heights over how far the flank of an asperity falls over the mean spacing."""
+    """Standard deviation of the heights over how far the flank of an asperity falls over the mean spacing; of nayak the
+    longest wave over the side."""
     points: int
     """A side of the grid of boundary elements."""
     seed: int
@@ -45,6 +47,8 @@ class Case(NamedTuple):
 
     def generate(self) -> xr.Dataset:
         """Return the ensemble, with positions."""
+        if self.shape == "nayak":
+            return self._nayak()
         shape: dict[str, object]
         match self.shape:
             case "cone":
@@ -70,6 +74,14 @@ class Case(NamedTuple):
             order = np.random.default_rng(self.seed).permutation(self.asperities)
             for axis, values in zip("xy", np.meshgrid(along, along), strict=True):
                 ensemble[axis] = ("asperity", values.ravel()[order], {"units": "m"})
+        return ensemble
+
+    def _nayak(self) -> xr.Dataset:
+        """Return summits of a Gaussian surface as they are, placed by themselves: not as those of the surface."""
+        waves = {"hurst": 0.8, "long_wave": SIZE * self.roughness, "short_wave": SIZE / math.sqrt(self.asperities)}
+        ensemble = rm.generate({"source": "nayak", "patch": SIZE, **waves, "rms_slope": _SLOPE,
+                                "placement": "hard_core"}, seed=self.seed)  # fmt: skip
+        ensemble.attrs["of_surface"] = 0
         return ensemble
 
 

@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
-GROUPS = ("few contacts", "random", "separated", "square", "map")
+GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map")
 FACTOR = 3.0
 """Within which the estimate is to be."""
 _MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more

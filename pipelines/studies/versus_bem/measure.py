@@ -40,6 +40,7 @@ CASES: list[Case | MapCase] = [
       for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),
     *(Case(where, shape, 64, 0.2, 256, 3)
       for shape, where in product(("lognormal", "cone", "quartic"), PLACEMENTS[::2])),
+    *(Case("nayak", "nayak", 250, long, 512, seed) for seed, long in ((6, 0.25), (7, 0.5), (8, 0.07))),
     *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
     *(Case(where, "paraboloid", count, 0.1, points, 5)
       for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),

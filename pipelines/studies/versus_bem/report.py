@@ -13,7 +13,7 @@ from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_er
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLOURS = dict(zip(GROUPS, ("0.6", "#1b6ca8", "#2e8b57", "#c8553d", "#8a5fb0"), strict=True))
+_COLOURS = dict(zip(GROUPS, ("0.6", "#1b6ca8", "#2e8b57", "#c8553d", "#c9a227", "#8a5fb0"), strict=True))
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 """Contact fractions from above the first to the second."""
 
