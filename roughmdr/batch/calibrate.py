@@ -94,7 +94,7 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
         for section, (_, steps) in zip(sections, sizes, strict=True)
     ]
     foreseen = [seconds(part, estimator) for part in (*parts, cell)]
-    if not drawn and _MARGIN * foreseen[0] > budget:
+    if _MARGIN * foreseen[0] > budget:
         return Cost(foreseen[-1], 0.0)
 
     def run(size: int) -> _Time:

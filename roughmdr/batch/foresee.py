@@ -102,8 +102,6 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     if paired:
         ensemble = part_of(ensemble, count)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
-    if scene.interaction is not None and paired:
-        scene = scene.model_copy(update={"interaction": scene.interaction.model_copy(update={"beyond": "flag"})})
-    law = simulate_ensemble(scene, path, ensemble, variables)
+    law = simulate_ensemble(scene.without_grid, path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     return Foreseen(path, law, law.pull_off.contact_area / area)

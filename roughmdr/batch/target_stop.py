@@ -1,7 +1,7 @@
 """stop = { contact_fraction = ... } or { pressure = ... }: the largest separation at which loading reaches it.
 
 It is sought in the expected law where the asperities have one, else in a stratified realisation; where nothing is
-drawn, in the asperities themselves.
+drawn, in the asperities themselves. Asperities that feel each other do so in pairs, as precisely as they are asked to.
 """
 
 from collections.abc import Callable
@@ -34,8 +34,10 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
         raise _fault(target, "needs a nominal area, which these asperities do not have")
     middle = scene.asperities.extremes(0.5)
     distances = (start - float(np.median(middle.height)), _FIRST * float(middle.nondimensional().width.max()))
+    scene, pairwise = scene.without_grid, scene.interaction_model if scene.needs_positions else None
+    rtol = _RTOL if pairwise is None else pairwise.error
     try:
-        stop = _first_reached(_law(scene, [target.variable], start), target, start, max(distances))
+        stop = _first_reached(_law(scene, [target.variable], start), target, start, max(distances), rtol)
         at_stop = (_law(scene, [name], start)(np.array([stop]))[0] for name in ("contact_fraction", "contact_count"))
         fraction, contacts = map(float, at_stop)
         if fraction > _MOST_OF_PATCH * contacts:
@@ -63,7 +65,7 @@ def _law(scene: Scene, names: list[str], start: float) -> _Law:
     return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
 
 
-def _first_reached(law: _Law, target: Target, start: float, distance: float) -> float:
+def _first_reached(law: _Law, target: Target, start: float, distance: float, rtol: float) -> float:
     """Return the largest separation [m] with the target, by search in ever longer and then ever shorter intervals."""
     if law(np.array([start]))[0] >= target.value:
         raise _fault(target, f"is reached above the start, {start:.4g} m; start must be higher")
@@ -79,7 +81,7 @@ def _first_reached(law: _Law, target: Target, start: float, distance: float) -> 
     while True:
         first = int(np.argmax(values >= target.value))
         above, below = float(h[first - 1]) if first else above, float(h[first])
-        resolution = max(_RTOL * (start - below), float(np.spacing(max(abs(above), abs(below)))))
+        resolution = max(rtol * (start - below), float(np.spacing(max(abs(above), abs(below)))))
         if above - below <= resolution:
             return below
         h, values = _between(law, above, below)

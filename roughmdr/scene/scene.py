@@ -178,6 +178,13 @@ class Scene(Section):
         return self.interaction is not None and self.interaction.model == "pairwise"
 
     @property
+    def without_grid(self) -> "Scene":
+        """The scene with steps marked that interaction.beyond would have computed on a grid, which takes long."""
+        if self.interaction is None or self.interaction.beyond == "flag":
+            return self
+        return self.model_copy(update={"interaction": self.interaction.model_copy(update={"beyond": "flag"})})
+
+    @property
     def file(self) -> Path | None:
         """File that the scene was read from, None if from none."""
         return self._file

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import tomli_w
 from click.testing import CliRunner
@@ -36,6 +37,25 @@ def test_the_block_reads_as_it_should() -> None:
         "force within about 24 % down to h = 1.1 um (contact 2 %); below it asperities interact, which this scene "
         "leaves out: within 30 % at closest approach"
     )
+
+
+def test_coupled_asperities_say_how_they_are_coupled() -> None:
+    """In pairs, on a grid, or some runs so and some so; a mean field leaves the rest of the interaction out."""
+
+    def told(*grid_points: float, **changes: float) -> str:
+        numbers = NUMBERS | changes | {"grid_points": np.array(grid_points)}
+        return dict(trust_lines(numbers, interaction="pairwise"))["model error"]
+
+    rest = "with independent asperities off by about 16 % (9.4 to 30)"
+    pairs = f"force at closest approach within 28 %, 5 % of it in contacts that overlap; {rest}"
+    assert told(0.0, math.nan) == f"asperities are coupled in pairs: {pairs}"
+    assert told(0.0, 0.0, 64.0) == f"asperities are coupled in pairs, in 1 of 3 by boundary elements: {pairs}"
+    assert told(64.0) == f"computed by boundary elements: force at closest approach within 28 %; {rest}"
+    on_grid = "computed by boundary elements: force at closest approach as right as the grid"
+    assert told(64.0, interaction_error=0.0) == f"{on_grid}; {rest}"
+    mean = dict(trust_lines(NUMBERS, interaction="mean_field"))
+    assert mean["model error"].startswith("asperities feel each other's mean displacement only: force at given")
+    assert "leaves out" not in mean["trust"]
 
 
 def test_where_no_unloading_ends_out_of_contact_there_is_no_line_on_pull_off() -> None:
