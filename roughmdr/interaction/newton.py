@@ -7,10 +7,11 @@ few per cent, and so each step leaves a few per cent of the error. A contact tha
 opens and closes, goes to where its last two steps cross 0.
 """
 
+import math
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, cg
+from scipy.sparse.linalg import LinearOperator, cg, gmres
 
 from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels
@@ -22,7 +23,7 @@ _LOST = 15, 0.05  # after so many steps one that changes so much of the load lea
 _LEAST_RATIO = 0.25  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
 _SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
-_STIFFNESS_RTOL, _STIFFNESS_PASSES, _PROBE = 1e-6, 8, 1e-5
+_STIFFNESS_RTOL, _RESTART, _RESTARTS, _PROBE = 1e-6, 20, 5, 1e-5
 
 
 class Coupling(Protocol):
@@ -174,21 +175,29 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
 
 
 def total_stiffness(system: System, state: State, separation: float) -> float:
-    """Return -dF/dh: the response of all loads to 1, by the tangent of first order and probes of the whole one."""
+    """Return -dF/dh: the response of all loads to 1, by probes of the residuals, the tangent of first order before it.
+
+    NaN where it is not found.
+    """
     stiffness = state.contacts.stiffness
     touching = stiffness > 0.0
     if not touching.any():
         return 0.0
     values, right = _tangent(state), np.where(touching, 1.0, 0.0)
-    change = _step(system, state, values, right, _STIFFNESS_RTOL)
     probe = _PROBE * float(state.x.max())
-    for _ in range(_STIFFNESS_PASSES):
-        moved = np.where(touching, change / np.where(touching, stiffness, 1.0), 0.0)
-        scale = probe / float(np.abs(moved).max())
-        other = evaluate(system, state.x + scale * moved, separation, state.pairs)
-        left = np.where(touching, (other.residual - state.residual) / scale, 0.0)
-        more = _step(system, state, values, right - left, _STIFFNESS_RTOL)
-        change = change + more
-        if abs(more.sum()) <= _STIFFNESS_RTOL * abs(change.sum()):
-            break
-    return float(change.sum())
+
+    def product(load: Floats) -> Floats:
+        moved = np.where(touching, load.ravel() / np.where(touching, stiffness, 1.0), 0.0)
+        largest = float(np.abs(moved).max())
+        if largest == 0.0:
+            return np.zeros_like(moved)
+        other = evaluate(system, state.x + probe / largest * moved, separation, state.pairs)
+        return np.where(touching, (other.residual - state.residual) * (largest / probe), 0.0)
+
+    def before(residual: Floats) -> Floats:
+        return _step(system, state, values, residual.ravel(), _STIFFNESS_RTOL)
+
+    shape = (right.size, right.size)
+    whole, tangent = (LinearOperator(shape, matvec=each, dtype=np.float64) for each in (product, before))
+    change, failed = gmres(whole, right, M=tangent, rtol=_STIFFNESS_RTOL, atol=0.0, restart=_RESTART, maxiter=_RESTARTS)
+    return math.nan if failed else float(change.sum())

@@ -238,6 +238,8 @@ def _totals(
     force = math.pi * modulus * length * length * load
     overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
     rigidity = total_stiffness(candidates.system, found.state, h) if stiffness else 0.0
+    if math.isnan(rigidity):
+        return Step(error=math.inf)
     return Step(
         force,
         length * math.fsum(contacts.radius[touching].tolist()),

@@ -43,6 +43,7 @@ BASES: dict[str, dict[str, Any]] = {
             "error": 1e-5,
             "beyond": "boundary_elements",
         },
+        "path": {"separation": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 10}, "unload": True},
     },
     "cones": {
         **SCENE,
