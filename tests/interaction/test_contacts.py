@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -182,6 +183,7 @@ def test_every_shape_has_its_example() -> None:
     assert set(SHAPES) - given <= {"power_series", "tabulated"}
 
 
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 @pytest.mark.parametrize("name", ["paraboloid", "cone", "truncated_cone"])
 def test_the_compiled_loops_are_their_sources(name: str) -> None:
     """Each is run as plain Python too, on the same contact."""
