@@ -57,6 +57,7 @@ def sum_coupled(
     else:
         fraction = total[totals.AREA] / ensemble.nominal_area
     beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
+    beyond |= total[totals.ERROR] > interaction.error * total[totals.FORCE]  # contacts that did not come to rest
     error = coupling_error(np.nan_to_num(fraction), share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
@@ -69,7 +70,7 @@ def sum_coupled(
 def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, NDArray[np.bool_]]:
     """Return totals [row, step], and which steps have an equilibrium: NaN where there is none.
 
-    Contacts with more area than the patch are none.
+    A step whose contact area exceeds the patch has none.
     """
     total = np.zeros((totals.ROWS, len(steps)))
     for row, values in (

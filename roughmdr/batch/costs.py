@@ -20,10 +20,11 @@ _FIRST_RULE = 8
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
-_PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1e-5
+_PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 _GRID_STEP = 1.2  # of boundary elements, should they be needed
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
+_PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
 
 
@@ -47,7 +48,10 @@ def seconds(cell: Cell, estimator: str) -> float:
 
 
 def paired_seconds(cell: Cell) -> float:
-    """Return about how long one realisation takes [s] whose asperities feel each other in pairs, at most."""
+    """Return about how long one realisation takes [s] whose asperities feel each other in pairs, all in contact.
+
+    Each step is one on the grid, where ``beyond`` allows that.
+    """
     beyond = None if cell.scene.interaction is None else cell.scene.interaction.beyond
     grid = _GRID_STEP if beyond == "boundary_elements" else 0.0
     each = grid + _PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT
@@ -68,7 +72,12 @@ def ensemble_bytes(plan: Plan) -> float:
     """Return the memory [byte] of the largest ensemble that is drawn, while its law is computed."""
     drawn = [cell.scene for cell in plan.cells if cell.scene.estimators[0] != "expected"]
     return max(
-        (_ASPERITY * scene.asperities.expected_count for scene in drawn if scene.asperities.is_random), default=0.0
+        (
+            (_PAIRED_ASPERITY if scene.needs_positions else _ASPERITY) * scene.asperities.expected_count
+            for scene in drawn
+            if scene.asperities.is_random
+        ),
+        default=0.0,
     )
 
 

@@ -6,6 +6,7 @@ displacement is 0: separations count from the mean plane of the deformed half-sp
 """
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,9 +18,10 @@ _RESIDUAL = 1e-6
 """The largest gap in contact, or overlap outside it, over the deepest overlap: about the error of the force."""
 _MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50 to 100
 _DIFFERENCE = 0.01
-"""Of the deepest overlap, each way. The stiffness is then accurate to 1 %: cells at an edge touch one by one."""
+"""Step of the separation, each way, over the deepest overlap. Cells at an edge touch one by one, so that the stiffness
+is accurate to 1 %."""
 _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0
-"""Of the cells' sides at the edge of contacts that are not in contact, in the mean over all directions of the edge
+"""Area to take off for each side of a cell on the edge of a contact, in cells: the mean over directions of the edge
 (V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114 (2017), 161)."""
 
 
@@ -48,6 +50,7 @@ class BoundaryElements:
         wave = np.hypot(x[:, None], y / (sides[1] / height.shape[1]))
         wave[0, 0] = np.inf
         self._compliance = 1.0 / (math.pi * wave)
+        self._cell_stiffness = 1.0 / float(fft.irfft2(self._compliance, s=height.shape)[0, 0])
         self.pressure = np.zeros_like(height)
         """[E*], at the last separation."""
 
@@ -72,35 +75,42 @@ class BoundaryElements:
         if overlap.mean() >= 0.0:
             return math.nan
         overlap /= deepest
-        pressure = self._start(overlap)
+        for start in self._starts(overlap):
+            pressure = self._solve(overlap, start)
+            if pressure is not None:
+                self.pressure = pressure * deepest
+                return self.cell_area * float(self.pressure.sum())
+        self.pressure = np.zeros_like(overlap)
+        return math.nan
+
+    def _starts(self, overlap: Floats) -> Iterator[Floats]:
+        """Yield the last pressures, and such as the overlap, each to the best scale."""
+        for pressure in (self.pressure, overlap.clip(0.0)):
+            work = float(np.vdot(pressure, np.where(pressure > 0.0, overlap, 0.0)))
+            if work > 0.0:
+                yield np.asarray(pressure * (work / float(np.vdot(pressure, self._displaced(pressure)))))
+
+    def _solve(self, overlap: Floats, pressure: Floats) -> Floats | None:
+        """Return the pressures that undo the overlap; None where they are not found."""
         before, direction = 0.0, np.zeros_like(overlap)
         for _ in range(_MAX_ITERATIONS):
             gap = self._displaced(pressure) - overlap
             loaded = pressure > 0.0
             rest = np.where(loaded, gap, 0.0)
             if max(float(np.abs(rest).max()), -float(gap.min())) <= _RESIDUAL:
-                self.pressure = pressure * deepest
-                return self.cell_area * float(self.pressure.sum())
+                return pressure
             square = float(np.vdot(rest, rest))
             direction = rest + (square / before * np.where(loaded, direction, 0.0) if before > 0.0 else 0.0)
             curvature = float(np.vdot(direction, self._displaced(direction)))
-            if not curvature > 0.0:
-                break
-            step = float(np.vdot(rest, direction)) / curvature
+            flat = not curvature > 0.0  # the loaded cells are at rest, and others overlap
+            step = self._cell_stiffness if flat else float(np.vdot(rest, direction)) / curvature
             pressure = np.maximum(pressure - step * direction, 0.0)
             hit = (pressure == 0.0) & (gap < 0.0)
             pressure[hit] -= step * gap[hit]
+            if flat and not hit.any():
+                return None
             before = 0.0 if hit.any() else square
-        return math.nan
-
-    def _start(self, overlap: Floats) -> Floats:
-        """Return the last pressures, or else such as the overlap, to the best scale."""
-        for pressure in (self.pressure, overlap.clip(0.0)):
-            if pressure.any():
-                work = float(np.vdot(pressure, np.where(pressure > 0.0, overlap, 0.0)))
-                if work > 0.0:
-                    return np.asarray(pressure * (work / float(np.vdot(pressure, self._displaced(pressure)))))
-        raise ArithmeticError("nothing overlaps")
+        return None
 
     def stiffness(self, separation: float) -> float:
         """Return -dF/dh by a central difference; the pressures stay as they are."""

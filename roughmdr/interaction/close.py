@@ -38,7 +38,7 @@ class Pairs(NamedTuple):
     apart: Floats
     """Their distance along x, along y and whole, [pair, 3]."""
     share: Floats
-    """1 where the pair overlaps far, 0 where the expansion holds, between in between."""
+    """Weight of the punch integral: 1 below FULL times the sum of the radii, 0 above NONE, smooth between."""
     radius: Floats
     """The contact radii that pairs were looked for with."""
 

@@ -21,7 +21,7 @@ _MAX_STEPS = 40
 _RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
 _LEAST_RATIO = 0.25  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
-_SLOW = 0.5  # a ratio of two steps above which nothing is said about the next ones
+_MOST_RATIO = 0.9  # and the largest: at rest, where only rounding is left, steps no longer fall
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _RESTART, _RESTARTS, _PROBE = 1e-6, 20, 5, 1e-5
 
@@ -160,8 +160,8 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         new = evaluate(system, state.x + taken * moved, separation, state.pairs)
         made = np.maximum(np.abs(new.contacts.load - state.contacts.load), np.abs(change))
         size = float(made.sum() / max(total, new.contacts.load.sum()))
-        ratio = max(size / before, _LEAST_RATIO) if number and before > 0.0 else 1.0
-        stated = size * ratio / (1.0 - ratio) if ratio < _SLOW else size
+        ratio = min(max(size / before, _LEAST_RATIO), _MOST_RATIO) if number and before > 0.0 else _MOST_RATIO
+        stated = size * ratio / (1.0 - ratio)
         state, before = new, size
         if number >= _LOST[0] and size > _LOST[1]:
             break

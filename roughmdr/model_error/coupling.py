@@ -39,15 +39,16 @@ def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *,
             lines.append(f"up to {marked:.0f} steps of a realisation have no value: boundary elements did not converge")
         return lines
     if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
+        carried = f", and those that overlap carry {overlap:.2g} of the force" if overlap > 0.0 else ""
         lines.append(
-            f"a summed contact area of up to {contact_fraction:.2g} of the nominal area, of which overlapping contacts "
-            f"carry {overlap:.2g} of the force at closest approach: they are coupled only roughly (warned of above "
-            f"{WARNED_FRACTION:g} of the area and {WARNED_SHARE:g} of the force)"
+            f"contacts cover up to {contact_fraction:.2g} of the nominal area{carried} at closest approach: where they "
+            f"are so near, their coupling is approximate (warned of above {WARNED_FRACTION:g} of the area and "
+            f"{WARNED_SHARE:g} of the force)"
         )
     if marked > 0:
         lines.append(
             f"up to {marked:.0f} steps of a realisation are marked: without an equilibrium, so that they have no "
-            f"value, or with more than {MARKED_SHARE:g} of the force in overlapping contacts or {MARKED_FRACTION:g} "
-            "of the area in contact"
+            f"value, not at rest to the error asked for, with more than {MARKED_SHARE:g} of the force in overlapping "
+            f"contacts, or with {MARKED_FRACTION:g} of the area in contact"
         )
     return lines

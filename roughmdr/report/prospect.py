@@ -47,7 +47,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         on_grid = prospect.interaction.beyond == "boundary_elements"
         becomes = "realisations are computed by boundary elements" if on_grid else "steps are marked"
         yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
-    if model is None and prospect.coupled_seconds < math.inf:
+    touches = any(cell.law.model_error.largest_fraction > 0.0 for cell in cells)
+    if model is None and touches and prospect.coupled_seconds < math.inf:
         yield "", f"at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
 
 

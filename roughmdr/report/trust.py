@@ -130,7 +130,7 @@ def _trust_coupled(known: dict[str, Floats]) -> str:
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size:
         lowest = format_quantity(float(beyond.max()), "m")
-        rest = f"; as far as interaction goes within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
+        rest = f"; the part by interaction stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
     if whole >= 1.0:
         return "none: the force may be off by all of it"
     return f"force within about {_percent(whole)} along the whole path{rest}"
