@@ -139,7 +139,8 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic(
         "marked_steps",
         "1",
-        "number of steps without an equilibrium, or with more overlap than the interaction can describe",
+        "number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or "
+        "contact",
         merge="maximum",
         in_result=_pairwise,
     ),

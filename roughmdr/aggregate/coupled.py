@@ -34,7 +34,8 @@ class CoupledTotals(NamedTuple):
     overlap_share: float
     """Of the force."""
     marked: int
-    """Number of steps without an equilibrium, or with more overlap than the interaction can describe."""
+    """Number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or contact.
+    """
     grid_points: int = 0
     """Of the boundary elements that all of this is from; 0 where contacts are coupled in pairs."""
     warnings: tuple[str, ...] = ()

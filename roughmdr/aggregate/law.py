@@ -42,7 +42,9 @@ class LoadSeparation(NamedTuple):
     overlap_count: float = math.nan
     """Number of contacts that overlap a neighbour's, at closest approach; NaN without pairwise interaction."""
     marked_steps: float = math.nan
-    """Number of steps without an equilibrium, or with more overlap than the interaction can describe; NaN likewise."""
+    """Number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or contact;
+    NaN likewise.
+    """
     grid_points: float = math.nan
     """Of the boundary elements that the law was computed by; 0 of contacts coupled in pairs, NaN likewise."""
 

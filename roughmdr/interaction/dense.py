@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from roughmdr.interaction.green import Periodic, periodic_load, point_load
+from roughmdr.interaction.green import Periodic, below_all, periodic_load, point_load
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
-
-_MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 
 
 @njit
@@ -38,7 +36,7 @@ class Dense:
     def least_displacement(self, load: Floats) -> float:
         """Return about the least displacement between the points by compressive point loads."""
         values = self.potential(load)
-        return float(values.min() - _MARGIN * np.ptp(values))
+        return below_all(values)
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""

@@ -8,10 +8,14 @@ second. Lengths are over the side of the patch along x.
 import math
 from typing import NamedTuple
 
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 _ROOT_PI = math.sqrt(math.pi)
 _REACH = 6.0  # erfc(6) is 2e-17
+_MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 
 
 class Periodic(NamedTuple):
@@ -104,3 +108,8 @@ def periodic_load(dx: float, dy: float, patch: Periodic) -> Field:
 def np_rint(value: float) -> float:
     """Return the whole number nearest to ``value``."""
     return math.floor(value + 0.5)
+
+
+def below_all(displacement: Floats) -> float:
+    """Return about the least displacement between points, from those at the points: some of their range below."""
+    return float(displacement.min() - _MARGIN * np.ptp(displacement))

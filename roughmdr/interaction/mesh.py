@@ -17,6 +17,7 @@ from scipy.special import erf, erfcinv
 
 from roughmdr.interaction.green import (
     Periodic,
+    below_all,
     far_part_at_load,
     far_wave,
     mean_of_near_part,
@@ -33,7 +34,6 @@ _STEEPNESS = 10.0  # of the cut: erfc(5) is 2e-12
 _LEAST_MESH, _LEAST_FREE_MESH = 24, 120  # mesh points for the shorter side; the cut must be resolved
 _LARGE_MESH = 2**18  # points from which on a transform is worth several cores
 _ROWS_AT_A_TIME = 8  # of the mesh, along which points follow each other, so that their cells are in the cache
-_MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
 _NODES, _WEIGHTS = unit_gauss(60)
 
 Complex = NDArray[np.complex128]
@@ -242,7 +242,7 @@ class Mesh:
         """Return about the least displacement between the points by compressive point loads."""
         load = load[self._order]
         far = self._at_points(self._waves_of(load) * self._green) - self._own * load
-        return float(far.min() - _MARGIN * np.ptp(far))
+        return below_all(far)
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""

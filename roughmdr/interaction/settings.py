@@ -1,6 +1,7 @@
 """Which interaction of asperities a scene or a caller asks for."""
 
 from collections.abc import Mapping
+from numbers import Integral, Real
 from typing import Literal, NamedTuple, get_args
 
 from roughmdr.errors import RoughmdrError
@@ -44,14 +45,19 @@ class Interaction(NamedTuple):
         allowed = {name: get_args(kind) for name, kind in zip(("model", "boundary", "beyond"), _NAMED, strict=True)}
         allowed["order"] = (1, 2)
         for name, values in allowed.items():
-            if getattr(asked, name) not in values or isinstance(getattr(asked, name), bool):
-                given = short_repr(getattr(asked, name))
+            value, kind = getattr(asked, name), Integral if name == "order" else str
+            if isinstance(value, bool) or not isinstance(value, kind) or value not in values:
+                given = short_repr(value)
                 raise RoughmdrError(f"interaction.{name} is {given}; there are {', '.join(map(repr, values))}")
         if asked.beyond == "boundary_elements" and (asked.model, asked.boundary) != ("pairwise", "periodic"):
             raise RoughmdrError(
                 f"interaction.beyond is {asked.beyond!r}; it goes with model 'pairwise' and boundary 'periodic' only"
             )
-        if isinstance(asked.error, bool | str) or not LEAST_ERROR <= asked.error <= MOST_ERROR:
+        if (
+            isinstance(asked.error, bool)
+            or not isinstance(asked.error, Real)
+            or not LEAST_ERROR <= asked.error <= MOST_ERROR
+        ):
             given = short_repr(asked.error)
             raise RoughmdrError(f"interaction.error is {given}; it must be from {LEAST_ERROR:g} to {MOST_ERROR:g}")
         return asked

@@ -66,8 +66,6 @@ class Coupled(NamedTuple):
     radius: Floats
     """The contact radius [m] of each asperity where the flat is closest."""
     visits: int
-    buried_count: int
-    """Number of summits below the flank of another asperity, which are left out."""
 
 
 class Candidates:
@@ -192,7 +190,7 @@ def solve_path(
     if state is not None:
         touching = state.contacts.load > 0.0
         radius[candidates.kept[: state.x.size]] = np.where(touching, state.contacts.radius, 0.0) * length
-    return Coupled([steps[i] for i in index.ravel()], radius, visits, ensemble.height.size - candidates.kept.size)
+    return Coupled([steps[i] for i in index.ravel()], radius, visits)
 
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:

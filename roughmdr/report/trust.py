@@ -120,7 +120,7 @@ def _coupling(known: dict[str, Floats]) -> str:
     carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 and paired else ""
     how = "asperities are coupled in pairs" if paired else "computed by boundary elements"
     also = f", in {on_grid} of {on_grid + paired} by boundary elements" if on_grid and paired else ""
-    within = f"within {_percent(error)}{carried}" if error > 0.0 else "as right as the grid"
+    within = f"within {_percent(max(error, _TINY))}{carried}" if error > 0.0 else "as right as the grid"
     return f"{how}{also}: force at closest approach {within}; with independent asperities off by {independent}"
 
 

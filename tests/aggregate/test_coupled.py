@@ -116,3 +116,23 @@ def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interacti
     assert (solvers <= loaded) == (interaction is not None)
     if interaction is None:
         assert not sorted((solvers | {"roughmdr.aggregate.coupled"}) & loaded)
+
+
+@pytest.mark.parametrize(("seed", "at_rest"), [(1, False), (3, True)])
+def test_contacts_that_do_not_come_to_rest_are_marked(seed: int, at_rest: bool) -> None:
+    """Edges of truncated paraboloids catch, without overlap and at 2.4 % of contact: their error is stated."""
+    section = {
+        **{"source": "random", "count": 60, "patch": "62 um", "placement": "random", "shape": "truncated_paraboloid"},
+        **{"radius": "10 um", "flat_radius": "0.5 um", "height": {"distribution": "normal", "std": "0.1 um"}},
+    }
+    found = rm.load_separation(
+        rm.generate(section, seed=seed),
+        separation=np.linspace(2e-7, 0.0, 7),
+        effective_modulus=1e9,
+        variables=["force"],
+        interaction="pairwise",
+    )
+    assert np.isfinite(found.force).all()
+    assert found.overlap_fraction == 0.0
+    assert found.largest_contact_fraction < 0.03
+    assert (found.numerical_error <= 1e-6) == (found.marked_steps == 0.0) == at_rest

@@ -1,5 +1,6 @@
 """[interaction]: what it may ask for, what it goes with, and what follows for positions, plans and keys."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -139,7 +140,12 @@ def test_asperities_without_what_it_needs_are_refused(
     assert says in str(of_call.value)
 
 
-@pytest.mark.parametrize("interaction", ["pairs", {"model": "pairwise", "order": 3}, {"models": "pairwise"}, 3])
+@pytest.mark.parametrize(
+    "interaction",
+    ["pairs", {"model": "pairwise", "order": 3}, {"models": "pairwise"}, 3]
+    + [{"error": value} for value in (None, [1e-6], 1e-3 + 0j, np.array([1e-6, 1e-5]), math.nan, True)]
+    + [{"order": np.array([1, 2])}, {"order": True}, {"beyond": np.array(["flag", "x"])}, {"model": None}],
+)
 def test_a_caller_is_told_what_there_is(interaction: Any) -> None:
     ensemble = rm.generate({**ASPERITIES, "count": 20, "placement": "random"}, seed=1)
     with pytest.raises(rm.SceneError, match="interaction"):

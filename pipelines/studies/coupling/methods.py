@@ -15,6 +15,7 @@ import roughmdr as rm
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
 from studies.versus_bem.ensembles import SIZE, Case, height_map
+from studies.versus_bem.judge import without_grid
 from studies.versus_bem.measure import MODULUS, separations
 
 FRACTIONS = np.array([0.01, 0.02, 0.03, 0.05])
@@ -69,7 +70,7 @@ def compare(quick: bool) -> list[Point]:
     along = separations(ensemble, FRACTIONS[:2] if quick else FRACTIONS)
     grids = {points: by_boundary_elements(ensemble, along, points) for points in GRIDS[quick]}
     fine, coarse = (grids[points][0] for points in sorted(grids, reverse=True)[:2])
-    exact = fine + (fine - coarse) / 3.0
+    exact = without_grid(fine, coarse)
     asked: list[tuple[str, str, Any, bool]] = [
         ("independent", "-", None, True),
         ("mean field", "-", "mean_field", True),

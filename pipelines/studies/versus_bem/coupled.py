@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from studies.study import table
-from studies.versus_bem.judge import FACTOR, GROUPS, grid_errors, groups, signed_errors
+from studies.versus_bem.judge import FACTOR, GROUPS, grid_errors, groups, signed_errors, without_grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +84,7 @@ def _median(error: np.ndarray, own: np.ndarray) -> str:
 
 def _fine(step: xr.Dataset) -> list[str]:
     """Return a row of the largest errors at a step; force held against the limit of both grids."""
-    exact = step["force_bem"] + (step["force_bem"] - step["force_coarse"]) / 3.0
+    exact = without_grid(step["force_bem"], step["force_coarse"])
     errors = [abs(step[name] / exact - 1.0) for name in (*_NAMES, "force_bem")]
     area = abs(step["contact_fraction_second"] / step["contact_fraction_bem"] - 1.0)
     off = abs(step["contact_count_second"] - step["contact_count_bem"])

@@ -60,7 +60,7 @@ def report(result: xr.Dataset) -> str:
             cells.append(middle)
         coefficients.append(cells)
         if own.any():
-            judged = judge(fraction[own], error[own], estimates(fraction, group)[own])
+            judged = judge(error[own], estimates(fraction, group)[own])
             percent = (f"{100.0 * share:.0f} %" for share in (judged.bounded, judged.within))
             shares.append([name, str(judged.number), *percent])
     grid = grid_errors(result)
