@@ -103,6 +103,10 @@ def _pairwise(scene: Any) -> bool:
     return bool(scene.needs_positions)
 
 
+def _adhering(scene: Any) -> bool:
+    return bool(scene.needs_positions and scene.adhesion_model.work > 0.0)
+
+
 def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
     return {row.name: row for row in rows}
 
@@ -149,6 +153,19 @@ RUN_DIAGNOSTICS = _diagnostics(
         "1",
         "points of the grid of boundary elements; 0 where contacts are coupled in pairs",
         in_result=_pairwise,
+    ),
+    Diagnostic(
+        "avalanche_count",
+        "1",
+        "number of separations at which contacts are made or lost in jumps",
+        in_result=_adhering,
+    ),
+    Diagnostic(
+        "avalanche_size_max",
+        "1",
+        "largest number of jumps at one separation",
+        merge="maximum",
+        in_result=_adhering,
     ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
     Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),

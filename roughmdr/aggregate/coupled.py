@@ -10,11 +10,12 @@ from roughmdr.aggregate import totals
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
+from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error, summits_error
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
-    from roughmdr.interaction.solve import Step
+    from roughmdr.interaction.totals import Step
 
 UNAVAILABLE = ("energy", "dissipated_energy")
 
@@ -39,18 +40,54 @@ class CoupledTotals(NamedTuple):
     grid_points: int = 0
     """Of the boundary elements that all of this is from; 0 where contacts are coupled in pairs."""
     warnings: tuple[str, ...] = ()
+    pull_off: PullOff = PullOff()
+    avalanches: tuple[int, ...] | None = None
+    """Sizes of the avalanches; None without adhesion."""
 
 
 def sum_coupled(
-    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, names: list[str]
+    ensemble: Ensemble,
+    separation: Floats,
+    effective_modulus: float,
+    interaction: Interaction,
+    names: list[str],
+    work: float = 0.0,
 ) -> CoupledTotals:
-    """Return the totals of an ensemble at separations [m]; SceneError where a variable is not to be had."""
+    """Return the totals of an ensemble at separations [m], w [J/m2]; SceneError where a variable is not to be had."""
+    if work > 0.0:
+        from roughmdr.interaction.jkr import path
+
+        adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names))
+        found = _found(
+            ensemble, separation, interaction, adhering.steps, adhering.radius, adhering.visits, adhesive=True
+        )
+        return found._replace(
+            warnings=(adhering.crowded,) if adhering.crowded else (),
+            pull_off=adhering.pull_off,
+            avalanches=tuple(each.size for each in adhering.avalanches),
+        )
     from roughmdr.interaction.solve import solve_path
 
     if asked := [name for name in names if name in UNAVAILABLE]:
-        raise SceneError(f"variables: {', '.join(asked)} cannot be computed with interaction 'pairwise' yet")
+        raise SceneError(f"variables: {', '.join(asked)} with interaction 'pairwise' need adhesion")
     coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
-    steps = coupled.steps
+    found = _found(ensemble, separation, interaction, coupled.steps, coupled.radius, coupled.visits, adhesive=False)
+    if found.marked and interaction.beyond == "boundary_elements":
+        return _on_grid(found, ensemble, separation, effective_modulus, names)
+    return found
+
+
+def _found(
+    ensemble: Ensemble,
+    separation: Floats,
+    interaction: Interaction,
+    steps: "list[Step]",
+    radius: Floats,
+    visits: int,
+    *,
+    adhesive: bool,
+) -> CoupledTotals:
+    """Return the totals of contacts that are coupled in pairs."""
     total, solved = _totals(steps, ensemble.nominal_area)
     share = np.array([step.overlap.share for step in steps])
     if ensemble.nominal_area is None:
@@ -58,14 +95,12 @@ def sum_coupled(
     else:
         fraction = total[totals.AREA] / ensemble.nominal_area
     beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
-    beyond |= total[totals.ERROR] > interaction.error * total[totals.FORCE]  # contacts that did not come to rest
+    largest = np.nanmax(np.abs(total[totals.FORCE]), initial=0.0) if adhesive else total[totals.FORCE]
+    beyond |= total[totals.ERROR] > interaction.error * largest  # contacts that did not come to rest
     error = coupling_error(np.nan_to_num(fraction), share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
-    found = CoupledTotals(total, coupled.radius, coupled.visits, error, closest.contacts, closest.share, marked)
-    if marked and interaction.beyond == "boundary_elements":
-        return _on_grid(found, ensemble, separation, effective_modulus, names)
-    return found
+    return CoupledTotals(total, radius, visits, error, closest.contacts, closest.share, marked)
 
 
 def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, NDArray[np.bool_]]:
@@ -81,6 +116,8 @@ def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, ND
         (totals.STIFFNESS, [step.stiffness for step in steps]),
         (totals.COUNT, [step.contacts for step in steps]),
         (totals.ERROR, [step.error for step in steps]),
+        (totals.ENERGY, [step.energy for step in steps]),
+        (totals.DISSIPATED, [step.dissipated for step in steps]),
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])

@@ -47,6 +47,10 @@ class LoadSeparation(NamedTuple):
     """
     grid_points: float = math.nan
     """Of the boundary elements that the law was computed by; 0 of contacts coupled in pairs, NaN likewise."""
+    avalanche_count: float = math.nan
+    """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
+    avalanche_size_max: float = math.nan
+    """Largest number of contacts that changed at one; NaN likewise."""
 
     @classmethod
     def of(

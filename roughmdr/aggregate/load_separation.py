@@ -19,7 +19,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
 from roughmdr.interaction.mean_field import coupling_in, shift
 from roughmdr.interaction.placed import check_placed
-from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
@@ -60,10 +60,10 @@ def compute(
         raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
     if interaction is not None:
         check_placed(ensemble, interaction)
-        if adhesion.work > 0.0:
-            raise SceneError("interaction: does not go with adhesion (work > 0) yet")
+        if reason := reason_against_adhesion(interaction, adhesion):
+            raise SceneError(f"interaction {reason}")
         if interaction.model == "pairwise":
-            return _coupled(ensemble, path, effective_modulus, interaction, names)
+            return _coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
@@ -106,22 +106,39 @@ def compute(
 
 
 def _coupled(
-    ensemble: Ensemble, path: LoadingPath, effective_modulus: float, interaction: Interaction, names: list[str]
+    ensemble: Ensemble,
+    path: LoadingPath,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    interaction: Interaction,
+    names: list[str],
 ) -> LoadSeparation:
-    """Return the law of asperities that feel each other in pairs, without adhesion."""
+    """Return the law of asperities that feel each other in pairs."""
     from roughmdr.aggregate.coupled import sum_coupled
 
-    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names)
+    work, spread = adhesion.work, float(np.std(ensemble.height))
+    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    givens = Givens(effective_modulus, 0.0, float(np.std(ensemble.height)), area, float(found.radius.max(initial=0.0)))
+    givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
+    validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
     assumptions = Assumptions(
         ensemble.validity_limits(found.radius),
+        np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
         radius_uncertainty=float(ensemble.attrs.get("radius_uncertainty", 0.0)),
         of_surface=bool(ensemble.attrs.get("of_surface", 0)),
         overlap=found.overlap_share,
         coupling_error=found.error,
     )
-    result = LoadSeparation.of(found.total, names, path.separation, givens, assumptions, found.visits, math.inf, "none")
+    model = "jkr" if work > 0.0 else "none"
+    result = LoadSeparation.of(
+        found.total, names, path.separation, givens, assumptions, found.visits, validity.tabor, model
+    )
+    if found.avalanches is not None:
+        result = result._replace(
+            pull_off=found.pull_off,
+            avalanche_count=float(len(found.avalanches)),
+            avalanche_size_max=float(max(found.avalanches, default=0)),
+        )
     return result._replace(
         warnings=(*ensemble.warnings, *found.warnings),
         overlap_count=float(found.overlap_count),
@@ -149,13 +166,17 @@ def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = No
     if interaction is not None and interaction.model == "pairwise":
         from roughmdr.interaction.solve import prepare as prepare_coupled
 
-        prepare_coupled(shape)
-        return
+        if adhesion.work > 0.0:
+            from roughmdr.interaction.jkr.path import prepare as prepare_adhering
+
+            prepare_adhering(shape)
+        else:
+            prepare_coupled(shape)
     kind = SHAPES[shape]
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
     columns = Columns(width, rise, params)
-    for model in adhesion.candidates:
+    for model in adhesion.candidates if interaction is None or interaction.model != "pairwise" else ():
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
@@ -190,7 +211,7 @@ def load_separation(
         Whether the same separations follow in reversed order, the turning point repeated.
     interaction : {"pairwise", "mean_field"} or dict, optional
         How asperities feel each other, as in a scene's [interaction]: a dict has model, boundary, order, error, beyond.
-        None: they are independent. "pairwise" needs x and y, and either model without adhesion.
+        None: they are independent. "pairwise" needs x and y; with adhesion it needs the model "jkr".
     variables : str or iterable of str, optional
         Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum, energy,
         dissipated_energy, model_error_curve.
@@ -261,7 +282,9 @@ def load_separation(
     data = {name: Array(("step",), result.variables[name], CURVE_VARIABLES[name].attrs) for name in names}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     if coupling is not None and coupling.model == "pairwise":
-        errors |= {name: getattr(result, name) for name in ("overlap_count", "marked_steps", "grid_points")}
+        names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]
+        names_of_coupling += ["avalanche_count", "avalanche_size_max"] if asked.work > 0.0 else []
+        errors |= {name: getattr(result, name) for name in names_of_coupling}
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     if (np.diff(path.separation) > 0.0).any():
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):

@@ -9,7 +9,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.boundary_elements import BoundaryElements, Patches
 from roughmdr.interaction.placed import sides_of
-from roughmdr.interaction.solve import Step
+from roughmdr.interaction.totals import Step
 from roughmdr.interaction.union_map import POINTS, grid_shape, union_map
 from roughmdr.numerics.arguments import Floats
 

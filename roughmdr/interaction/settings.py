@@ -5,6 +5,7 @@ from numbers import Integral, Real
 from typing import Literal, NamedTuple, get_args
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.schema.wording import short_repr
 
 Model = Literal["pairwise", "mean_field"]
@@ -61,3 +62,16 @@ class Interaction(NamedTuple):
             given = short_repr(asked.error)
             raise RoughmdrError(f"interaction.error is {given}; it must be from {LEAST_ERROR:g} to {MOST_ERROR:g}")
         return asked
+
+
+def reason_against_adhesion(interaction: Interaction, adhesion: Adhesion) -> str | None:
+    """Return why an interaction does not go with an adhesion model; None where it does."""
+    if adhesion.work == 0.0:
+        return None
+    if interaction.model != "pairwise":
+        return f"model {interaction.model!r} does not go with adhesion (work > 0); 'pairwise' does"
+    if adhesion.model != "jkr":
+        return f"model 'pairwise' goes with adhesion 'jkr' only, not {adhesion.model!r}"
+    if interaction.beyond != "flag":
+        return f"beyond {interaction.beyond!r} does not go with adhesion (work > 0); 'flag' does"
+    return None

@@ -10,19 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.interaction import close
-from roughmdr.interaction.buried import buried
-from roughmdr.interaction.contacts import Asperities, coupled_kernels
+from roughmdr.interaction.contacts import coupled_kernels
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
-from roughmdr.interaction.placed import sides_of
+from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Kernels, Material
+from roughmdr.interaction.totals import Overlap, Step
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, SharedProfile
 
@@ -33,30 +29,6 @@ _TANGENT_ERROR = 1e-3  # of the mesh for the steps, each of which leaves a few p
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
 _ROUGH_ERROR = 1e-2  # of the force, until all asperities that can touch are taken
 _FAILURES = 3  # separations without an equilibrium, one after the other, below which none is looked for
-_SMALLEST = np.finfo(np.float64).tiny
-
-
-class Overlap(NamedTuple):
-    """Contacts that overlap a neighbour's."""
-
-    contacts: int
-    share: float
-    """Of the force."""
-
-
-class Step(NamedTuple):
-    """The totals at one separation, in SI."""
-
-    force: float = 0.0
-    radius_sum: float = 0.0
-    area: float = 0.0
-    stiffness: float = 0.0
-    contacts: int = 0
-    error: float = 0.0
-    """About that of the force [N]; inf where there is no equilibrium."""
-    overlap: Overlap = Overlap(0, 0.0)
-    lost: int = 0
-    """Number of contacts that are no discs."""
 
 
 class Coupled(NamedTuple):
@@ -68,36 +40,13 @@ class Coupled(NamedTuple):
     visits: int
 
 
-class Candidates:
+class Candidates(Placed):
     """The highest asperities of an ensemble: all that can touch, and some more."""
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction) -> None:
-        at = np.column_stack([ensemble.positions[name] for name in ("x", "y")])
-        at -= at.min(axis=0)
-        sides = sides_of(ensemble)
-        if interaction.boundary == "free" or sides is None:
-            whole = float(np.ptp(at, axis=0).max())
-            sides = (whole, whole) if whole > 0.0 else (1.0, 1.0)
-        self.length, self.interaction = sides[0], interaction
-        self.patch = Periodic.of(sides[1] / sides[0])
-        _check_apart(ensemble, at / self.length, self.sides)
-        hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
-        self.kept = np.flatnonzero(~hidden)
-        """The numbers of the asperities that are not buried."""
-        ensemble = ensemble.taken(self.kept)
-        columns = ensemble.nondimensional()
-        law = choose(ensemble.shape, Adhesion(), columns.params)
-        self.kernels = coupled_kernels(law)
-        self.at = at[self.kept] / self.length
-        self.height = ensemble.height / self.length
-        self._columns, self._material = columns, Material(effective_modulus, 0.0, math.inf)
-        self._natural = _natural_scales(self.kernels, columns, self._material, self.height.size)
+        super().__init__(ensemble, effective_modulus, interaction)
+        self.kernels = coupled_kernels(self.law)
         self.system = self._system(0)
-
-    @property
-    def sides(self) -> Floats | None:
-        """Sides of the patch that repeats."""
-        return np.array([1.0, self.patch.side_y]) if self.interaction.boundary == "periodic" else None
 
     @property
     def count(self) -> int:
@@ -106,9 +55,7 @@ class Candidates:
 
     def _system(self, count: int) -> System:
         """Return the ``count`` highest asperities, coupled."""
-        depth, size = self._natural
-        params = self.kernels.prepare(self._material, self._columns, 0, max(count, 1), 0.0)
-        asperities = Asperities(self.height[:count], depth[:count] / self.length, size[:count] / self.length, params)
+        asperities = self.asperities(count)
         at, periodic = self.at[:count], self.interaction.boundary == "periodic"
         x, y = np.ascontiguousarray(at.T)
         coupling: Coupling
@@ -129,33 +76,6 @@ class Candidates:
         target = max(DENSE_UP_TO[self.interaction.boundary], math.ceil(_GROWTH * needed))
         self.system = self._system(min(target, self.height.size))
         return True
-
-
-def _natural_scales(kernels: Kernels, columns: Columns, material: Material, count: int) -> tuple[Floats, Floats]:
-    """Return natural depths and radii [m]; OutOfRange where one is not representable."""
-    params = kernels.prepare(material, columns, 0, count, 0.0)
-    found = np.empty((2, count))
-    for i in range(count):
-        own = kernels.params_of(params, i)
-        (depth, _), size, _, _ = kernels.scales(material.effective_modulus, 0.0, columns.width[i], columns.rise[i], own)
-        found[:, i] = depth, size
-    if not ((found >= _SMALLEST) & np.isfinite(found)).all():
-        raise OutOfRange("the contact of an asperity is not representable")
-    return found[0], found[1]
-
-
-def _check_apart(ensemble: Ensemble, at: Floats, sides: Floats | None) -> None:
-    """Raise SceneError where two asperities have the same position; ``at`` over the side of the patch."""
-    wrapped = at if sides is None else at - sides * np.floor(at / sides)
-    order = np.lexsort(wrapped.T)
-    same = (np.diff(wrapped[order], axis=0) == 0.0).all(axis=1)
-    if same.any():
-        first = int(order[np.argmax(same)])
-        x, y = (float(ensemble.positions[name][first]) for name in ("x", "y"))
-        raise SceneError(
-            f"ensemble: two asperities have the same position, x = {x:.6g} m, y = {y:.6g} m; "
-            "interaction needs them apart"
-        )
 
 
 def solve_path(

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
-from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
@@ -95,9 +95,9 @@ class Scene(Section):
         if not asperities.is_random and realizations > 1:
             message = f"must be 1 with source {asperities.source!r}: nothing in it is random"
             raise mismatch("batch.realizations", message)
-        if self.interaction is not None and self.work > 0.0:
-            message = "does not go with adhesion yet: leave out one of them, or set adhesion.work to 0"
-            raise mismatch("interaction", message)
+        if self.interaction_model is not None:
+            if reason := reason_against_adhesion(self.interaction_model, self.adhesion_model):
+                raise mismatch("interaction", reason)
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:

@@ -1,0 +1,227 @@
+"""One adhesive contact (JKR) on a surface that others displace, tilt and curve: its part of the energy.
+
+The energy of a contact of radius a under the indentation delta, over E*, is
+
+    e = ∫_0^a (delta' - g - 2 c x^2)^2 dx - pi w a^2/E* + kappa tilt^2/2,    delta' = delta + lambda tilt^2/2
+
+with the curvature c of the surface (H 28, 40, the profile increased by c r^2), lambda = 2 a/g'(a), by which a tilted
+contact slides to its new top (the radius of a paraboloid), and kappa = 4 a^3/3 - 2 lambda ∫ x g' dx, so that the moment
+is that of the coupled tilt, K tilt with K = 4 a^3/3 - 4 a^2 (g - delta)/g'. All that follows is derived from it: load
+P = de/d(delta), second moment M = -de/dc, moment D = de/d(tilt), and the edge condition de/da = 0.
+
+Lengths are over the side L of the patch, loads over pi E* L^2, energies over E* L^3.
+"""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.interaction.contacts import Asperities, CoupledKernels, coupled_kernels
+from roughmdr.kernels.interface import Kernels
+from roughmdr.kernels.profile.interface import ProfileKernels
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import specialise
+
+_STEP = 1e-4  # of the state, for the slope of lambda, which only a small square multiplies
+_STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
+_SET_OUT = 1e-3  # of the state at a fold, where the edge is at rest
+_BISECTIONS = 100
+
+
+class Contacts(NamedTuple):
+    """Contacts at their states under their loads, one number for each asperity; 0 out of contact."""
+
+    radius: Floats
+    """a."""
+    slope: Floats
+    """da/dt."""
+    stretch: Floats
+    """g + 2 c a^2 - delta', by which the edge is stretched; dl in equilibrium."""
+    edge: Floats
+    """de/da; 0 in equilibrium."""
+    depth: Floats
+    """The indentation delta that the load takes."""
+    second_moment: Floats
+    """M."""
+    tilting: Floats
+    """K, the moment for a tilt of 1."""
+    lift: Floats
+    """lambda; out of contact by how much the tilt brings first touch forward."""
+    edge_by_radius: Floats
+    edge_by_load: Floats
+    edge_by_curvature: Floats
+    edge_by_tilt: Floats
+    """Over the tilt."""
+    moment_by_radius: Floats
+    energy: Floats
+    """e."""
+
+
+class JkrKernels(CoupledKernels):
+    """Kernels of a shape without adhesion, with those of its adhesive contacts."""
+
+    strain: Callable[..., float]
+    """(t, params) -> ∫ (g(a) - g)^2 dx over natural size and depth^2."""
+    lift: Callable[..., float]
+    """(t, size, depth, params) -> lambda."""
+    fill: Callable[..., None]
+    next_state: Callable[..., float]
+    lone_load: Callable[..., float]
+
+
+law = JkrKernels("law")
+"""Stands for the kernels in parts that ``specialise`` is given."""
+
+
+def strain_of_power(t: float, n: float) -> float:
+    """Return 2 n^2 t^(2 n + 1)/((n + 1)(2 n + 1))."""
+    return 2.0 * n * n / ((n + 1.0) * (2.0 * n + 1.0)) * math.pow(t, 2.0 * n + 1.0)
+
+
+def strain_of_profile(t: float, params: Floats) -> float:
+    """Return the integral of a profile."""
+    return float(law.elastic_integral(t, params))
+
+
+def lift(t: float, size: float, depth: float, params: Floats) -> float:
+    """Return lambda = 2 a/g'."""
+    a, da, _, dg, _ = law.terms(t, params)
+    return 2.0 * a * da / dg * size * size / depth
+
+
+def fill(
+    inside: NDArray[np.bool_],
+    t: Floats,
+    load: Floats,
+    field: Floats,
+    work: float,
+    asperities: Asperities,
+    out: Contacts,
+) -> None:
+    """Fill in the contacts; ``work`` is w/(E* L), ``field`` [row, asperity] the displacement with its derivatives."""
+    sizes, depths, params = asperities.size, asperities.depth, asperities.params
+    for i in range(t.size):
+        for row in out:
+            row[i] = 0.0
+        size, depth, own = sizes[i], depths[i], law.params_of(params, i)
+        c, tilt = 0.25 * field[3, i], math.hypot(field[1, i], field[2, i])
+        square = tilt * tilt
+        if not inside[i]:
+            if law.pinned:
+                out.lift[i] = -2.0 / 3.0 * c * size * size
+            elif tilt > 0.0:
+                steep = tilt * size / depth
+                ratio = max(2.0 * c * size / depth * size, -0.5)
+                out.lift[i] = depth * steep * law.top(0.0, steep, ratio, own)
+            continue
+        p = math.pi * load[i]
+        if law.pinned:
+            a, da, g, dg, first, third, strain, shift, shift_by_a = size, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        else:
+            a, da, g, dg, first = law.terms(t[i], own)
+            third = law.cubic_integral(t[i], own) * size**3 * depth
+            strain = law.strain(t[i], own) * size * depth * depth
+            a, da, g, dg, first = size * a, size * da, depth * g, depth * dg, size * depth * first
+            shift = shift_by_a = 0.0
+            if tilt > 0.0:
+                shift = law.lift(t[i], size, depth, own)
+                step = _STEP * t[i]
+                shift_by_a = (law.lift(t[i] + step, size, depth, own) - law.lift(t[i] - step, size, depth, own)) / (
+                    2.0 * step * da
+                )
+        third_of_tilt = 4.0 / 3.0 * a**3 - 2.0 * shift * first
+        stretch = (first - 0.5 * p) / a + 4.0 / 3.0 * c * a * a
+        rising = dg / da  # g'
+        out.radius[i], out.slope[i], out.stretch[i] = a, da, stretch
+        out.edge[i] = stretch * stretch - 2.0 * math.pi * work * a + 0.5 * square * shift_by_a * (p - 2.0 * first)
+        out.depth[i] = g + 2.0 * c * a * a - stretch - 0.5 * shift * square
+        out.second_moment[i] = (
+            2.0 / 3.0 * a * a * load[i]
+            - 4.0 / (3.0 * math.pi) * (a * a * first - third)
+            - 32.0 / (45.0 * math.pi) * a**5 * c
+        )
+        out.tilting[i] = shift * load[i] + third_of_tilt / math.pi
+        out.lift[i] = shift
+        out.edge_by_radius[i] = 2.0 * stretch * (rising - stretch / a + 4.0 * c * a) - 2.0 * math.pi * work
+        if tilt > 0.0 and not law.pinned:
+            out.edge_by_radius[i] -= square * shift_by_a * a * rising
+        out.edge_by_load[i] = -math.pi * stretch / a + 0.5 * math.pi * shift_by_a * square
+        out.edge_by_curvature[i] = 8.0 / 3.0 * stretch * a * a
+        out.edge_by_tilt[i] = shift_by_a * (p - 2.0 * first)
+        out.moment_by_radius[i] = (
+            4.0 / 3.0 * a * load[i] - 8.0 / (3.0 * math.pi) * a * first - 32.0 / (9.0 * math.pi) * a**4 * c
+        )
+        bowed = strain + 4.0 * c * (a * a * first - third / 3.0) + 32.0 / 15.0 * c * c * a**5
+        out.energy[i] = (
+            bowed
+            - 2.0 * stretch * (first + 4.0 / 3.0 * c * a**3)
+            + stretch * stretch * a
+            - math.pi * work * a * a
+            + 0.5 * third_of_tilt * square
+        )
+
+
+def next_state(t: float, upwards: bool, depth: float, work: float, i: int, asperities: Asperities) -> float:
+    """Return the state at which a contact comes to rest alone under an indentation: the next stable one from t on.
+
+    0 where there is none below, so that it is lost; the state is found by bisection, as that of a guess.
+    """
+    own, size = law.params_of(asperities.params, i), asperities.size[i]
+    if law.pinned:
+        return 1.0 if upwards else 0.0
+    stride = _STRIDE if upwards else 1.0 / _STRIDE
+    driven = False
+    last = t = max(t * (1.0 + _SET_OUT if upwards else 1.0 - _SET_OUT), _LEAST_STATE)
+    while _LEAST_STATE <= t <= _MOST_STATE:
+        a, _, g, _, _ = law.terms(t, own)
+        open_ = asperities.depth[i] * g - depth  # how far the edge is stretched
+        pulls = open_ > 0.0 and open_ * open_ > 2.0 * math.pi * work * size * a  # the contact shrinks
+        if pulls != upwards:
+            driven = True
+        elif driven:
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (last + t)
+                a, _, g, _, _ = law.terms(middle, own)
+                open_ = asperities.depth[i] * g - depth
+                if (open_ > 0.0 and open_ * open_ > 2.0 * math.pi * work * size * a) == upwards:
+                    t = middle
+                else:
+                    last = middle
+            return 0.5 * (last + t)
+        last = t
+        t *= stride
+    return 0.0
+
+
+def lone_load(t: float, depth: float, work: float, i: int, asperities: Asperities) -> float:
+    """Return the load of a contact alone at a state; of a punch, at an indentation."""
+    own, size = law.params_of(asperities.params, i), asperities.size[i]
+    if law.pinned:
+        return float(2.0 / math.pi * size * depth)
+    a, _, _, _, first = law.terms(t, own)
+    a *= size
+    return float(2.0 / math.pi * (size * asperities.depth[i] * first - a * math.sqrt(2.0 * math.pi * work * a)))
+
+
+@cache
+def jkr_kernels(kernels: Kernels) -> JkrKernels:
+    """Return the kernels of a shape without adhesion with those of its adhesive contacts, compiled."""
+    coupled = coupled_kernels(kernels)
+    whole = JkrKernels(f"jkr_{coupled.name}")
+    vars(whole).update(vars(coupled) | {"__name__": whole.__name__})
+    profile = isinstance(kernels, ProfileKernels)
+    whole.pinned, whole.flat = coupled.pinned, coupled.flat
+    parts: dict[str, Callable[..., object]] = {
+        "strain": strain_of_profile if profile else strain_of_power,
+        "lift": lift,
+        "fill": fill,
+        "next_state": next_state,
+        "lone_load": lone_load,
+    }
+    for name, part in parts.items():
+        vars(whole)[name] = specialise(part, whole)
+    return whole

@@ -1,0 +1,230 @@
+"""Adhesive contacts that feel each other, along a path of the flat: the totals at each separation, and the jumps."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import OutOfRange
+from roughmdr.interaction import close
+from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.green import below_all
+from roughmdr.interaction.jkr import coincident
+from roughmdr.interaction.jkr.branch import NoEquilibriumError, advance
+from roughmdr.interaction.jkr.contacts import JkrKernels, jkr_kernels
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
+from roughmdr.interaction.placed_asperities import Placed
+from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.totals import Overlap, Step
+from roughmdr.loading.pull_off import PullOff
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import SHAPES, SharedProfile
+
+_GROWTH = 1.3
+_SOLVER_ERROR = 1e-11  # of all loads
+
+
+class Adhering(NamedTuple):
+    """Adhesive contacts along a path."""
+
+    steps: list[Step]
+    radius: Floats
+    """The contact radius [m] of each asperity where the flat is closest."""
+    visits: int
+    avalanches: list[Avalanche]
+    """In SI."""
+    pull_off: PullOff
+    crowded: str
+    """A warning where contacts overlap as soon as they are made; empty where they do not."""
+
+
+class _LeftOutError(Exception):
+    """An asperity that was left out may touch."""
+
+
+def solve_path(
+    ensemble: Ensemble,
+    separation: Floats,
+    effective_modulus: float,
+    work: float,
+    interaction: Interaction,
+    names: set[str],
+) -> Adhering:
+    """Return adhesive contacts at separations [m] of a flat that comes from infinity; w [J/m2].
+
+    The stiffness and the energy are computed where ``names`` asks for them. Errors as ``interaction.solve``.
+    """
+    placed = Placed(ensemble, effective_modulus, interaction)
+    length = placed.length
+    lowest = float(separation.min()) / length
+    whole = placed.height.size
+    kernels = jkr_kernels(placed.law)
+    weight = work / effective_modulus / length
+    if not (weight > 0.0 and math.isfinite(weight)):
+        raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
+    asperities = placed.asperities(whole)
+    natural, made = _lone_scales(kernels, asperities, weight)
+    reach = lowest - float(natural.max(initial=0.0))
+    count = int(np.searchsorted(-placed.height, -reach, side="right"))
+    while True:
+        path = _Path(placed, kernels, asperities, natural, made, weight, lowest, min(count, whole))
+        try:
+            return path.follow(separation, ensemble.height.size, effective_modulus, names)
+        except _LeftOutError:
+            count = math.ceil(_GROWTH * count) + 1
+
+
+def _lone_scales(kernels: JkrKernels, asperities: Asperities, work: float) -> tuple[Floats, Floats]:
+    """Return the stretch at the edge of each contact as it is made alone, and its radius."""
+    made = np.array([_radius(kernels, asperities, i, 0.0, work) for i in range(asperities.height.size)])
+    if not ((made > 0.0) & np.isfinite(made)).all():
+        raise OutOfRange("the contact of an asperity under adhesion is not representable")
+    return np.sqrt(2.0 * math.pi * work * made), made
+
+
+def _radius(kernels: JkrKernels, asperities: Asperities, i: int, depth: float, work: float) -> float:
+    """Return the radius of a contact alone as it is made at an indentation."""
+    size = float(asperities.size[i])
+    if kernels.pinned:
+        return size
+    t = kernels.next_state(0.0, True, depth, work, i, asperities)
+    return size * kernels.terms(t, kernels.params_of(asperities.params, i))[0]
+
+
+class _Path:
+    """The highest asperities of an ensemble, along a path."""
+
+    def __init__(
+        self,
+        placed: Placed,
+        kernels: JkrKernels,
+        asperities: Asperities,
+        natural: Floats,
+        made: Floats,
+        work: float,
+        lowest: float,
+        count: int,
+    ) -> None:
+        interaction, at = placed.interaction, placed.at[:count]
+        x, y = np.ascontiguousarray(at.T)
+        self.placed, self.next_height = placed, -math.inf
+        if count < placed.height.size:
+            self.next_height = float(placed.height[count])
+        few = Asperities(*(each[:count] for each in asperities))
+        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
+        bound = np.array(
+            [_radius(kernels, few, i, max(float(few.height[i]) - lowest, 0.0), work) for i in range(count)]
+        ).reshape(count)
+        pairs = coincident.find(at, bound, placed.sides)
+        self.problem = Problem(kernels, few, coupling, pairs, interaction.order, work, natural[:count])
+        self.crowded = _crowding(close_pairs(pairs, made[:count]), placed.length, made[:count])
+
+    def follow(self, separation: Floats, total: int, modulus: float, names: set[str]) -> Adhering:
+        """Return the contacts at separations [m]."""
+        problem, length = self.problem, self.placed.length
+        count = problem.asperities.height.size
+        first = max(float(separation[0]) / length, float(problem.asperities.height.max(initial=-math.inf)) + 1e-9)
+        none = np.zeros((4, count))
+        state = evaluate(problem, np.zeros(count, np.bool_), np.zeros(count), np.zeros(count), first, none)
+        unit = modulus * length**3
+        steps, avalanches, radius, dissipated = list[Step](), list[Avalanche](), np.zeros(total), 0.0
+        closest, lost = int(np.argmin(separation)), False
+        rises, parted, tension = bool((np.diff(separation) > 0.0).any()), False, Tension()
+        for number, h in enumerate((separation / length).tolist()):
+            try:
+                while not lost:
+                    before = state
+                    state, event = advance(problem, state, Drive(h - state.separation, none))
+                    self._check_complete(state)
+                    if rises and h > before.separation:
+                        tension = largest_between(problem, before, state, tension)
+                    if event is None:
+                        break
+                    state, one = avalanche(problem, state, event)
+                    self._check_complete(state)
+                    dissipated += one.dissipated * unit
+                    avalanches.append(Avalanche(one.separation * length, one.size, one.dissipated * unit))
+            except NoEquilibriumError:
+                lost = True
+            if lost:
+                steps.append(Step(error=math.inf))
+                continue
+            steps.append(self._totals(state, modulus, dissipated, names))
+            parted |= number > 0 and separation[number] > separation[number - 1] and not state.inside.any()
+            if number == closest:
+                radius[self.placed.kept[:count]] = np.where(state.inside, state.contacts.radius, 0.0) * length
+        return Adhering(
+            steps, radius, count * len(steps), avalanches, self._pull_off(tension, parted, modulus), self.crowded
+        )
+
+    def _pull_off(self, tension: Tension, parted: bool, modulus: float) -> PullOff:
+        """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
+        length = self.placed.length
+        if not parted:
+            return PullOff()
+        if tension.force == 0.0:
+            return PullOff(0.0)
+        area = math.pi * length * length * tension.radius_squares
+        force = math.pi * modulus * length * length * tension.force
+        return PullOff(force, length * tension.separation, float(tension.contacts), area)
+
+    def _check_complete(self, state: State) -> None:
+        if state.inside.any() and self.next_height - state.separation > min(below_all(state.potential), 0.0):
+            raise _LeftOutError
+
+    def _totals(self, state: State, modulus: float, dissipated: float, names: set[str]) -> Step:
+        problem, length = self.problem, self.placed.length
+        if not state.inside.any():
+            return Step(dissipated=dissipated)
+        on = np.flatnonzero(state.inside)
+        radius, load = state.contacts.radius[on], state.load[on]
+        unit = math.pi * modulus * length * length
+        stiffness = 0.0
+        if "stiffness" in names:
+            stiffness = -slope(problem, state)
+        overlapping = np.zeros(state.t.size, np.bool_)
+        close.mark_overlaps(problem.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
+        sizes = math.fsum(np.abs(load).tolist())
+        share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
+        tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
+        return Step(
+            unit * math.fsum(load.tolist()),
+            length * math.fsum(radius.tolist()),
+            math.pi * length * length * math.fsum((radius * radius).tolist()),
+            unit / length * stiffness,
+            on.size,
+            unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
+            Overlap(int(overlapping.sum()), share),
+            int(np.count_nonzero(tilt * state.contacts.lift[on] > 2.0 * radius)),
+            modulus * length**3 * energy(problem, state) if "energy" in names else 0.0,
+            dissipated,
+        )
+
+
+def close_pairs(pairs: close.Pairs, made: Floats) -> int:
+    """Return how many pairs overlap as soon as both contacts are made."""
+    return int(np.count_nonzero(pairs.apart[:, 2] < made[pairs.members].sum(axis=1)))
+
+
+def _crowding(count: int, length: float, made: Floats) -> str:
+    return (
+        f"{count} pairs of contacts overlap as soon as they are made: they have radii of about "
+        f"{length * float(np.median(made)):.3g} m then; coupled pairs cannot tell how they merge"
+        if count
+        else ""
+    )
+
+
+def prepare(shape: str) -> None:
+    """Compile all that adhesive contacts of a shape need, before several threads or a clock need it."""
+    kind = SHAPES[shape]
+    example = kind(**kind.example())
+    shared = example if isinstance(example, SharedProfile) else None
+    parameters = {} if shared else {name: np.full(3, float(value)) for name, value in example.parameters.items()}
+    place = np.array([0.0, 1.0, 3.0])
+    ensemble = Ensemble(shape, np.zeros(3), parameters, None, {"x": place, "y": place}, {"patch": 10.0}, shared)
+    solve_path(ensemble, np.zeros(1), 1.0, 1e-6, Interaction(), set())

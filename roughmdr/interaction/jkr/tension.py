@@ -1,0 +1,70 @@
+"""The largest tension of adhesive contacts while the flat rises, between the steps of a path and at its jumps."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Tangent, evaluate, newton
+
+_MAX_ROUNDS = 30
+_RTOL = 1e-9  # of the slope of the force at its least
+
+
+class Tension(NamedTuple):
+    """A state under tension, in units of the patch."""
+
+    force: float = 0.0
+    separation: float = math.nan
+    contacts: int = 0
+    radius_squares: float = 0.0
+
+
+def slope(problem: Problem, state: State) -> float:
+    """Return dF/dh."""
+    if not state.inside.any():
+        return 0.0
+    tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)))
+    edge, gap = tangent.along()
+    return math.fsum(tangent.solve(-edge, -gap, 1e-10).load.tolist())
+
+
+def of_state(state: State) -> Tension:
+    """Return the tension of a state."""
+    squares = math.fsum((state.contacts.radius**2).tolist())
+    return Tension(math.fsum(state.load.tolist()), state.separation, int(state.inside.sum()), squares)
+
+
+def largest_between(problem: Problem, state: State, new: State, best: Tension) -> Tension:
+    """Return the largest tension on the path from a state to another with larger separation, or ``best``.
+
+    No contact is made or lost on it. Where the force has its least value within, that is found by regula falsi on its
+    slope.
+    """
+    best = min(best, of_state(new))
+    if not (state.inside.any() and new.separation > state.separation):
+        return best
+    low, high = slope(problem, state), slope(problem, new)
+    if not low < 0.0 < high:
+        return best
+    scale = max(-low, high)
+    for _ in range(_MAX_ROUNDS):
+        part = low / (low - high)
+        on = state.inside
+        t, load = state.t.copy(), state.load.copy()
+        t[on] += part * (new.t[on] - state.t[on])
+        load[on] += part * (new.load[on] - state.load[on])
+        h = state.separation + part * (new.separation - state.separation)
+        guess = evaluate(problem, on, t, load, h, state.outer)
+        middle, _ = newton(problem, guess, Drive(0.0, np.zeros_like(state.outer)), 0.0)
+        if not math.isfinite(middle.error):
+            return best
+        best = min(best, of_state(middle))
+        rate = slope(problem, middle)
+        if abs(rate) <= _RTOL * scale:
+            break
+        if rate < 0.0:
+            state, low, high = middle, rate, 0.5 * high
+        else:
+            new, high, low = middle, rate, 0.5 * low
+    return best

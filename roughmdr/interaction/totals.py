@@ -1,0 +1,29 @@
+"""The totals of coupled asperities at one separation."""
+
+from typing import NamedTuple
+
+
+class Overlap(NamedTuple):
+    """Contacts that overlap a neighbour's."""
+
+    contacts: int
+    share: float
+    """Of the force."""
+
+
+class Step(NamedTuple):
+    """The totals at one separation, in SI."""
+
+    force: float = 0.0
+    radius_sum: float = 0.0
+    area: float = 0.0
+    stiffness: float = 0.0
+    contacts: int = 0
+    error: float = 0.0
+    """About that of the force [N]; inf where there is no equilibrium."""
+    overlap: Overlap = Overlap(0, 0.0)
+    lost: int = 0
+    """Number of contacts that are no discs."""
+    energy: float = 0.0
+    dissipated: float = 0.0
+    """By all jumps up to here."""
