@@ -15,6 +15,8 @@ from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, couplin
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
+    from roughmdr.interaction.jkr.path import Adhering
+    from roughmdr.interaction.solve import Coupled
     from roughmdr.interaction.totals import Step
 
 UNAVAILABLE = ("energy", "dissipated_energy")
@@ -58,9 +60,7 @@ def sum_coupled(
         from roughmdr.interaction.jkr import path
 
         adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names))
-        found = _found(
-            ensemble, separation, interaction, adhering.steps, adhering.radius, adhering.visits, adhesive=True
-        )
+        found = _found(ensemble, separation, interaction, adhering, adhesive=True)
         return found._replace(
             warnings=(adhering.crowded,) if adhering.crowded else (),
             pull_off=adhering.pull_off,
@@ -71,23 +71,17 @@ def sum_coupled(
     if asked := [name for name in names if name in UNAVAILABLE]:
         raise SceneError(f"variables: {', '.join(asked)} with interaction 'pairwise' need adhesion")
     coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
-    found = _found(ensemble, separation, interaction, coupled.steps, coupled.radius, coupled.visits, adhesive=False)
+    found = _found(ensemble, separation, interaction, coupled, adhesive=False)
     if found.marked and interaction.beyond == "boundary_elements":
         return _on_grid(found, ensemble, separation, effective_modulus, names)
     return found
 
 
 def _found(
-    ensemble: Ensemble,
-    separation: Floats,
-    interaction: Interaction,
-    steps: "list[Step]",
-    radius: Floats,
-    visits: int,
-    *,
-    adhesive: bool,
+    ensemble: Ensemble, separation: Floats, interaction: Interaction, along: "Coupled | Adhering", *, adhesive: bool
 ) -> CoupledTotals:
-    """Return the totals of contacts that are coupled in pairs."""
+    """Return the totals of contacts that are coupled in pairs along a path."""
+    steps = along.steps
     total, solved = _totals(steps, ensemble.nominal_area)
     share = np.array([step.overlap.share for step in steps])
     if ensemble.nominal_area is None:
@@ -100,7 +94,7 @@ def _found(
     error = coupling_error(np.nan_to_num(fraction), share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
-    return CoupledTotals(total, radius, visits, error, closest.contacts, closest.share, marked)
+    return CoupledTotals(total, along.radius, along.visits, error, closest.contacts, closest.share, marked)
 
 
 def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, NDArray[np.bool_]]:

@@ -95,9 +95,9 @@ class Scene(Section):
         if not asperities.is_random and realizations > 1:
             message = f"must be 1 with source {asperities.source!r}: nothing in it is random"
             raise mismatch("batch.realizations", message)
-        if self.interaction_model is not None:
-            if reason := reason_against_adhesion(self.interaction_model, self.adhesion_model):
-                raise mismatch("interaction", reason)
+        coupling = self.interaction_model
+        if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
+            raise mismatch("interaction", reason)
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:

@@ -34,7 +34,10 @@ class NoEquilibriumError(Exception):
 
 
 def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event | None]:
-    """Follow the stable path from a state to its end, or to the first event; ``NoEquilibriumError`` where that is not found."""
+    """Follow the stable path from a state to its end, or to the first event.
+
+    NoEquilibriumError where neither is found.
+    """
     along = 0.0
     for _ in range(_MAX_PIECES):
         new, place, event = _piece(problem, state, drive, along)
