@@ -1,6 +1,7 @@
 """The displacements of contacts by each other, each pair summed: for few asperities, and to check the mesh by."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.interaction.green import Periodic, below_all, periodic_load, point_load
 from roughmdr.numerics.arguments import Floats
@@ -28,6 +29,12 @@ class Dense:
         """Of the displacements."""
         self.matrices = np.empty((4, x.size, x.size))
         _fill(x, y, patch, periodic, self.matrices)
+
+    def part(self, kept: NDArray[np.int64]) -> "Dense":
+        """Return the matrices of some of the asperities."""
+        part = object.__new__(Dense)
+        part.error, part.matrices = self.error, np.ascontiguousarray(self.matrices[:, kept[:, None], kept])
+        return part
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement of each point by point loads."""

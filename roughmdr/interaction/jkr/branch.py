@@ -9,14 +9,25 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, Tangent, evaluate, moved, newton
+from roughmdr.interaction.jkr.equilibrium import (
+    Drive,
+    Factors,
+    Problem,
+    State,
+    Step,
+    Tangent,
+    evaluate,
+    moved,
+    newton,
+)
 from roughmdr.numerics.arguments import Floats
 
 _LARGEST_CHANGE = 0.4  # of a radius in a step
 _LEAD_STEP, _LEAST_LEAD_STEP = 0.1, 1e-6  # of the state that leads
 _LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
 _MAX_PIECES, _MAX_ROUNDS = 2000, 40
-_FOLD_RTOL = 1e-8  # of the radius at a fold, where the place changes by its square
+_FOLD_RTOL = 1e-6  # of the radius at a fold, where the place changes by its square
+_SLOPE_RTOL = 1e-6
 _SAME = 1e-12  # of the natural depth
 
 
@@ -33,99 +44,106 @@ class NoEquilibriumError(Exception):
     """No equilibrium is found along the path."""
 
 
+class Place(NamedTuple):
+    """A stable state, and where it lies along the path."""
+
+    state: State
+    factors: Factors
+    along: float
+
+
 def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event | None]:
     """Follow the stable path from a state to its end, or to the first event.
 
     NoEquilibriumError where neither is found.
     """
-    along = 0.0
+    here = Place(state, Factors(problem, state), 0.0)
     for _ in range(_MAX_PIECES):
-        new, place, event = _piece(problem, state, drive, along)
-        found = _first_crossing(problem, (state, along), (new, place), drive)
+        there, event = _piece(problem, here, drive)
+        found = _first_crossing(problem, here, there, drive)
         if found is not None:
             return found
-        if event is not None or place >= 1.0:
-            return new, event
-        state, along = new, place
+        if event is not None or there.along >= 1.0:
+            return there.state, event
+        here = there
     raise NoEquilibriumError
 
 
-def _at(problem: Problem, state: State, drive: Drive, change: float, radius: Floats, load: Floats) -> State:
-    """Return the guess at a place further on, with radii and loads changed."""
-    on = np.flatnonzero(state.inside)
-    return moved(problem, state, on, Step(radius, load, change), 1.0, drive, 0.0)[0]
+def _at(problem: Problem, here: Place, drive: Drive, change: float, rate: Step) -> State:
+    """Return the guess at a place further on, by the rate of change."""
+    step = Step(change * rate.radius, change * rate.load, change)
+    return moved(problem, here.state, here.factors.on, step, 1.0, drive, 0.0)[0]
 
 
-def _piece(problem: Problem, state: State, drive: Drive, along: float) -> tuple[State, float, Event | None]:
-    """Return a state further along the path with its place, or at the fold before it."""
+def _piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Event | None]:
+    """Return a place further along the path, or the fold before it."""
+    state, factors, along = here
     rest = 1.0 - along
     if not state.inside.any():
-        return _at(problem, state, drive, rest, np.zeros(0), np.zeros(0)), 1.0, None
-    tangent = Tangent(problem, state, drive)
-    edge, gap = tangent.along()
-    rate = tangent.solve(-edge, -gap)
-    a = state.contacts.radius[tangent.on]
-    fastest = np.abs(rate.radius) / a
+        nothing = Step(np.zeros(0), np.zeros(0))
+        return Place(_at(problem, here, drive, rest, nothing), factors, 1.0), None
+    rate = Tangent(problem, state, drive, factors).rate()
+    fastest = np.abs(rate.radius) / state.contacts.radius[factors.on]
     largest = float(fastest.max(initial=0.0))
     change = min(rest, _LARGEST_CHANGE / largest if largest > 0.0 else rest)
-    new, _ = newton(problem, _at(problem, state, drive, change, change * rate.radius, change * rate.load), drive, 0.0)
-    if math.isfinite(new.error) and _continues(problem, state, new, drive):
-        return new, 1.0 if change == rest else along + change, None
+    new, _ = newton(problem, _at(problem, here, drive, change, rate), drive, factors)
+    if there := _stable(problem, here, new, 1.0 if change == rest else along + change):
+        return there, None
     lead = int(np.argmax(fastest))
-    return _led(problem, state, drive, along, int(tangent.on[lead]), rate.radius[lead] > 0.0)
+    return _led(problem, here, drive, int(factors.on[lead]), rate.radius[lead] > 0.0)
 
 
-def _continues(problem: Problem, state: State, new: State, drive: Drive) -> bool:
-    """Return whether a state is stable and near the one before."""
+def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | None:
+    """Return the place of a state that is stable and near the one before; None where it is not."""
+    if not _near(here.state, new):
+        return None
+    factors = Factors(problem, new)
+    return Place(new, factors, along) if factors.stable else None
+
+
+def _near(state: State, new: State) -> bool:
+    """Return whether a state is an equilibrium near another one."""
     on = state.inside
-    ratio = new.contacts.radius[on] / state.contacts.radius[on]
-    near = bool((np.abs(np.log(ratio)) < 2.0 * _LARGEST_CHANGE).all())
-    return near and Tangent(problem, new, drive).stable
+    with np.errstate(all="ignore"):
+        ratio = np.abs(np.log(new.contacts.radius[on] / state.contacts.radius[on]))
+    return math.isfinite(new.error) and bool((ratio < 2.0 * _LARGEST_CHANGE).all())
 
 
-def _turning(problem: Problem, state: State, drive: Drive, lead: int) -> float:
+def _turning(problem: Problem, state: State, drive: Drive, factors: Factors, lead: int) -> float:
     """Return the slope of the place over the radius that leads."""
-    tangent = Tangent(problem, state, drive, lead)
-    one = np.zeros(tangent.on.size)
+    tangent = Tangent(problem, state, drive, factors, lead)
+    one = np.zeros(factors.on.size)
     one[tangent.lead] = 1.0
     edge, gap = tangent.product(Step(one, np.zeros_like(one)))
-    return tangent.solve(-edge, -gap, 1e-9).along
+    return tangent.solve(-edge, -gap, _SLOPE_RTOL).along
 
 
-def _led(
-    problem: Problem, state: State, drive: Drive, along: float, lead: int, upwards: bool
-) -> tuple[State, float, Event | None]:
-    """Return a state further along the path, on which the radius of an asperity leads, or the fold."""
-    sign = 1.0 if upwards else -1.0
-    size = _LEAD_STEP
+def _led(problem: Problem, here: Place, drive: Drive, lead: int, upwards: bool) -> tuple[Place, Event | None]:
+    """Return a place further along the path, on which the radius of an asperity leads, or the fold."""
+    state, factors, along = here
+    sign, size = 1.0 if upwards else -1.0, _LEAD_STEP
     while size > _LEAST_LEAD_STEP:
         t = state.t.copy()
         t[lead] *= 1.0 + sign * size
         guess = evaluate(problem, state.inside, t, state.load, state.separation, state.outer)
-        new, place = newton(problem, guess, drive, along, lead)
-        if not math.isfinite(new.error) or not _near(state, new):
+        new, place = newton(problem, guess, drive, factors, along, lead)
+        if not _near(state, new):
             size *= 0.5
             continue
-        if sign * _turning(problem, new, drive, lead) <= 0.0:
-            return *_fold(problem, (state, along), (new, place), drive, lead, sign), Event("fold", lead, upwards)
+        if sign * _turning(problem, new, drive, factors, lead) <= 0.0:
+            return _fold(problem, here, new, drive, lead, sign), Event("fold", lead, upwards)
         if place >= 1.0:
             part = (1.0 - along) / (place - along)
-            end, _ = newton(problem, _between(problem, state, new, part, drive, 1.0 - along), drive, 0.0)
-            if math.isfinite(end.error) and _continues(problem, state, end, drive):
-                return end, 1.0, None
-            size *= 0.5
-            continue
-        if place > along:
+            guess = _between(problem, state, new, part, drive, 1.0 - along)
+            if there := _stable(problem, here, newton(problem, guess, drive, factors)[0], 1.0):
+                return there, None
+        elif place > along:
+            there = Place(new, Factors(problem, new), place)
             if problem.kernels.flat and new.t[lead] < _LEAST_STATE:
-                return new, place, Event("fold", lead, upwards)
-            return new, place, None
+                return there, Event("fold", lead, upwards)
+            return there, None
         size *= 0.5
     raise NoEquilibriumError
-
-
-def _near(state: State, new: State) -> bool:
-    on = state.inside
-    return bool((np.abs(np.log(new.contacts.radius[on] / state.contacts.radius[on])) < 2.0 * _LARGEST_CHANGE).all())
 
 
 def _between(problem: Problem, state: State, new: State, part: float, drive: Drive, change: float) -> State:
@@ -138,36 +156,33 @@ def _between(problem: Problem, state: State, new: State, part: float, drive: Dri
     return evaluate(problem, state.inside, t, load, separation, outer)
 
 
-def _fold(
-    problem: Problem, before: tuple[State, float], after: tuple[State, float], drive: Drive, lead: int, sign: float
-) -> tuple[State, float]:
-    """Return the state and the place at which the place turns back, between two states, by regula falsi."""
-    (state, along), (new, place) = before, after
+def _fold(problem: Problem, here: Place, new: State, drive: Drive, lead: int, sign: float) -> Place:
+    """Return where the place turns back, between a place and a state beyond, by regula falsi."""
+    state, factors, _ = here
     low, high = state.t[lead], new.t[lead]
-    slope_low, slope_high = (sign * _turning(problem, each, drive, lead) for each in (state, new))
+    slope_low, slope_high = (sign * _turning(problem, each, drive, factors, lead) for each in (state, new))
     if slope_low <= 0.0:
-        return state, along
-    best, at = new, place
-    nearest, nearest_at = state, along
+        return here
+    best = here
     for _ in range(_MAX_ROUNDS):
         part = slope_low / (slope_low - slope_high)
         middle = low + min(max(part, 0.01), 0.99) * (high - low)
-        t = nearest.t.copy()
+        t = best.state.t.copy()
         t[lead] = middle
-        guess = evaluate(problem, state.inside, t, nearest.load, nearest.separation, nearest.outer)
-        best, at = newton(problem, guess, drive, nearest_at, lead)
-        if not math.isfinite(best.error):
+        guess = evaluate(problem, state.inside, t, best.state.load, best.state.separation, best.state.outer)
+        found, place = newton(problem, guess, drive, factors, best.along, lead)
+        if not math.isfinite(found.error):
             raise NoEquilibriumError
-        slope = sign * _turning(problem, best, drive, lead)
-        nearest, nearest_at = best, at
+        best = Place(found, factors, place)
+        slope = sign * _turning(problem, found, drive, factors, lead)
         shift = abs(middle - (low if slope > 0.0 else high)) / middle
         if slope > 0.0:
             low, slope_low, slope_high = middle, slope, 0.5 * slope_high
         else:
             high, slope_high, slope_low = middle, slope, 0.5 * slope_low
-        if slope == 0.0 or shift < _FOLD_RTOL or abs(high - low) < _FOLD_RTOL * middle:
+        if slope == 0.0 or shift < _FOLD_RTOL:
             break
-    return best, at
+    return best
 
 
 def _opening(problem: Problem, state: State) -> Floats:
@@ -181,53 +196,44 @@ def _opening(problem: Problem, state: State) -> Floats:
     return np.asarray(beyond / problem.natural)
 
 
-def _first_crossing(
-    problem: Problem, before: tuple[State, float], after: tuple[State, float], drive: Drive
-) -> tuple[State, Event] | None:
-    """Return the first state between two at which a contact is made or lost, but for folds."""
-    (state, along), (new, place) = before, after
-    start, end = _opening(problem, state), _opening(problem, new)
-    found: int | None = None
+def _first_crossing(problem: Problem, here: Place, there: Place, drive: Drive) -> tuple[State, Event] | None:
+    """Return the first state between two places at which a contact is made or lost, but for folds."""
+    start, end = _opening(problem, here.state), _opening(problem, there.state)
+    found, new = None, there.state
     for _ in range(_MAX_ROUNDS):
-        if not (end > _SAME).any():
-            break
         over = np.flatnonzero(end > _SAME)
+        if not over.size:
+            break
         due = over[start[over] >= -_SAME]
         if due.size:  # as soon as it sets out
-            found, new = int(due[np.argmax(start[due])]), state
+            found, new = int(due[np.argmax(start[due])]), here.state
             break
-        part = start[over] / (start[over] - end[over])
-        found = int(over[np.argmin(part)])
-        new, place = _crossing(problem, (state, along), (new, place), drive, found)
+        found = int(over[np.argmin(start[over] / (start[over] - end[over]))])
+        there = _crossing(problem, here, there, drive, found)
+        new = there.state
         end = _opening(problem, new)
     if found is None:
         return None
     return new, Event("lost" if new.inside[found] else "made", found, not new.inside[found])
 
 
-def _crossing(
-    problem: Problem, before: tuple[State, float], after: tuple[State, float], drive: Drive, asperity: int
-) -> tuple[State, float]:
-    """Return the state at which an asperity crosses, by regula falsi."""
-    (state, along), (new, place) = before, after
-    low, high = along, place
-    value_low, value_high = _opening(problem, state)[asperity], _opening(problem, new)[asperity]
-    other, base, base_at, middle = new, state, along, place
+def _crossing(problem: Problem, here: Place, there: Place, drive: Drive, asperity: int) -> Place:
+    """Return the place at which an asperity crosses, by regula falsi."""
+    value_low, value_high = (float(_opening(problem, each.state)[asperity]) for each in (here, there))
+    factors = here.factors
     for _ in range(_MAX_ROUNDS):
+        low, high = here.along, there.along
         part = value_low / (value_low - value_high)
         middle = low + part * (high - low)
-        weight = (middle - base_at) / (place - base_at) if place > base_at else 0.0
-        guess = _between(problem, base, new, weight, drive, middle - base_at)
-        other, _ = newton(problem, guess, drive, 0.0)
-        if not math.isfinite(other.error):
+        guess = _between(problem, here.state, there.state, part, drive, middle - low)
+        found = Place(newton(problem, guess, drive, factors)[0], factors, middle)
+        if not math.isfinite(found.state.error):
             raise NoEquilibriumError
-        value = _opening(problem, other)[asperity]
+        value = float(_opening(problem, found.state)[asperity])
         if abs(value) <= _SAME or high - low <= 4.0 * np.spacing(1.0):
             break
         if value < 0.0:
-            low, value_low, value_high = middle, value, 0.5 * value_high
-            base, base_at = other, middle
+            here, value_low, value_high = found, value, 0.5 * value_high
         else:
-            high, value_high, value_low = middle, value, 0.5 * value_low
-            new, place = other, middle
-    return other, middle
+            there, value_high, value_low = found, value, 0.5 * value_low
+    return found

@@ -21,7 +21,7 @@ from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels
 from roughmdr.numerics.arguments import Floats
 
-_MAX_STEPS = 30
+_PATIENCE = 3  # steps, in which the residual has to halve
 _RTOL, _RESTART = 1e-3, 30
 _LARGEST_STEP = 0.3  # of a radius
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
@@ -43,7 +43,18 @@ class Problem(NamedTuple):
     work: float
     """w/(E* L)."""
     natural: Floats
-    """Depths at which lone contacts detach."""
+    """Stretches of the edge of lone contacts as they are made, by which errors are measured."""
+
+    def part(self, kept: NDArray[np.int64]) -> "Problem":
+        """Return the problem of some of the asperities, alone."""
+        number = np.full(self.natural.size, -1)
+        number[kept] = np.arange(kept.size)
+        members = number[self.pairs.members]
+        both = (members >= 0).all(axis=1)
+        apart, share = self.pairs.apart[both], self.pairs.share[both]
+        pairs = close.Pairs(members[both], apart, share, self.pairs.radius[kept])
+        few = Asperities(*(each[kept] for each in self.asperities))
+        return self._replace(asperities=few, coupling=self.coupling.part(kept), pairs=pairs, natural=self.natural[kept])
 
 
 class State(NamedTuple):
@@ -133,73 +144,88 @@ def energy(problem: Problem, state: State) -> float:
     return math.fsum(state.contacts.energy.tolist()) + math.pi * math.fsum(between.tolist())
 
 
-class Tangent:
-    """The derivatives at a state, and steps that solve with them."""
+class Factors:
+    """The tangent of contacts with G between them alone, factored at one state; steps from near states begin with it.
 
-    def __init__(self, problem: Problem, state: State, drive: Drive, lead: int | None = None) -> None:
-        self.problem, self.state, self.drive = problem, state, drive
-        self.on = np.flatnonzero(state.inside)
-        self.lead = None if lead is None else int(np.searchsorted(self.on, lead))
-        contacts = state.contacts
-        self._release = np.sqrt(2.0 * math.pi * problem.work * contacts.radius[self.on])
-        self._pinned = problem.kernels.pinned
-        self._edge_by_radius = contacts.edge_by_radius[self.on].copy()
-        members, (i, j) = problem.pairs.members, problem.pairs.members.T
-        local = np.zeros(state.t.size)
-        if members.size:
-            a, p, bells = contacts.radius, state.load, state.bells
-            for first in (i, j):
-                bend = bells.by_spread + 2.0 / 3.0 * a[first] ** 2 * bells.curvature
-                np.add.at(local, first, -2.0 / 3.0 * math.pi * p[i] * p[j] * bend)
-        self._edge_by_radius += local[self.on]
-        self._lu = self._factor()
+    Radii follow from the edge condition, so that one number stands for each contact.
+    """
 
-    def _factor(self) -> tuple[Floats, NDArray[np.int32]]:
-        """Factor the tangent of contacts with G between them, in which radii follow from the edge condition."""
-        problem, on, contacts = self.problem, self.on, self.state.contacts
-        matrices, a = problem.coupling.matrices, contacts.radius[on]
+    def __init__(self, problem: Problem, state: State) -> None:
+        self.inside = state.inside
+        self.on = on = np.flatnonzero(state.inside)
+        contacts, matrices, pairs = state.contacts, problem.coupling.matrices, problem.pairs
+        a = contacts.radius[on]
         block = matrices[0][np.ix_(on, on)]
         if problem.order == 2:
-            block = block + (a[:, None] ** 2 + a[None, :] ** 2) / 6.0 * matrices[3][np.ix_(on, on)]
-        if problem.pairs.members.size:
-            number = np.full(self.state.t.size, -1)
+            block += (a[:, None] ** 2 + a[None, :] ** 2) / 6.0 * matrices[3][np.ix_(on, on)]
+        if pairs.members.size:
+            number = np.full(state.t.size, -1)
             number[on] = np.arange(on.size)
-            i, j = number[problem.pairs.members].T
+            i, j = number[pairs.members].T
             keep = (i >= 0) & (j >= 0)
-            i, j, share = i[keep], j[keep], problem.pairs.share[keep]
-            away = problem.pairs.apart[keep, 2]
+            i, j, share, away = i[keep], j[keep], pairs.share[keep], pairs.apart[keep, 2]
             expanded = 1.0 / away
             if problem.order == 2:
                 expanded = expanded + (a[i] ** 2 + a[j] ** 2) / 6.0 / away**3
-            change = self.state.bells.value[keep] - share * expanded
+            change = state.bells.value[keep] - share * expanded
             block[i, j] += change
             block[j, i] += change
         block[np.diag_indices(on.size)] += 0.5 * math.pi / a
-        by_load = contacts.edge_by_load[on]
-        if self._pinned:
-            self._follow = np.ones(on.size)
+        self.block, self.by_load = block, contacts.edge_by_load[on]
+        if problem.kernels.pinned:
+            self.follow = np.ones(on.size)
             matrix = -block
         else:
-            self._follow = -self._edge_by_radius / by_load
-            matrix = -block * self._follow
-            matrix[np.diag_indices(on.size)] += by_load / math.pi
-        self._block = block
-        if self.lead is not None:
-            self._follow[self.lead] = 0.0
-            matrix[:, self.lead] = self.along()[1]
-        return lu_factor(matrix, check_finite=False, overwrite_a=True)
+            self.follow = -edge_by_radius(problem, state)[on] / self.by_load
+            matrix = -block * self.follow
+            matrix[np.diag_indices(on.size)] += self.by_load / math.pi
+        self._lu = lu_factor(matrix, check_finite=False, overwrite_a=True)
+
+    def solve(self, right: Floats) -> Floats:
+        """Return the numbers of the contacts for changes of the gaps."""
+        return np.asarray(lu_solve(self._lu, right, check_finite=False))
 
     @property
     def stable(self) -> bool:
-        """Whether an even number of folds lies between this state and one without tension; of the tangent of pairs."""
+        """Whether an even number of folds lies between the state and one without tension."""
         lu, pivots = self._lu
         swaps = np.count_nonzero(pivots != np.arange(pivots.size))
         signs = np.count_nonzero(np.diag(lu) < 0.0)
         return bool((signs + swaps + self.on.size) % 2 == 0)
 
+
+def edge_by_radius(problem: Problem, state: State) -> Floats:
+    """Return the derivative of de/da of each contact over its own radius."""
+    found = state.contacts.edge_by_radius.copy()
+    if problem.pairs.members.size:
+        a, p, bells = state.contacts.radius, state.load, state.bells
+        members = problem.pairs.members.T
+        for first in members:
+            bend = bells.by_spread + 2.0 / 3.0 * a[first] ** 2 * bells.curvature
+            np.add.at(found, first, -2.0 / 3.0 * math.pi * p[members[0]] * p[members[1]] * bend)
+    return found
+
+
+class Tangent:
+    """The derivatives at a state, and steps that solve with them; ``lead`` has a radius that is given."""
+
+    def __init__(self, problem: Problem, state: State, drive: Drive, factors: Factors, lead: int | None = None) -> None:
+        self.problem, self.state, self.drive, self.factors = problem, state, drive, factors
+        self.on = factors.on
+        self._release = np.sqrt(2.0 * math.pi * problem.work * state.contacts.radius[self.on])
+        self._pinned = problem.kernels.pinned
+        self.lead = None if lead is None else int(np.searchsorted(self.on, lead))
+        if self.lead is not None:
+            self._by_place = factors.solve(self.along()[1])
+
     def along(self) -> tuple[Floats, Floats]:
         """Return the derivatives of both residuals by the place along the path."""
         return self.product(Step(np.zeros(self.on.size), np.zeros(self.on.size), 1.0))
+
+    def rate(self, rtol: float = _RTOL) -> Step:
+        """Return the change of the contacts along the path."""
+        edge, gap = self.along()
+        return self.solve(-edge, -gap, rtol)
 
     def product(self, step: Step) -> tuple[Floats, Floats]:
         """Return the changes of de/da and of the gap by a step; symmetric, the second times pi."""
@@ -274,17 +300,18 @@ class Tangent:
 
     def _before(self, rows: Floats) -> Floats:
         """Solve with the factored tangent."""
-        on, natural = self.on, self.problem.natural[self.on]
+        on, natural, factors = self.on, self.problem.natural[self.on], self.factors
         edge, gap = rows[: on.size] * 2.0 * self._release * natural, rows[on.size :] * natural
         if self._pinned:
-            found = lu_solve(self._lu, gap, check_finite=False)
+            found = factors.solve(gap)
             return np.concatenate([rows[: on.size], self._unscaled(Step(np.zeros(on.size), found))[on.size :]])
-        given = edge / self.state.contacts.edge_by_load[on]
-        found = lu_solve(self._lu, gap + self._block @ given, check_finite=False)
-        load, along = self._follow * found + given, 0.0
+        given = edge / factors.by_load
+        found, along = factors.solve(gap + factors.block @ given), 0.0
         if self.lead is not None:
-            along, found[self.lead] = float(found[self.lead]), 0.0
-        return self._unscaled(Step(found, load, along))
+            along = float(found[self.lead] / self._by_place[self.lead])
+            found = found - along * self._by_place
+            found[self.lead] = 0.0
+        return self._unscaled(Step(found, factors.follow * found + given, along))
 
     def solve(self, edge: Floats, gap: Floats, rtol: float = _RTOL) -> Step:
         """Return the step with these changes of de/da and of the gap."""
@@ -314,32 +341,32 @@ def tolerance(problem: Problem, state: State) -> float:
 
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
-def newton(problem: Problem, state: State, drive: Drive, along: float, lead: int | None = None) -> tuple[State, float]:
+def newton(
+    problem: Problem, state: State, drive: Drive, factors: Factors, along: float = 0.0, lead: int | None = None
+) -> tuple[State, float]:
     """Return the equilibrium from a guess, and the place along the path, which changes only with a leading radius.
 
     Its error is inf where there is none to be found.
     """
-    if not state.inside.any():
-        return state, along
-    before = math.inf
-    for _ in range(_MAX_STEPS):
+    errors = [math.inf] * _PATIENCE
+    while state.inside.any():
         limit = tolerance(problem, state)
-        if state.error <= limit:
-            return state, along
+        if state.error <= limit or (state.error > 0.5 * errors[-1] and errors[-1] <= _AT_REST * limit):
+            break
+        if not state.error < 0.5 * errors[-_PATIENCE] and math.isfinite(errors[-_PATIENCE]):
+            return state._replace(error=math.inf), along
         if not math.isfinite(state.error):
             break
-        if state.error > 0.5 * before and before <= _AT_REST * limit:
-            return state, along
-        before = state.error
-        tangent = Tangent(problem, state, drive, lead)
+        errors.append(state.error)
+        tangent = Tangent(problem, state, drive, factors, lead)
         on = tangent.on
         edge = -state.edge[on] * 2.0 * np.sqrt(2.0 * math.pi * problem.work * state.contacts.radius[on])
         step = tangent.solve(edge, -state.gap[on])
         if not (np.isfinite(step.radius).all() and np.isfinite(step.load).all() and math.isfinite(step.along)):
-            break
+            return state._replace(error=math.inf), along
         part = min(1.0, _LARGEST_STEP / max(float(np.max(np.abs(step.radius) / state.contacts.radius[on])), 1e-300))
         state, along = moved(problem, state, on, step, part, drive, along)
-    return state._replace(error=math.inf), along
+    return state, along
 
 
 def moved(

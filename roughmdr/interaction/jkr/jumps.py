@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.branch import Event, NoEquilibriumError, advance
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate, newton
+from roughmdr.interaction.jkr.equilibrium import Drive, Factors, Problem, State, energy, evaluate, newton
 
 _MAX_JUMPS = 100  # times the number of asperities
 
@@ -42,7 +42,7 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     shed = state.field - new.field
     shed[0] = state.potential - new.potential
     new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
-    rest, _ = newton(problem, new, Drive(0.0, np.zeros_like(shed)), 0.0)
+    rest, _ = newton(problem, new, Drive(0.0, np.zeros_like(shed)), Factors(problem, new))
     if not np.isfinite(rest.error):
         raise NoEquilibriumError
     return rest
@@ -62,7 +62,7 @@ def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Aval
         state, next_event = advance(problem, state, Drive(0.0, -state.outer))
     nothing = np.zeros_like(state.outer)
     rest = evaluate(problem, state.inside, state.t, state.load, state.separation, nothing)
-    rest, _ = newton(problem, rest, Drive(0.0, nothing), 0.0)
+    rest, _ = newton(problem, rest, Drive(0.0, nothing), Factors(problem, rest))
     if not np.isfinite(rest.error):
         raise NoEquilibriumError
     return rest, Avalanche(rest.separation, size, before - energy(problem, rest))

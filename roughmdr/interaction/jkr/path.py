@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
@@ -24,7 +25,9 @@ from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, SharedProfile
 
-_GROWTH = 1.3
+_GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
+_CLEAR = 0.1  # of the margin that asperities outside the window must keep
+_LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
 _SOLVER_ERROR = 1e-11  # of all loads
 
 
@@ -121,6 +124,8 @@ class _Path:
         ).reshape(count)
         pairs = coincident.find(at, bound, placed.sides)
         self.problem = Problem(kernels, few, coupling, pairs, interaction.order, work, natural[:count])
+        self.kept = np.arange(0)
+        self.window = self.problem.part(self.kept)
         self.crowded = _crowding(close_pairs(pairs, made[:count]), placed.length, made[:count])
 
     def follow(self, separation: Floats, total: int, modulus: float, names: set[str]) -> Adhering:
@@ -128,26 +133,20 @@ class _Path:
         problem, length = self.problem, self.placed.length
         count = problem.asperities.height.size
         first = max(float(separation[0]) / length, float(problem.asperities.height.max(initial=-math.inf)) + 1e-9)
-        none = np.zeros((4, count))
-        state = evaluate(problem, np.zeros(count, np.bool_), np.zeros(count), np.zeros(count), first, none)
+        state = evaluate(problem, np.zeros(count, np.bool_), np.zeros(count), np.zeros(count), first, none(problem))
         unit = modulus * length**3
         steps, avalanches, radius, dissipated = list[Step](), list[Avalanche](), np.zeros(total), 0.0
         closest, lost = int(np.argmin(separation)), False
-        rises, parted, tension = bool((np.diff(separation) > 0.0).any()), False, Tension()
+        parted = False
+        tension = Tension() if (np.diff(separation) > 0.0).any() else None
         for number, h in enumerate((separation / length).tolist()):
             try:
-                while not lost:
-                    before = state
-                    state, event = advance(problem, state, Drive(h - state.separation, none))
+                if not lost:
+                    state, found, tension = self._advance(state, h, tension)
                     self._check_complete(state)
-                    if rises and h > before.separation:
-                        tension = largest_between(problem, before, state, tension)
-                    if event is None:
-                        break
-                    state, one = avalanche(problem, state, event)
-                    self._check_complete(state)
-                    dissipated += one.dissipated * unit
-                    avalanches.append(Avalanche(one.separation * length, one.size, one.dissipated * unit))
+                    for one in found:
+                        dissipated += one.dissipated * unit
+                        avalanches.append(Avalanche(one.separation * length, one.size, one.dissipated * unit))
             except NoEquilibriumError:
                 lost = True
             if lost:
@@ -161,10 +160,51 @@ class _Path:
             steps, radius, count * len(steps), avalanches, self._pull_off(tension, parted, modulus), self.crowded
         )
 
-    def _pull_off(self, tension: Tension, parted: bool, modulus: float) -> PullOff:
+    def _advance(
+        self, state: State, h: float, tension: Tension | None
+    ) -> tuple[State, list[Avalanche], Tension | None]:
+        """Return the state at a separation, the avalanches before it, and the largest tension if one is given.
+
+        Only asperities near contact are looked at meanwhile.
+        """
+        problem, begun = self.problem, tension
+        margin = float(problem.natural.max(initial=0.0)) + float(np.ptp(state.potential)) if state.t.size else 0.0
+        while True:
+            near = state.gap + max(state.separation - h, 0.0) > -margin
+            self._look_at(np.flatnonzero(near | state.inside))
+            few, kept = self.window, self.kept
+            part = evaluate(
+                few, *(each[kept] for each in (state.inside, state.t, state.load)), state.separation, none(few)
+            )
+            found, tension = list[Avalanche](), begun
+            while True:
+                before = part
+                part, event = advance(few, part, Drive(h - part.separation, none(few)))
+                if tension is not None and part.separation > before.separation:
+                    tension = largest_between(few, before, part, tension)
+                if event is None:
+                    break
+                part, one = avalanche(few, part, event)
+                found.append(one)
+            inside, t, load = np.zeros_like(state.inside), np.zeros_like(state.t), np.zeros_like(state.load)
+            inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
+            new = evaluate(problem, inside, t, load, part.separation, none(problem))
+            beyond = new.gap.copy()
+            beyond[kept] = -math.inf
+            if not (beyond > -_CLEAR * margin).any():
+                return new, found, tension
+            margin *= 4.0
+
+    def _look_at(self, needed: NDArray[np.int64]) -> None:
+        """Have the asperities that are needed, and not many more, in the window."""
+        held = np.isin(needed, self.kept).all()
+        if not held or self.kept.size > _LARGEST_WINDOW * needed.size + _SMALL_WINDOW:
+            self.kept, self.window = needed, self.problem.part(needed)
+
+    def _pull_off(self, tension: Tension | None, parted: bool, modulus: float) -> PullOff:
         """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
         length = self.placed.length
-        if not parted:
+        if tension is None or not parted:
             return PullOff()
         if tension.force == 0.0:
             return PullOff(0.0)
@@ -203,6 +243,11 @@ class _Path:
             modulus * length**3 * energy(problem, state) if "energy" in names else 0.0,
             dissipated,
         )
+
+
+def none(problem: Problem) -> Floats:
+    """Return an outer field of none."""
+    return np.zeros((4, problem.natural.size))
 
 
 def close_pairs(pairs: close.Pairs, made: Floats) -> int:

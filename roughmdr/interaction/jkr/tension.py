@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Tangent, evaluate, newton
+from roughmdr.interaction.jkr.equilibrium import Drive, Factors, Problem, State, Tangent, evaluate, newton
 
 _MAX_ROUNDS = 30
-_RTOL = 1e-9  # of the slope of the force at its least
+_SLOPE_RTOL = 1e-10
+_RTOL = 1e-7  # of the slope of the force at its least, which is off by the square of that
 
 
 class Tension(NamedTuple):
@@ -20,13 +21,13 @@ class Tension(NamedTuple):
     radius_squares: float = 0.0
 
 
-def slope(problem: Problem, state: State) -> float:
+def slope(problem: Problem, state: State, factors: Factors | None = None) -> float:
     """Return dF/dh."""
     if not state.inside.any():
         return 0.0
-    tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)))
-    edge, gap = tangent.along()
-    return math.fsum(tangent.solve(-edge, -gap, 1e-10).load.tolist())
+    factors = factors or Factors(problem, state)
+    tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)), factors)
+    return math.fsum(tangent.rate(_SLOPE_RTOL).load.tolist())
 
 
 def of_state(state: State) -> Tension:
@@ -41,10 +42,12 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension) -
     No contact is made or lost on it. Where the force has its least value within, that is found by regula falsi on its
     slope.
     """
-    best = min(best, of_state(new))
-    if not (state.inside.any() and new.separation > state.separation):
+    first, last = of_state(state), of_state(new)
+    best = min(best, last)
+    if not first.contacts or min(first.force, last.force) - abs(last.force - first.force) > best.force:
         return best
-    low, high = slope(problem, state), slope(problem, new)
+    factors = Factors(problem, state)
+    low, high = slope(problem, state, factors), slope(problem, new, factors)
     if not low < 0.0 < high:
         return best
     scale = max(-low, high)
@@ -56,11 +59,11 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension) -
         load[on] += part * (new.load[on] - state.load[on])
         h = state.separation + part * (new.separation - state.separation)
         guess = evaluate(problem, on, t, load, h, state.outer)
-        middle, _ = newton(problem, guess, Drive(0.0, np.zeros_like(state.outer)), 0.0)
+        middle, _ = newton(problem, guess, Drive(0.0, np.zeros_like(state.outer)), factors)
         if not math.isfinite(middle.error):
             return best
         best = min(best, of_state(middle))
-        rate = slope(problem, middle)
+        rate = slope(problem, middle, factors)
         if abs(rate) <= _RTOL * scale:
             break
         if rate < 0.0:
