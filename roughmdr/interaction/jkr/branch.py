@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.equilibrium import (
     Drive,
     Factors,
@@ -23,7 +24,8 @@ from roughmdr.interaction.jkr.equilibrium import (
 from roughmdr.numerics.arguments import Floats
 
 _LARGEST_CHANGE = 0.4  # of a radius in a step
-_LEAD_STEP, _LEAST_LEAD_STEP = 0.1, 1e-6  # of the state that leads
+_LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the state that leads
+_OVERSHOOT = 1.1
 _LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
 _MAX_PIECES, _MAX_ROUNDS = 2000, 40
 _FOLD_RTOL = 1e-6  # of the radius at a fold, where the place changes by its square
@@ -50,6 +52,18 @@ class Place(NamedTuple):
     state: State
     factors: Factors
     along: float
+    leads: "Lead | None" = None
+    """The radius that led to it."""
+
+
+class Lead(NamedTuple):
+    """A radius that changes too fast for steps along the path."""
+
+    asperity: int
+    upwards: bool
+    t: float
+    """State of the contact, and the slope of the place over its radius, at a place before."""
+    slope: float
 
 
 def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event | None]:
@@ -77,8 +91,10 @@ def _at(problem: Problem, here: Place, drive: Drive, change: float, rate: Step) 
 
 def _piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Event | None]:
     """Return a place further along the path, or the fold before it."""
-    state, factors, along = here
+    state, factors, along, leads = here
     rest = 1.0 - along
+    if leads is not None:
+        return _led(problem, here, drive, leads)
     if not state.inside.any():
         nothing = Step(np.zeros(0), np.zeros(0))
         return Place(_at(problem, here, drive, rest, nothing), factors, 1.0), None
@@ -90,7 +106,9 @@ def _piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Event | 
     if there := _stable(problem, here, new, 1.0 if change == rest else along + change):
         return there, None
     lead = int(np.argmax(fastest))
-    return _led(problem, here, drive, int(factors.on[lead]), rate.radius[lead] > 0.0)
+    number = int(factors.on[lead])
+    slope = abs(1.0 / rate.radius[lead])
+    return _led(problem, here, drive, Lead(number, bool(rate.radius[lead] > 0.0), float(state.t[number]), slope))
 
 
 def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | None:
@@ -118,10 +136,15 @@ def _turning(problem: Problem, state: State, drive: Drive, factors: Factors, lea
     return tangent.solve(-edge, -gap, _SLOPE_RTOL).along
 
 
-def _led(problem: Problem, here: Place, drive: Drive, lead: int, upwards: bool) -> tuple[Place, Event | None]:
+def _led(problem: Problem, here: Place, drive: Drive, leads: Lead) -> tuple[Place, Event | None]:
     """Return a place further along the path, on which the radius of an asperity leads, or the fold."""
-    state, factors, along = here
-    sign, size = 1.0 if upwards else -1.0, _LEAD_STEP
+    state, factors, along, _ = here
+    lead, sign = leads.asperity, 1.0 if leads.upwards else -1.0
+    at = state.t[lead]
+    slope = leads.slope if at == leads.t else sign * _turning(problem, state, drive, factors, lead)
+    size = _LEAD_STEP
+    if leads.slope > slope > 0.0:  # the fold, were the slope a straight line, and a little further
+        size = min(max(_OVERSHOOT * abs(at - leads.t) / at * slope / (leads.slope - slope), size), _LARGEST_LEAD_STEP)
     while size > _LEAST_LEAD_STEP:
         t = state.t.copy()
         t[lead] *= 1.0 + sign * size
@@ -130,8 +153,12 @@ def _led(problem: Problem, here: Place, drive: Drive, lead: int, upwards: bool) 
         if not _near(state, new):
             size *= 0.5
             continue
-        if sign * _turning(problem, new, drive, factors, lead) <= 0.0:
-            return _fold(problem, here, new, drive, lead, sign), Event("fold", lead, upwards)
+        after = sign * _turning(problem, new, drive, factors, lead)
+        if after <= 0.0:
+            if slope <= 0.0:
+                return here._replace(leads=None), Event("fold", lead, leads.upwards)
+            known = (float(at), slope), (float(new.t[lead]), after)
+            return _fold(problem, here, known, drive, lead, sign), Event("fold", lead, leads.upwards)
         if place >= 1.0:
             part = (1.0 - along) / (place - along)
             guess = _between(problem, state, new, part, drive, 1.0 - along)
@@ -140,8 +167,10 @@ def _led(problem: Problem, here: Place, drive: Drive, lead: int, upwards: bool) 
         elif place > along:
             there = Place(new, Factors(problem, new), place)
             if problem.kernels.flat and new.t[lead] < _LEAST_STATE:
-                return there, Event("fold", lead, upwards)
-            return there, None
+                return there, Event("fold", lead, leads.upwards)
+            change = np.abs(np.log(new.contacts.radius[factors.on] / state.contacts.radius[factors.on]))
+            same = int(factors.on[np.argmax(change)]) == lead
+            return there._replace(leads=leads._replace(t=float(at), slope=slope) if same else None), None
         size *= 0.5
     raise NoEquilibriumError
 
@@ -156,32 +185,30 @@ def _between(problem: Problem, state: State, new: State, part: float, drive: Dri
     return evaluate(problem, state.inside, t, load, separation, outer)
 
 
-def _fold(problem: Problem, here: Place, new: State, drive: Drive, lead: int, sign: float) -> Place:
-    """Return where the place turns back, between a place and a state beyond, by regula falsi."""
-    state, factors, _ = here
-    low, high = state.t[lead], new.t[lead]
-    slope_low, slope_high = (sign * _turning(problem, each, drive, factors, lead) for each in (state, new))
-    if slope_low <= 0.0:
-        return here
-    best = here
+def _fold(
+    problem: Problem,
+    here: Place,
+    slopes: tuple[tuple[float, float], tuple[float, float]],
+    drive: Drive,
+    lead: int,
+    sign: float,
+) -> Place:
+    """Return where the place turns back, between two states of a contact with known slopes."""
+    factors, best = here.factors, here
+    root = Bracket(*slopes)
     for _ in range(_MAX_ROUNDS):
-        part = slope_low / (slope_low - slope_high)
-        middle = low + min(max(part, 0.01), 0.99) * (high - low)
-        t = best.state.t.copy()
-        t[lead] = middle
-        guess = evaluate(problem, state.inside, t, best.state.load, best.state.separation, best.state.outer)
+        state = best.state
+        t = state.t.copy()
+        t[lead] = root.next
+        guess = evaluate(problem, state.inside, t, state.load, state.separation, state.outer)
         found, place = newton(problem, guess, drive, factors, best.along, lead)
         if not math.isfinite(found.error):
             raise NoEquilibriumError
+        shift = abs(found.t[lead] - state.t[lead])
         best = Place(found, factors, place)
-        slope = sign * _turning(problem, found, drive, factors, lead)
-        shift = abs(middle - (low if slope > 0.0 else high)) / middle
-        if slope > 0.0:
-            low, slope_low, slope_high = middle, slope, 0.5 * slope_high
-        else:
-            high, slope_high, slope_low = middle, slope, 0.5 * slope_low
-        if slope == 0.0 or shift < _FOLD_RTOL:
+        if shift < _FOLD_RTOL * found.t[lead]:
             break
+        root.narrow(found.t[lead], sign * _turning(problem, found, drive, factors, lead))
     return best
 
 
@@ -218,22 +245,18 @@ def _first_crossing(problem: Problem, here: Place, there: Place, drive: Drive) -
 
 
 def _crossing(problem: Problem, here: Place, there: Place, drive: Drive, asperity: int) -> Place:
-    """Return the place at which an asperity crosses, by regula falsi."""
-    value_low, value_high = (float(_opening(problem, each.state)[asperity]) for each in (here, there))
-    factors = here.factors
+    """Return the place at which an asperity crosses."""
+    values = [float(_opening(problem, each.state)[asperity]) for each in (here, there)]
+    root, factors = Bracket((here.along, values[0]), (there.along, values[1])), here.factors
     for _ in range(_MAX_ROUNDS):
-        low, high = here.along, there.along
-        part = value_low / (value_low - value_high)
-        middle = low + part * (high - low)
-        guess = _between(problem, here.state, there.state, part, drive, middle - low)
+        middle, length = root.next, there.along - here.along
+        guess = _between(problem, here.state, there.state, (middle - here.along) / length, drive, middle - here.along)
         found = Place(newton(problem, guess, drive, factors)[0], factors, middle)
         if not math.isfinite(found.state.error):
             raise NoEquilibriumError
         value = float(_opening(problem, found.state)[asperity])
-        if abs(value) <= _SAME or high - low <= 4.0 * np.spacing(1.0):
+        root.narrow(middle, value)
+        here, there = (found, there) if value < 0.0 else (here, found)
+        if abs(value) <= _SAME or there.along - here.along <= 4.0 * np.spacing(1.0):
             break
-        if value < 0.0:
-            here, value_low, value_high = found, value, 0.5 * value_high
-        else:
-            there, value_high, value_low = found, value, 0.5 * value_low
     return found

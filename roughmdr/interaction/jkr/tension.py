@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.equilibrium import Drive, Factors, Problem, State, Tangent, evaluate, newton
 
 _MAX_ROUNDS = 30
@@ -39,8 +40,7 @@ def of_state(state: State) -> Tension:
 def largest_between(problem: Problem, state: State, new: State, best: Tension) -> Tension:
     """Return the largest tension on the path from a state to another with larger separation, or ``best``.
 
-    No contact is made or lost on it. Where the force has its least value within, that is found by regula falsi on its
-    slope.
+    No contact is made or lost on it. Where the force has its least value within, that is found by its slope.
     """
     first, last = of_state(state), of_state(new)
     best = min(best, last)
@@ -51,13 +51,13 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension) -
     if not low < 0.0 < high:
         return best
     scale = max(-low, high)
+    root = Bracket((state.separation, low), (new.separation, high))
     for _ in range(_MAX_ROUNDS):
-        part = low / (low - high)
-        on = state.inside
+        on, h = state.inside, root.next
+        part = (h - state.separation) / (new.separation - state.separation)
         t, load = state.t.copy(), state.load.copy()
         t[on] += part * (new.t[on] - state.t[on])
         load[on] += part * (new.load[on] - state.load[on])
-        h = state.separation + part * (new.separation - state.separation)
         guess = evaluate(problem, on, t, load, h, state.outer)
         middle, _ = newton(problem, guess, Drive(0.0, np.zeros_like(state.outer)), factors)
         if not math.isfinite(middle.error):
@@ -66,8 +66,6 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension) -
         rate = slope(problem, middle, factors)
         if abs(rate) <= _RTOL * scale:
             break
-        if rate < 0.0:
-            state, low, high = middle, rate, 0.5 * high
-        else:
-            new, high, low = middle, rate, 0.5 * low
+        root.narrow(h, rate)
+        state, new = (middle, new) if rate < 0.0 else (state, middle)
     return best
