@@ -23,9 +23,10 @@ from roughmdr.interaction.jkr.equilibrium import (
 )
 from roughmdr.numerics.arguments import Floats
 
-_LARGEST_CHANGE = 0.4  # of a radius in a step
+_LARGEST_CHANGE = 0.4  # of a state in a step
 _LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the state that leads
 _OVERSHOOT = 1.1
+_NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
 _LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
 _MAX_PIECES, _MAX_ROUNDS = 2000, 40
 _FOLD_RTOL = 1e-6  # of the radius at a fold, where the place changes by its square
@@ -74,6 +75,8 @@ def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event 
     here = Place(state, Factors(problem, state), 0.0)
     for _ in range(_MAX_PIECES):
         there, event = _piece(problem, here, drive)
+        if event is None and problem.kernels.flat:
+            event = _at_corner(there.state)
         found = _first_crossing(problem, here, there, drive)
         if found is not None:
             return found
@@ -81,6 +84,12 @@ def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event 
             return there.state, event
         here = there
     raise NoEquilibriumError
+
+
+def _at_corner(state: State) -> Event | None:
+    """Return the event of a contact that has shrunk to the edge of its flat, where it is lost."""
+    on = np.flatnonzero(state.inside & (state.t < _LEAST_STATE))
+    return Event("fold", int(on[np.argmin(state.t[on])]), upwards=False) if on.size else None
 
 
 def _at(problem: Problem, here: Place, drive: Drive, change: float, rate: Step) -> State:
@@ -99,7 +108,7 @@ def _piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Event | 
         nothing = Step(np.zeros(0), np.zeros(0))
         return Place(_at(problem, here, drive, rest, nothing), factors, 1.0), None
     rate = Tangent(problem, state, drive, factors).rate()
-    fastest = np.abs(rate.radius) / state.contacts.radius[factors.on]
+    fastest = np.abs(rate.radius) / (state.contacts.slope * state.t)[factors.on]
     largest = float(fastest.max(initial=0.0))
     change = min(rest, _LARGEST_CHANGE / largest if largest > 0.0 else rest)
     new, _ = newton(problem, _at(problem, here, drive, change, rate), drive, factors)
@@ -123,7 +132,7 @@ def _near(state: State, new: State) -> bool:
     """Return whether a state is an equilibrium near another one."""
     on = state.inside
     with np.errstate(all="ignore"):
-        ratio = np.abs(np.log(new.contacts.radius[on] / state.contacts.radius[on]))
+        ratio = np.abs(np.log(new.t[on] / state.t[on]))
     return math.isfinite(new.error) and bool((ratio < 2.0 * _LARGEST_CHANGE).all())
 
 
@@ -145,6 +154,8 @@ def _led(problem: Problem, here: Place, drive: Drive, leads: Lead) -> tuple[Plac
     size = _LEAD_STEP
     if leads.slope > slope > 0.0:  # the fold, were the slope a straight line, and a little further
         size = min(max(_OVERSHOOT * abs(at - leads.t) / at * slope / (leads.slope - slope), size), _LARGEST_LEAD_STEP)
+    elif problem.kernels.flat and at < _NEAR_FLAT:
+        size = _FLAT_STEP
     while size > _LEAST_LEAD_STEP:
         t = state.t.copy()
         t[lead] *= 1.0 + sign * size
@@ -166,9 +177,7 @@ def _led(problem: Problem, here: Place, drive: Drive, leads: Lead) -> tuple[Plac
                 return there, None
         elif place > along:
             there = Place(new, Factors(problem, new), place)
-            if problem.kernels.flat and new.t[lead] < _LEAST_STATE:
-                return there, Event("fold", lead, leads.upwards)
-            change = np.abs(np.log(new.contacts.radius[factors.on] / state.contacts.radius[factors.on]))
+            change = np.abs(np.log(new.t[factors.on] / state.t[factors.on]))
             same = int(factors.on[np.argmax(change)]) == lead
             return there._replace(leads=leads._replace(t=float(at), slope=slope) if same else None), None
         size *= 0.5
@@ -202,6 +211,8 @@ def _fold(
         t[lead] = root.next
         guess = evaluate(problem, state.inside, t, state.load, state.separation, state.outer)
         found, place = newton(problem, guess, drive, factors, best.along, lead)
+        if not math.isfinite(found.error):
+            found, place = newton(problem, guess, drive, Factors(problem, state), best.along, lead)
         if not math.isfinite(found.error):
             raise NoEquilibriumError
         shift = abs(found.t[lead] - state.t[lead])

@@ -213,7 +213,7 @@ class Tangent:
         self.problem, self.state, self.drive, self.factors = problem, state, drive, factors
         self.on = factors.on
         self._release = np.sqrt(2.0 * math.pi * problem.work * state.contacts.radius[self.on])
-        self._pinned = problem.kernels.pinned
+        self.pinned = problem.kernels.pinned
         self.lead = None if lead is None else int(np.searchsorted(self.on, lead))
         if self.lead is not None:
             self._by_place = factors.solve(self.along()[1])
@@ -279,7 +279,7 @@ class Tangent:
         on, natural = self.on, self.problem.natural[self.on]
         a = self.state.contacts.radius[on]
         radius, load = unknown[: on.size] * a, unknown[on.size :] * (2.0 / math.pi * a * natural)
-        if self._pinned:
+        if self.pinned:
             radius = np.zeros(on.size)
         if self.lead is None:
             return Step(radius, load)
@@ -302,7 +302,7 @@ class Tangent:
         """Solve with the factored tangent."""
         on, natural, factors = self.on, self.problem.natural[self.on], self.factors
         edge, gap = rows[: on.size] * 2.0 * self._release * natural, rows[on.size :] * natural
-        if self._pinned:
+        if self.pinned:
             found = factors.solve(gap)
             return np.concatenate([rows[: on.size], self._unscaled(Step(np.zeros(on.size), found))[on.size :]])
         given = edge / factors.by_load
@@ -323,7 +323,7 @@ class Tangent:
         def product(unknown: Floats) -> Floats:
             unknown = unknown.ravel()
             rows = self._rows(*self.product(self._scaled(unknown)))
-            if self._pinned:
+            if self.pinned:
                 rows[: self.on.size] = unknown[: self.on.size]
             return rows
 
@@ -364,7 +364,8 @@ def newton(
         step = tangent.solve(edge, -state.gap[on])
         if not (np.isfinite(step.radius).all() and np.isfinite(step.load).all() and math.isfinite(step.along)):
             return state._replace(error=math.inf), along
-        part = min(1.0, _LARGEST_STEP / max(float(np.max(np.abs(step.radius) / state.contacts.radius[on])), 1e-300))
+        largest = 0.0 if tangent.pinned else float(np.max(np.abs(step.radius) / (state.contacts.slope * state.t)[on]))
+        part = min(1.0, _LARGEST_STEP / largest) if largest > 0.0 else 1.0
         state, along = moved(problem, state, on, step, part, drive, along)
     return state, along
 

@@ -173,15 +173,14 @@ class _Path:
             near = state.gap + max(state.separation - h, 0.0) > -margin
             self._look_at(np.flatnonzero(near | state.inside))
             few, kept = self.window, self.kept
-            part = evaluate(
-                few, *(each[kept] for each in (state.inside, state.t, state.load)), state.separation, none(few)
-            )
+            part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, none(few))
             found, tension = list[Avalanche](), begun
             while True:
                 before = part
                 part, event = advance(few, part, Drive(h - part.separation, none(few)))
                 if tension is not None and part.separation > before.separation:
-                    tension = largest_between(few, before, part, tension)
+                    ends = event is not None and event.kind == "fold"
+                    tension = largest_between(few, before, part, tension, fold=ends)
                 if event is None:
                     break
                 part, one = avalanche(few, part, event)

@@ -37,7 +37,7 @@ def of_state(state: State) -> Tension:
     return Tension(math.fsum(state.load.tolist()), state.separation, int(state.inside.sum()), squares)
 
 
-def largest_between(problem: Problem, state: State, new: State, best: Tension) -> Tension:
+def largest_between(problem: Problem, state: State, new: State, best: Tension, *, fold: bool) -> Tension:
     """Return the largest tension on the path from a state to another with larger separation, or ``best``.
 
     No contact is made or lost on it. Where the force has its least value within, that is found by its slope.
@@ -47,7 +47,8 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension) -
     if not first.contacts or min(first.force, last.force) - abs(last.force - first.force) > best.force:
         return best
     factors = Factors(problem, state)
-    low, high = slope(problem, state, factors), slope(problem, new, factors)
+    low = slope(problem, state, factors)
+    high = abs(low) if fold else slope(problem, new, factors)  # at a fold it is infinite
     if not low < 0.0 < high:
         return best
     scale = max(-low, high)
