@@ -53,11 +53,11 @@ class Bells(NamedTuple):
 
 
 def bells(pairs: close.Pairs, radius: Floats) -> Bells:
-    """Return the coupling of the pairs at contact radii; 0 where one is out of contact."""
+    """Return the coupling of the pairs at contact radii; 0 where both are out of contact."""
     a, b = radius[pairs.members].T
     q = (a * a + b * b) / 3.0
     square = pairs.apart[:, 2] ** 2
-    touching = (a > 0.0) & (b > 0.0)
+    touching = (a > 0.0) | (b > 0.0)
     q = np.where(touching, q, 1.0)
     z = np.maximum(square / (4.0 * q), 1e-300)
     zero, one = i0e(z), i1e(z)

@@ -27,6 +27,7 @@ from roughmdr.shapes import SHAPES, SharedProfile
 
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
+_MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
 _LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
 _SOLVER_ERROR = 1e-11  # of all loads
 
@@ -185,6 +186,8 @@ class _Path:
                     break
                 part, one = avalanche(few, part, event)
                 found.append(one)
+                if len(found) > _MOST_AVALANCHES * (kept.size + 1):
+                    raise NoEquilibriumError
             inside, t, load = np.zeros_like(state.inside), np.zeros_like(state.t), np.zeros_like(state.load)
             inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
             new = evaluate(problem, inside, t, load, part.separation, none(problem))
