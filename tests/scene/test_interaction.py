@@ -56,7 +56,18 @@ def test_defaults_and_choices() -> None:
             {"interaction": {**PAIRWISE, "boundary": "free", "beyond": "boundary_elements"}},
             "interaction.beyond = 'boundary_elements': does not go with",
         ),
-        ({"adhesion": {"model": "jkr", "work": 0.05}}, "does not go with adhesion yet: "),
+        (
+            {"adhesion": {"model": "dugdale", "work": 0.05, "strength": 1e6}},
+            "model 'pairwise' goes with adhesion 'jkr' only, not 'dugdale'",
+        ),
+        (
+            {"adhesion": {"model": "jkr", "work": 0.05}, "interaction": MEAN_FIELD},
+            "model 'mean_field' does not go with adhesion (work > 0); 'pairwise' does",
+        ),
+        (
+            {"adhesion": {"model": "jkr", "work": 0.05}, "interaction": {**PAIRWISE, "beyond": "boundary_elements"}},
+            "beyond 'boundary_elements' does not go with adhesion (work > 0); 'flag' does",
+        ),
         ({"batch": {"estimator": "expected"}}, "cannot be 'expected': asperities that feel"),
         ({"batch": None, "accuracy": {"relative": 0.01, "method": "expected"}}, "cannot be 'expected': asp"),
     ],
@@ -151,7 +162,7 @@ def test_a_caller_is_told_what_there_is(interaction: Any) -> None:
     with pytest.raises(rm.SceneError, match="interaction"):
         rm.load_separation(ensemble, separation=0.0, effective_modulus=1e9, interaction=interaction)
     with pytest.raises(rm.SceneError, match="does not go with adhesion"):
-        rm.load_separation(ensemble, separation=0.0, effective_modulus=1e9, work=0.05, interaction="pairwise")
+        rm.load_separation(ensemble, separation=0.0, effective_modulus=1e9, work=0.05, interaction="mean_field")
 
 
 def test_positions_are_drawn_for_pairs_and_change_nothing_else() -> None:

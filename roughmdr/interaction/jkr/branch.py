@@ -10,17 +10,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import (
-    Drive,
-    Factors,
-    Problem,
-    State,
-    Step,
-    Tangent,
-    evaluate,
-    moved,
-    newton,
-)
+from roughmdr.interaction.jkr.equilibrium import Problem, State, evaluate
+from roughmdr.interaction.jkr.newton import moved, newton
+from roughmdr.interaction.jkr.tangent import Drive, Factors, Step, Tangent
 from roughmdr.numerics.arguments import Floats
 
 _LARGEST_CHANGE = 0.4  # of a state in a step

@@ -28,7 +28,7 @@ from roughmdr.numerics.jit import specialise
 
 _STEP = 1e-4  # of the state, for the slope of lambda, which only a small square multiplies
 _STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
-_SET_OUT = 1e-3  # of the state at a fold, where the edge is at rest
+_SET_OUT = 0.05  # of the state at a fold, where the edge is at rest: the neighbours move that of the contact alone
 _BISECTIONS = 100
 
 

@@ -5,8 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.branch import Event, NoEquilibriumError, advance
-from roughmdr.interaction.jkr.equilibrium import Drive, Factors, Problem, State, energy, evaluate, newton
+from roughmdr.interaction.jkr.equilibrium import Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.newton import newton
+from roughmdr.interaction.jkr.tangent import Drive, Factors
 
+_UNMOVED = 1e-11  # of the natural depth, by which the others are out of equilibrium after a jump
 _MAX_JUMPS = 100  # times the number of asperities
 
 
@@ -42,6 +45,8 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     shed = state.field - new.field
     shed[0] = state.potential - new.potential
     new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
+    if new.error <= _UNMOVED:  # at a fold, where others may be about to follow, no step is sure
+        return new
     rest, _ = newton(problem, new, Drive(0.0, np.zeros_like(shed)), Factors(problem, new))
     if not np.isfinite(rest.error):
         raise NoEquilibriumError

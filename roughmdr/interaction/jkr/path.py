@@ -15,8 +15,9 @@ from roughmdr.interaction.green import below_all
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.branch import NoEquilibriumError, advance
 from roughmdr.interaction.jkr.contacts import JkrKernels, jkr_kernels
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.equilibrium import Problem, State, energy, evaluate
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.tangent import Drive
 from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction

@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Drive, Factors, Problem, State, Tangent, evaluate, newton
+from roughmdr.interaction.jkr.equilibrium import Problem, State, evaluate
+from roughmdr.interaction.jkr.newton import newton
+from roughmdr.interaction.jkr.tangent import Drive, Factors, Tangent
 
 _MAX_ROUNDS = 30
 _SLOPE_RTOL = 1e-10
