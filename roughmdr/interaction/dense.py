@@ -1,5 +1,7 @@
 """The displacements of contacts by each other, each pair summed: for few asperities, and to check the mesh by."""
 
+from copy import copy
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,13 +30,22 @@ class Dense:
         self.error = 1e-12
         """Of the displacements."""
         self.matrices = np.empty((4, x.size, x.size))
+        self._last: tuple[NDArray[np.int64], Dense] | None = None
         _fill(x, y, patch, periodic, self.matrices)
 
     def part(self, kept: NDArray[np.int64]) -> "Dense":
-        """Return the matrices of some of the asperities."""
-        part = object.__new__(Dense)
-        part.error, part.matrices = self.error, np.ascontiguousarray(self.matrices[:, kept[:, None], kept])
-        return part
+        """Return the matrices of some of the asperities; those returned last are remembered."""
+        if self._last is None or not np.array_equal(self._last[0], kept):
+            part = copy(self)
+            part.matrices, part._last = np.ascontiguousarray(self.matrices[:, kept[:, None], kept]), None
+            self._last = kept, part
+        return self._last[1]
+
+    def none(self) -> "Dense":
+        """Return matrices of 0."""
+        none = copy(self)
+        none.matrices, none._last = np.broadcast_to(0.0, self.matrices.shape), None
+        return none
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement of each point by point loads."""
@@ -54,5 +65,9 @@ class Dense:
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
+        touching = np.flatnonzero(laplacian)
         _, x, y, lap = self.matrices
+        if 2 * touching.size < laplacian.size:
+            lap, x, y = (each[:, touching] for each in (lap, x, y))
+            laplacian, along_x, along_y = laplacian[touching], along_x[touching], along_y[touching]
         return np.asarray(lap @ laplacian + x @ along_x + y @ along_y)

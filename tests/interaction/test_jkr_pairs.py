@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.jkr.equilibrium import Problem, State
 from roughmdr.interaction.jkr.path import Adhering, _Path, solve_path
-from roughmdr.interaction.jkr.tangent import Drive, Factors, Step, Tangent
+from roughmdr.interaction.jkr.equilibrium import Drive, Step, alone
+from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction
 
 Floats = NDArray[np.float64]
@@ -169,8 +170,9 @@ def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tup
 
 def hessian(problem: Problem, state: State) -> tuple[Floats, Floats]:
     """Return the second derivatives of the energy over all radii and loads, and those over radii alone."""
-    tangent = Tangent(problem, state, Drive(0.0, np.zeros_like(state.outer)), Factors(problem, state))
-    size = tangent.on.size
+    problem, state = alone(problem, state)
+    tangent = Tangent(problem, state, Drive(0.0, np.zeros_like(state.outer)))
+    size = state.t.size
     whole = np.empty((2 * size, 2 * size))
     for column in range(2 * size):
         unit = np.zeros(2 * size)

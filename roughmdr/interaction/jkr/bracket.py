@@ -16,6 +16,11 @@ class Bracket:
         (low, below), (high, above) = self._ends
         return low + below / (below - above) * (high - low)
 
+    @property
+    def scale(self) -> float:
+        """The larger of the values at both ends."""
+        return max(abs(value) for _, value in self._ends)
+
     def narrow(self, point: float, value: float) -> None:
         """Put a point with its value in the place of that end whose value has the same sign."""
         end = 0 if (value > 0.0) == (self._ends[0][1] > 0.0) else 1

@@ -19,8 +19,10 @@ from scipy.special import i0e, i1e
 
 from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
+from roughmdr.interaction.green import point_load
 from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _FAR = 1e-6  # D^2/4s^2 beyond the inverse of this has no digits more
 _ROOT = math.sqrt(0.5 * math.pi)
@@ -42,6 +44,18 @@ def find(at: Floats, bound: Floats, sides: Floats | None) -> close.Pairs:
     return close.Pairs(members, np.column_stack([apart, away]), u * u * (3.0 - 2.0 * u), bound)
 
 
+@njit
+def take_out(pairs: close.Pairs, matrices: Floats) -> None:
+    """Take the expansion of the pairs out of the matrices of G, its slopes and its Laplacian, as far as they share."""
+    for number in range(pairs.share.size):
+        i, j = pairs.members[number]
+        share = pairs.share[number]
+        g, gx, gy, lap = point_load(pairs.apart[number, 0], pairs.apart[number, 1])
+        for row, value, sign in ((0, g, 1.0), (1, gx, -1.0), (2, gy, -1.0), (3, lap, 1.0)):
+            matrices[row, i, j] -= share * value
+            matrices[row, j, i] -= sign * share * value
+
+
 class Bells(NamedTuple):
     """How the loads of overlapping pairs are felt, [pair], times their share."""
 
@@ -54,6 +68,8 @@ class Bells(NamedTuple):
 
 def bells(pairs: close.Pairs, radius: Floats) -> Bells:
     """Return the coupling of the pairs at contact radii; 0 where both are out of contact."""
+    if not pairs.members.size:
+        return Bells(np.zeros(0), np.zeros(0), np.zeros(0))
     a, b = radius[pairs.members].T
     q = (a * a + b * b) / 3.0
     square = pairs.apart[:, 2] ** 2

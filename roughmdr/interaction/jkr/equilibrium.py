@@ -25,6 +25,7 @@ class Problem(NamedTuple):
     kernels: JkrKernels
     asperities: Asperities
     coupling: Dense
+    """Without the expansions of pairs that come to overlap."""
     pairs: close.Pairs
     """Those that come to overlap."""
     order: int
@@ -45,8 +46,24 @@ class Problem(NamedTuple):
         return self._replace(asperities=few, coupling=self.coupling.part(kept), pairs=pairs, natural=self.natural[kept])
 
 
+class Step(NamedTuple):
+    """A change of contacts."""
+
+    radius: Floats
+    load: Floats
+    along: float = 0.0
+    """Change of the place along the path."""
+
+
+class Drive(NamedTuple):
+    """By how much separation and outer field change along a path from 0 to 1."""
+
+    separation: float
+    outer: Floats
+
+
 class State(NamedTuple):
-    """Contacts at a separation under a field from without."""
+    """Asperities at a separation under a field from without."""
 
     inside: Bools
     """Which asperities are in contact."""
@@ -62,6 +79,8 @@ class State(NamedTuple):
     """Displacement of each asperity."""
     by_loads: Floats
     """Its part by loads alone."""
+    release: Floats
+    """dl, the stretch at which the edge of each contact is at rest."""
     edge: Floats
     """Residual of the edge condition: de/da over 2 dl."""
     gap: Floats
@@ -73,33 +92,27 @@ class State(NamedTuple):
 def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
     """Return the contacts with their residuals."""
     pairs, coupling = problem.pairs, problem.coupling
-    field = np.zeros((4, t.size))
     if problem.order == 1:
+        field = np.zeros((4, t.size))
         field[0] = coupling.potential(load)
-        zero = np.zeros_like(field)
-        close.take_from_field(pairs, load, zero)
-        field[0] += zero[0]
     else:
         field = coupling.field(load)
-        close.take_from_field(pairs, load, field)
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
     whole = field + outer
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
+    by_loads, edge = field[0].copy(), contacts.edge.copy()
     found = coincident.bells(pairs, contacts.radius)
-    i, j = pairs.members.T
-    by_loads = field[0].copy()
-    np.add.at(by_loads, i, found.value * load[j])
-    np.add.at(by_loads, j, found.value * load[i])
-    pull = -2.0 / 3.0 * math.pi * load[i] * load[j] * found.by_spread
-    edge = contacts.edge.copy()
-    np.add.at(edge, i, pull * contacts.radius[i])
-    np.add.at(edge, j, pull * contacts.radius[j])
+    if pairs.members.size:
+        i, j = pairs.members.T
+        np.add.at(by_loads, i, found.value * load[j])
+        np.add.at(by_loads, j, found.value * load[i])
+        pull = -2.0 / 3.0 * math.pi * load[i] * load[j] * found.by_spread
+        np.add.at(edge, i, pull * contacts.radius[i])
+        np.add.at(edge, j, pull * contacts.radius[j])
     potential = by_loads
     if problem.order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
-        other = coupling.of_moments(*moments)
-        close.take_from_moments(pairs, *moments, other)
-        potential = by_loads + other
+        potential = by_loads + coupling.of_moments(*moments)
     with np.errstate(invalid="ignore", divide="ignore"):
         release = np.sqrt(2.0 * math.pi * problem.work * contacts.radius)
         edge = np.where(inside & (not problem.kernels.pinned), edge / (2.0 * release), 0.0)
@@ -107,7 +120,34 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     gap = np.where(inside, reached - contacts.depth, reached + contacts.lift)
     residual = np.maximum(np.abs(edge), np.abs(gap)) / problem.natural
     error = float(residual[inside].max(initial=0.0)) if np.isfinite(residual[inside]).all() else math.inf
-    return State(inside, t, load, separation, outer, field, contacts, found, potential, by_loads, edge, gap, error)
+    return State(
+        inside, t, load, separation, outer, field, contacts, found, potential, by_loads, release, edge, gap, error
+    )
+
+
+def alone(problem: Problem, state: State) -> tuple[Problem, State]:
+    """Return the problem of the asperities in contact, without all others, and their state."""
+    kept = np.flatnonzero(state.inside)
+    t, load, outer = state.t[kept], state.load[kept], state.outer[:, kept]
+    few = problem.part(kept)
+    return few, evaluate(few, np.ones(kept.size, np.bool_), t, load, state.separation, outer)
+
+
+def among(problem: Problem, kept: NDArray[np.int64], few: State, outer: Floats) -> State:
+    """Return the state of all asperities of a problem, of which ``kept`` are in contact as in ``few``."""
+    inside, t, load = np.zeros(outer.shape[1], np.bool_), np.zeros(outer.shape[1]), np.zeros(outer.shape[1])
+    inside[kept], t[kept], load[kept] = True, few.t, few.load
+    return evaluate(problem, inside, t, load, few.separation, outer)
+
+
+def moved(problem: Problem, state: State, step: Step, drive: Drive) -> State:
+    """Return the state of contacts moved by a step."""
+    t = state.t
+    if not problem.kernels.pinned:
+        t = np.maximum(t + step.radius / state.contacts.slope, 0.1 * t)
+    outer = state.outer + drive.outer * step.along
+    separation = state.separation + drive.separation * step.along
+    return evaluate(problem, state.inside, t, state.load + step.load, separation, outer)
 
 
 def energy(problem: Problem, state: State) -> float:

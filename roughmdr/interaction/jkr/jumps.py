@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.interaction.jkr.branch import Event, NoEquilibriumError, advance
-from roughmdr.interaction.jkr.equilibrium import Problem, State, energy, evaluate
-from roughmdr.interaction.jkr.newton import newton
-from roughmdr.interaction.jkr.tangent import Drive, Factors
+from roughmdr.interaction.jkr.branch import NoEquilibriumError
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.events import Event, advance
+from roughmdr.interaction.jkr.newton import at_rest
 
 _UNMOVED = 1e-11  # of the natural depth, by which the others are out of equilibrium after a jump
 _MAX_JUMPS = 100  # times the number of asperities
@@ -39,18 +39,29 @@ def jump(problem: Problem, state: State, event: Event) -> State:
         depth, begin, upwards = float(contacts.depth[i] + displaced), float(t[i]), event.upwards
     found = kernels.next_state(begin, upwards, depth, problem.work, i, problem.asperities)
     inside[i] = found > 0.0
-    t[i] = found
-    load[i] = kernels.lone_load(found, depth, problem.work, i, problem.asperities) if found > 0.0 else 0.0
+    t[i], load[i] = found, 0.0
+    if found > 0.0:
+        load[i] = kernels.lone_load(found, depth, problem.work, i, problem.asperities)
+        t[i], load[i] = _alone(problem, state, i, found, float(load[i]))
     new = evaluate(problem, inside, t, load, state.separation, state.outer)
     shed = state.field - new.field
     shed[0] = state.potential - new.potential
     new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
     if new.error <= _UNMOVED:  # at a fold, where others may be about to follow, no step is sure
         return new
-    rest, _ = newton(problem, new, Drive(0.0, np.zeros_like(shed)), Factors(problem, new))
+    rest = at_rest(problem, new)
     if not np.isfinite(rest.error):
         raise NoEquilibriumError
     return rest
+
+
+def _alone(problem: Problem, state: State, i: int, t: float, load: float) -> tuple[float, float]:
+    """Return the state and the load at which a contact is at rest on the surface as it is; the guess if there is none."""
+    outer = state.field[:, [i]] + state.outer[:, [i]]
+    outer[0] = state.potential[i] + state.outer[0, i]
+    one = problem._replace(coupling=problem.coupling.none()).part(np.array([i]))
+    rest = at_rest(one, evaluate(one, np.ones(1, np.bool_), np.array([t]), np.array([load]), state.separation, outer))
+    return (float(rest.t[0]), float(rest.load[0])) if np.isfinite(rest.error) else (t, load)
 
 
 def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Avalanche]:
@@ -65,9 +76,10 @@ def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Aval
             raise NoEquilibriumError
         state, size = jump(problem, state, next_event), size + 1
         state, next_event = advance(problem, state, Drive(0.0, -state.outer))
-    nothing = np.zeros_like(state.outer)
-    rest = evaluate(problem, state.inside, state.t, state.load, state.separation, nothing)
-    rest, _ = newton(problem, rest, Drive(0.0, nothing), Factors(problem, rest))
+    rest = at_rest(
+        problem,
+        evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer)),
+    )
     if not np.isfinite(rest.error):
         raise NoEquilibriumError
     return rest, Avalanche(rest.separation, size, before - energy(problem, rest))

@@ -1,14 +1,21 @@
-"""Adhesive contacts in equilibrium at one separation, by Newton's method on their radii and loads."""
+"""Adhesive contacts in equilibrium, from a guess, by steps with the factors of a near state.
+
+Each step is improved by those before (D. G. Anderson, J. ACM 12 (1965) 547), and the tangent is factored again where
+steps go too slowly.
+"""
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roughmdr.interaction.jkr.equilibrium import Problem, State, evaluate
-from roughmdr.interaction.jkr.tangent import Drive, Factors, Step, Tangent
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone, among, moved
+from roughmdr.interaction.jkr.factors import Factors, Lead
+from roughmdr.interaction.jkr.tangent import leading
+from roughmdr.numerics.arguments import Floats
 
-_PATIENCE = 3  # steps, in which the residual has to halve
+_SLOW = 0.3  # of the error that a step leaves, from where the tangent is factored again
+_REMEMBERED = 8
+_PATIENCE = 4  # steps with factors of their own, in which the residual has to halve
 _LARGEST_STEP = 0.3  # of a state
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
 _ERROR = 1e-13  # of the natural depth
@@ -17,49 +24,74 @@ _AT_REST = 1e3  # times the error: where rounding lets no step go further
 
 def tolerance(problem: Problem, state: State) -> float:
     """Return the residual over the natural depth that rounding leaves."""
-    on = state.inside
     size = np.abs(problem.asperities.height - state.separation) + np.abs(state.potential) + np.abs(state.contacts.depth)
-    return float(np.max(_ERROR + _ROUNDING * (size / problem.natural)[on], initial=_ERROR))
+    return float(np.max(_ERROR + _ROUNDING * size / problem.natural, initial=_ERROR))
+
+
+class _Mixing:
+    """Unknowns and the steps from them, all over their scales."""
+
+    def __init__(self) -> None:
+        self._at = list[Floats]()
+        self._steps = list[Floats]()
+
+    def improved(self, at: Floats, step: Floats) -> Floats:
+        """Return the step that goes to where the steps before say that there is none."""
+        self._at, self._steps = [*self._at[-_REMEMBERED:], at], [*self._steps[-_REMEMBERED:], step]
+        if len(self._at) == 1:
+            return step
+        changes = np.diff(np.array(self._steps), axis=0).T
+        part = np.linalg.lstsq(changes, step, rcond=1e-12)[0]
+        return np.asarray(step - (np.diff(np.array(self._at), axis=0).T + changes) @ part)
 
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
 def newton(
-    problem: Problem, state: State, drive: Drive, factors: Factors, along: float = 0.0, lead: int | None = None
+    problem: Problem, state: State, drive: Drive, factors: Factors, along: float = 0.0, lead: Lead | None = None
 ) -> tuple[State, float]:
     """Return the equilibrium from a guess, and the place along the path, which changes only with a leading radius.
 
     Its error is inf where there is none to be found.
     """
-    errors = [math.inf] * _PATIENCE
-    while state.inside.any():
+    mixing, errors, at = _Mixing(), list[float](), np.zeros(0)
+    own = False
+    while state.t.size:
         limit = tolerance(problem, state)
-        if state.error <= limit or (state.error > 0.5 * errors[-1] and errors[-1] <= _AT_REST * limit):
+        if state.error <= limit:
             break
-        if not state.error < 0.5 * errors[-_PATIENCE] and math.isfinite(errors[-_PATIENCE]):
+        slow = bool(errors) and not state.error < _SLOW * errors[-1]
+        if slow and errors[-1] <= _AT_REST * limit:
+            break
+        if not math.isfinite(state.error) or (
+            own and len(errors) >= _PATIENCE and not state.error < 0.5 * errors[-_PATIENCE]
+        ):
             return state._replace(error=math.inf), along
-        if not math.isfinite(state.error):
-            break
+        if slow:
+            factors = Factors(problem, state)
+            lead = None if lead is None else leading(problem, state, drive, factors, lead.asperity)
+            mixing, at = _Mixing(), np.zeros(0)
+            if not own:
+                errors = []
+            own = True
         errors.append(state.error)
-        tangent = Tangent(problem, state, drive, factors, lead)
-        on = tangent.on
-        edge = -state.edge[on] * 2.0 * np.sqrt(2.0 * math.pi * problem.work * state.contacts.radius[on])
-        step = tangent.solve(edge, -state.gap[on])
-        if not (np.isfinite(step.radius).all() and np.isfinite(step.load).all() and math.isfinite(step.along)):
+        step = factors.solve(-state.edge * 2.0 * state.release, -state.gap, lead)
+        change = factors.unknowns(step, lead)
+        at = at if at.size else np.zeros_like(change)
+        change = mixing.improved(at, change)
+        step = factors.step_of(change, lead)
+        if not np.isfinite(change).all():
             return state._replace(error=math.inf), along
-        largest = 0.0 if tangent.pinned else float(np.max(np.abs(step.radius) / (state.contacts.slope * state.t)[on]))
-        part = min(1.0, _LARGEST_STEP / largest) if largest > 0.0 else 1.0
-        state, along = moved(problem, state, on, step, part, drive, along)
+        largest = 0.0 if factors.pinned else float(np.max(np.abs(step.radius) / (state.contacts.slope * state.t)))
+        if largest > _LARGEST_STEP:
+            part = _LARGEST_STEP / largest
+            step, change = Step(part * step.radius, part * step.load, part * step.along), part * change
+        at = at + change
+        state, along = moved(problem, state, step, drive), along + step.along
     return state, along
 
 
-def moved(
-    problem: Problem, state: State, on: NDArray[np.int64], step: Step, part: float, drive: Drive, along: float
-) -> tuple[State, float]:
-    """Return the state moved by a part of a step, and its place along the path."""
-    t, load = state.t.copy(), state.load.copy()
-    if not problem.kernels.pinned:
-        t[on] = np.maximum(t[on] + part * step.radius / state.contacts.slope[on], 0.1 * t[on])
-    load[on] += part * step.load
-    change = part * step.along
-    outer = state.outer + drive.outer * change
-    return evaluate(problem, state.inside, t, load, state.separation + drive.separation * change, outer), along + change
+def at_rest(problem: Problem, state: State) -> State:
+    """Return asperities with their contacts in equilibrium at the separation of a guess; its error inf if not found."""
+    few, guess = alone(problem, state)
+    rest, _ = newton(few, guess, Drive(0.0, np.zeros_like(guess.outer)), Factors(few, guess))
+    return among(problem, np.flatnonzero(state.inside), rest, state.outer)._replace(error=rest.error)

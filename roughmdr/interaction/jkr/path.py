@@ -13,11 +13,11 @@ from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
 from roughmdr.interaction.jkr import coincident
-from roughmdr.interaction.jkr.branch import NoEquilibriumError, advance
+from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.contacts import JkrKernels, jkr_kernels
-from roughmdr.interaction.jkr.equilibrium import Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, alone, energy, evaluate
+from roughmdr.interaction.jkr.events import advance
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
-from roughmdr.interaction.jkr.tangent import Drive
 from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
@@ -125,6 +125,7 @@ class _Path:
             [_radius(kernels, few, i, max(float(few.height[i]) - lowest, 0.0), work) for i in range(count)]
         ).reshape(count)
         pairs = coincident.find(at, bound, placed.sides)
+        coincident.take_out(pairs, coupling.matrices)
         self.problem = Problem(kernels, few, coupling, pairs, interaction.order, work, natural[:count])
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
@@ -228,7 +229,7 @@ class _Path:
         unit = math.pi * modulus * length * length
         stiffness = 0.0
         if "stiffness" in names:
-            stiffness = -slope(problem, state)
+            stiffness = -slope(*alone(problem, state))
         overlapping = np.zeros(state.t.size, np.bool_)
         close.mark_overlaps(problem.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         sizes = math.fsum(np.abs(load).tolist())

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Problem, State, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, alone, evaluate
+from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.newton import newton
-from roughmdr.interaction.jkr.tangent import Drive, Factors, Tangent
+from roughmdr.interaction.jkr.tangent import Tangent
 
 _MAX_ROUNDS = 30
 _SLOPE_RTOL = 1e-10
@@ -25,12 +26,11 @@ class Tension(NamedTuple):
 
 
 def slope(problem: Problem, state: State, factors: Factors | None = None) -> float:
-    """Return dF/dh."""
-    if not state.inside.any():
+    """Return dF/dh of contacts."""
+    if not state.t.size:
         return 0.0
-    factors = factors or Factors(problem, state)
-    tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)), factors)
-    return math.fsum(tangent.rate(_SLOPE_RTOL).load.tolist())
+    tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)))
+    return math.fsum(tangent.rate(factors or Factors(problem, state), _SLOPE_RTOL).load.tolist())
 
 
 def of_state(state: State) -> Tension:
@@ -48,25 +48,24 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension, *
     best = min(best, last)
     if not first.contacts or min(first.force, last.force) - abs(last.force - first.force) > best.force:
         return best
-    factors = Factors(problem, state)
-    low = slope(problem, state, factors)
-    high = abs(low) if fold else slope(problem, new, factors)  # at a fold it is infinite
+    few, state = alone(problem, state)
+    new = alone(problem, new)[1]
+    factors = Factors(few, state)
+    low = slope(few, state, factors)
+    high = abs(low) if fold else slope(few, new, factors)  # at a fold it is infinite
     if not low < 0.0 < high:
         return best
-    scale = max(-low, high)
+    scale, still = max(-low, high), Drive(0.0, np.zeros_like(state.outer))
     root = Bracket((state.separation, low), (new.separation, high))
     for _ in range(_MAX_ROUNDS):
-        on, h = state.inside, root.next
+        h = root.next
         part = (h - state.separation) / (new.separation - state.separation)
-        t, load = state.t.copy(), state.load.copy()
-        t[on] += part * (new.t[on] - state.t[on])
-        load[on] += part * (new.load[on] - state.load[on])
-        guess = evaluate(problem, on, t, load, h, state.outer)
-        middle, _ = newton(problem, guess, Drive(0.0, np.zeros_like(state.outer)), factors)
+        t, load = state.t + part * (new.t - state.t), state.load + part * (new.load - state.load)
+        middle, _ = newton(few, evaluate(few, state.inside, t, load, h, state.outer), still, factors)
         if not math.isfinite(middle.error):
             return best
         best = min(best, of_state(middle))
-        rate = slope(problem, middle, factors)
+        rate = slope(few, middle, factors)
         if abs(rate) <= _RTOL * scale:
             break
         root.narrow(h, rate)
