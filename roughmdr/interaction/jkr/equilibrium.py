@@ -4,7 +4,7 @@ The energy is stationary over the loads and, in equilibrium, over the contact ra
 """
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels
 from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from roughmdr.interaction.jkr.factors import Factors
 
 Bools = NDArray[np.bool_]
 
@@ -87,16 +90,23 @@ class State(NamedTuple):
     """z - h - U less the indentation: 0 in equilibrium; out of contact, negative before first touch."""
     error: float
     """The largest residual over the natural depth."""
+    factors: "Factors | None" = None
+    """The tangent of the contacts at this state or near it."""
+
+
+def field_of(problem: Problem, load: Floats) -> Floats:
+    """Return the displacement by loads with its derivatives, [row, asperity], but for overlapping pairs."""
+    if problem.order == 2:
+        return problem.coupling.field(load)
+    field = np.zeros((4, load.size))
+    field[0] = problem.coupling.potential(load)
+    return field
 
 
 def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
     """Return the contacts with their residuals."""
     pairs, coupling = problem.pairs, problem.coupling
-    if problem.order == 1:
-        field = np.zeros((4, t.size))
-        field[0] = coupling.potential(load)
-    else:
-        field = coupling.field(load)
+    field = field_of(problem, load)
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
     whole = field + outer
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
@@ -130,14 +140,15 @@ def alone(problem: Problem, state: State) -> tuple[Problem, State]:
     kept = np.flatnonzero(state.inside)
     t, load, outer = state.t[kept], state.load[kept], state.outer[:, kept]
     few = problem.part(kept)
-    return few, evaluate(few, np.ones(kept.size, np.bool_), t, load, state.separation, outer)
+    whole = evaluate(few, np.ones(kept.size, np.bool_), t, load, state.separation, outer)
+    return few, whole._replace(factors=state.factors)
 
 
 def among(problem: Problem, kept: NDArray[np.int64], few: State, outer: Floats) -> State:
     """Return the state of all asperities of a problem, of which ``kept`` are in contact as in ``few``."""
     inside, t, load = np.zeros(outer.shape[1], np.bool_), np.zeros(outer.shape[1]), np.zeros(outer.shape[1])
     inside[kept], t[kept], load[kept] = True, few.t, few.load
-    return evaluate(problem, inside, t, load, few.separation, outer)
+    return evaluate(problem, inside, t, load, few.separation, outer)._replace(factors=few.factors)
 
 
 def moved(problem: Problem, state: State, step: Step, drive: Drive) -> State:

@@ -63,12 +63,13 @@ class _Path:
         self.outer = state.outer, drive.outer
         self.drive = Drive(drive.separation, drive.outer[:, self.kept])
         self.few, begin = alone(problem, state)
-        self.begin = Place(begin, Factors(self.few, begin), 0.0)
+        self.begin = Place(begin, begin.factors or Factors(self.few, begin), 0.0)
 
     def whole(self, place: Place) -> State:
         """Return the state of all asperities at a place."""
         first, change = self.outer
-        return among(self.problem, self.kept, place.state, first + change * place.along)
+        state = place.state._replace(factors=place.factors)
+        return among(self.problem, self.kept, state, first + change * place.along)
 
     def first_crossing(self, here: Place, there: Place, begun: State, ended: State) -> tuple[State, Event] | None:
         """Return the first state between two places at which a contact is made or lost, but for folds."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate, field_of
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.newton import at_rest
 
@@ -43,8 +43,9 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     if found > 0.0:
         load[i] = kernels.lone_load(found, depth, problem.work, i, problem.asperities)
         t[i], load[i] = _alone(problem, state, i, found, float(load[i]))
-    new = evaluate(problem, inside, t, load, state.separation, state.outer)
-    shed = state.field - new.field
+    shed = field_of(problem, state.load - load)
+    shed[0] = 0.0
+    new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
     shed[0] = state.potential - new.potential
     new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
     if new.error <= _UNMOVED:  # at a fold, where others may be about to follow, no step is sure
@@ -78,7 +79,9 @@ def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Aval
         state, next_event = advance(problem, state, Drive(0.0, -state.outer))
     rest = at_rest(
         problem,
-        evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer)),
+        evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer))._replace(
+            factors=state.factors
+        ),
     )
     if not np.isfinite(rest.error):
         raise NoEquilibriumError

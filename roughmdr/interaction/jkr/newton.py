@@ -47,7 +47,7 @@ class _Mixing:
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
 def newton(
-    problem: Problem, state: State, drive: Drive, factors: Factors, along: float = 0.0, lead: Lead | None = None
+    problem: Problem, state: State, drive: Drive, factors: Factors | None, along: float = 0.0, lead: Lead | None = None
 ) -> tuple[State, float]:
     """Return the equilibrium from a guess, and the place along the path, which changes only with a leading radius.
 
@@ -74,6 +74,7 @@ def newton(
                 errors = []
             own = True
         errors.append(state.error)
+        factors = factors or Factors(problem, state)
         step = factors.solve(-state.edge * 2.0 * state.release, -state.gap, lead)
         change = factors.unknowns(step, lead)
         at = at if at.size else np.zeros_like(change)
@@ -93,5 +94,6 @@ def newton(
 def at_rest(problem: Problem, state: State) -> State:
     """Return asperities with their contacts in equilibrium at the separation of a guess; its error inf if not found."""
     few, guess = alone(problem, state)
-    rest, _ = newton(few, guess, Drive(0.0, np.zeros_like(guess.outer)), Factors(few, guess))
+    rest, _ = newton(few, guess, Drive(0.0, np.zeros_like(guess.outer)), guess.factors)
+    rest = rest._replace(factors=guess.factors)
     return among(problem, np.flatnonzero(state.inside), rest, state.outer)._replace(error=rest.error)

@@ -177,6 +177,7 @@ class _Path:
             self._look_at(np.flatnonzero(near | state.inside))
             few, kept = self.window, self.kept
             part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, none(few))
+            part = part._replace(factors=state.factors)
             found, tension = list[Avalanche](), begun
             while True:
                 before = part
@@ -192,7 +193,7 @@ class _Path:
                     raise NoEquilibriumError
             inside, t, load = np.zeros_like(state.inside), np.zeros_like(state.t), np.zeros_like(state.load)
             inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
-            new = evaluate(problem, inside, t, load, part.separation, none(problem))
+            new = evaluate(problem, inside, t, load, part.separation, none(problem))._replace(factors=part.factors)
             beyond = new.gap.copy()
             beyond[kept] = -math.inf
             if not (beyond > -_CLEAR * margin).any():
