@@ -74,16 +74,26 @@ def piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Fold | No
     rate = factors.solve(-edge, -gap)
     fastest = np.abs(rate.radius) / (state.contacts.slope * state.t)
     largest = float(fastest.max())
-    change = min(rest, _LARGEST_CHANGE / largest if largest > 0.0 else rest)
-    guess = moved(problem, state, Step(change * rate.radius, change * rate.load, change), drive)
-    new, _ = newton(problem, guess, drive, factors)
-    if there := _stable(problem, here, new, 1.0 if change == rest else along + change):
-        if not (problem.kernels.flat and (corner := _at_corner(new))):
-            return there, None
-        return there, corner
+    if largest * rest <= _LARGEST_CHANGE:
+        new, _ = newton(problem, _further(problem, here, rate, rest, drive), drive, factors)
+        if there := _stable(problem, here, new, 1.0):
+            corner = _at_corner(new) if problem.kernels.flat else None
+            return there, corner
     lead = int(np.argmax(fastest))
     slope = abs(1.0 / rate.radius[lead])
     return _led(problem, here, drive, Fast(lead, bool(rate.radius[lead] > 0.0), float(state.t[lead]), slope))
+
+
+def _further(problem: Problem, here: Place, rate: Step, change: float, drive: Drive) -> State:
+    """Return the guess at a place further on, by the rate of change."""
+    return moved(problem, here.state, Step(change * rate.radius, change * rate.load, change), drive)
+
+
+def _to(problem: Problem, here: Place, lead: Lead, t: float, drive: Drive) -> tuple[State, float]:
+    """Return the guess where the contact that leads has a state, and its place."""
+    state, number, rate = here.state, lead.asperity, lead.by_place
+    change = (t - state.t[number]) * state.contacts.slope[number] / rate.radius[number]
+    return _further(problem, here, rate, float(change), drive), here.along + float(change)
 
 
 def _at_corner(state: State) -> Fold | None:
@@ -128,10 +138,8 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     elif problem.kernels.flat and at < _NEAR_FLAT:
         size = _FLAT_STEP
     while size > _LEAST_LEAD_STEP:
-        t = state.t.copy()
-        t[number] *= 1.0 + sign * size
-        guess = evaluate(problem, state.inside, t, state.load, state.separation, state.outer)
-        new, place = newton(problem, guess, drive, factors, along, lead)
+        guess, place = _to(problem, here, lead, at * (1.0 + sign * size), drive)
+        new, place = newton(problem, guess, drive, factors, place, lead)
         if not _near(state, new):
             size *= 0.5
             continue
@@ -183,12 +191,9 @@ def _fold(
     """Return where the place turns back, from a place near it; None where that is not the first fold."""
     still = _FOLD_RTOL * root.scale
     for _ in range(_MAX_ROUNDS):
-        state, factors, along, _ = best
-        t = state.t.copy()
-        t[number] = root.next
-        guess = evaluate(problem, state.inside, t, state.load, state.separation, state.outer)
-        lead = leading(problem, state, drive, factors, number)
-        found, place = newton(problem, guess, drive, factors, along, lead)
+        lead = leading(problem, best.state, drive, best.factors, number)
+        guess, place = _to(problem, best, lead, root.next, drive)
+        found, place = newton(problem, guess, drive, best.factors, place, lead)
         if not math.isfinite(found.error):
             return None
         own = Factors(problem, found)

@@ -27,6 +27,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, SharedProfile
 
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
+_MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
 _MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
 _LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
@@ -171,7 +172,7 @@ class _Path:
         Only asperities near contact are looked at meanwhile.
         """
         problem, begun = self.problem, tension
-        margin = float(problem.natural.max(initial=0.0)) + float(np.ptp(state.potential)) if state.t.size else 0.0
+        margin = _MARGIN * float(problem.natural.max(initial=0.0))
         while True:
             near = state.gap + max(state.separation - h, 0.0) > -margin
             self._look_at(np.flatnonzero(near | state.inside))
