@@ -61,7 +61,9 @@ class Dense:
         touching = np.flatnonzero(load)
         if 2 * touching.size < load.size:
             return np.asarray(self.matrices[:, :, touching] @ load[touching])
-        return (self.matrices.reshape(4 * load.size, load.size) @ load).reshape(4, -1)  # by one product of a matrix and a vector
+        return (self.matrices.reshape(4 * load.size, load.size) @ load).reshape(
+            4, -1
+        )  # by one product of a matrix and a vector
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""

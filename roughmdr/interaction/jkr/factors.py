@@ -1,17 +1,18 @@
 """A tangent of adhesive contacts that is factored at one state, by which near states find their equilibrium.
 
-All terms of the energy are in it but what the moments do that neighbours induce: of the fourth order in radius over
-distance. Loads follow from the edge condition, so that one number stands for each contact.
+All terms of the energy are in it but the moments that neighbours induce, of the fourth order in radius over distance.
+Loads follow from the edge condition, so that one number stands for each contact.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from roughmdr.interaction.jkr.equilibrium import Problem, State, Step
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 
 class Lead(NamedTuple):
@@ -22,91 +23,119 @@ class Lead(NamedTuple):
     """The change of the contacts along the path as the factors have it."""
 
 
+@njit
+def _fill(
+    matrices: Floats,
+    order: int,
+    a: Floats,
+    lift: Floats,
+    slopes: Floats,
+    by_tilt: Floats,
+    by_radius: Floats,
+    block: Floats,
+    cross: Floats,
+) -> None:
+    """Fill what the gaps of contacts change by the loads of others, the other way round, and by their radii."""
+    for i in range(a.size):
+        for j in range(a.size):
+            block[i, j] = matrices[0, i, j]
+            cross[i, j] = 0.0
+            if order == 2:
+                x, y, laplacian = matrices[1, i, j], matrices[2, i, j], matrices[3, i, j]
+                sliding = x * slopes[0, j] + y * slopes[1, j]
+                back = -x * slopes[0, i] - y * slopes[1, i]
+                block[i, j] += (a[i] * a[i] + a[j] * a[j]) / 6.0 * laplacian + sliding * lift[j] + back * lift[i]
+                cross[i, j] = -0.25 * by_radius[j] * laplacian - sliding * by_tilt[j] / math.pi
+        block[i, i] += 0.5 * math.pi / a[i]
+
+
+@njit
+def _eliminate(block: Floats, cross: Floats, a: Floats, by_load: Floats, follow: Floats, matrix: Floats) -> None:
+    """Fill the matrix of the radii, with ``follow`` what the loads change by them."""
+    for i in range(a.size):
+        part = 0.5 * math.pi / (a[i] * by_load[i])
+        for j in range(a.size):
+            matrix[i, j] = cross[i, j] - block[i, j] * follow[j] + part * math.pi * cross[j, i] * follow[j]
+        matrix[i, i] += by_load[i] / math.pi
+
+
 class Factors:
     """The factored tangent at a state in which all asperities are in contact."""
 
     def __init__(self, problem: Problem, state: State) -> None:
-        contacts, matrices, pairs = state.contacts, problem.coupling.matrices, problem.pairs
-        a, p = contacts.radius, state.load
-        self.pinned, self.natural = problem.kernels.pinned, problem.natural
+        contacts, size = state.contacts, state.t.size
+        a = contacts.radius
+        self.pinned, self.natural, self.release = problem.kernels.pinned, problem.natural, state.release
         self._scale = a, 2.0 / math.pi * a * problem.natural
-        self.release = state.release
-        i, j = pairs.members.T
-        block = matrices[0].copy()
         self._by_load = contacts.edge_by_load
-        self._cross: Floats | None = None  # of gaps by radii, but for those of the contacts themselves
-        if problem.order == 2:
-            block += (a[:, None] ** 2 + a[None, :] ** 2) / 6.0 * matrices[3]
-            whole = state.field + state.outer
-            sliding = matrices[1] * whole[1] + matrices[2] * whole[2]
-            lifted = sliding * contacts.lift
-            block += lifted
-            block += lifted.T
-            self._cross = -0.25 * contacts.moment_by_radius * matrices[3] - sliding * (contacts.edge_by_tilt / math.pi)
-        elif i.size:
-            self._cross = np.zeros_like(block)
-        block[np.diag_indices(a.size)] += 0.5 * math.pi / a
-        if i.size:
-            bells = state.bells
-            block[i, j] += bells.value
-            block[j, i] += bells.value
-            assert self._cross is not None
-            for one, other in ((i, j), (j, i)):
-                self._cross[one, other] -= 2.0 / 3.0 * bells.by_spread * a[other] * p[other]
-                np.add.at(self._cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
-        self._block = block
+        self._block, self._cross, matrix = np.empty((3, size, size))
+        _fill(
+            problem.coupling.matrices,
+            problem.order,
+            a,
+            contacts.lift,
+            state.field[1:3] + state.outer[1:3],
+            contacts.edge_by_tilt,
+            contacts.moment_by_radius,
+            self._block,
+            self._cross,
+        )
+        self._members, self._between = problem.pairs.members.T, np.zeros(0)
+        if self._members.size:
+            self._add_bells(state)
         if self.pinned:
-            self._follow = np.zeros(a.size)
-            matrix = -block
+            matrix = -self._block
         else:
-            own = edge_by_radius(problem, state)
-            self._follow = -own / self._by_load
-            matrix = -block * self._follow
-            matrix[np.diag_indices(a.size)] += self._by_load / math.pi
-            if self._cross is not None:
-                matrix += self._cross
-                matrix += (0.5 * math.pi**2 / (a * self._by_load))[:, None] * self._cross.T * self._follow
-            if i.size:
-                self._between = between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
-                self._members = i, j
-                matrix[i, j] += 0.5 * math.pi / (a[i] * self._by_load[i]) * between
-                matrix[j, i] += 0.5 * math.pi / (a[j] * self._by_load[j]) * between
-        self._lu = lu_factor(matrix, check_finite=False, overwrite_a=True)
+            self._follow = -edge_by_radius(problem, state) / self._by_load
+            _eliminate(self._block, self._cross, a, self._by_load, self._follow, matrix)
+            i, j = self._members
+            matrix[i, j] += 0.5 * math.pi / (a[i] * self._by_load[i]) * self._between
+            matrix[j, i] += 0.5 * math.pi / (a[j] * self._by_load[j]) * self._between
+        self._lu, self._pivots, _ = dgetrf(matrix.T, overwrite_a=True)  # row by row, so that it is not copied
+
+    def _add_bells(self, state: State) -> None:
+        """Add what the contacts of overlapping pairs do to each other."""
+        i, j = self._members
+        a, p, bells = state.contacts.radius, state.load, state.bells
+        self._block[i, j] += bells.value
+        self._block[j, i] += bells.value
+        for one, other in ((i, j), (j, i)):
+            self._cross[one, other] -= 2.0 / 3.0 * bells.by_spread * a[other] * p[other]
+            np.add.at(self._cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
+        self._between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
 
     @property
     def stable(self) -> bool:
         """Whether an even number of folds lies between the state and one without tension."""
-        lu, pivots = self._lu
-        swaps = np.count_nonzero(pivots != np.arange(pivots.size))
-        signs = np.count_nonzero(np.diag(lu) < 0.0)
-        return bool((signs + swaps + pivots.size) % 2 == 0)
+        swaps = np.count_nonzero(self._pivots != np.arange(self._pivots.size))
+        signs = np.count_nonzero(np.diag(self._lu) < 0.0)
+        return bool((signs + swaps + self._pivots.size) % 2 == 0)
 
     def solve(self, edge: Floats, gap: Floats, lead: Lead | None = None) -> Step:
         """Return the step with these changes of de/da and of the gaps."""
         if self.pinned:
-            step = Step(np.zeros_like(gap), np.asarray(lu_solve(self._lu, gap, check_finite=False)))
+            step = Step(np.zeros_like(gap), self._solved(gap))
         else:
             given = edge / self._by_load
-            right = gap + self._block @ given
-            if self._cross is not None:
-                right -= 0.5 * math.pi**2 / (self._scale[0] * self._by_load) * (given @ self._cross)
-            radius = np.asarray(lu_solve(self._lu, right, check_finite=False))
+            other = 0.5 * math.pi**2 / (self._scale[0] * self._by_load) * (given @ self._cross)
+            radius = self._solved(gap + self._block @ given - other)
             step = Step(radius, self._loads(radius, given))
         if lead is None:
             return step
-        other, number = lead.by_place, lead.asperity
-        along = -float(step.radius[number] / other.radius[number])
-        radius = step.radius + along * other.radius
+        rate, number = lead.by_place, lead.asperity
+        along = -float(step.radius[number] / rate.radius[number])
+        radius = step.radius + along * rate.radius
         radius[number] = 0.0
-        return Step(radius, step.load + along * other.load, along)
+        return Step(radius, step.load + along * rate.load, along)
+
+    def _solved(self, right: Floats) -> Floats:
+        return np.asarray(dgetrs(self._lu, self._pivots, right, trans=1)[0]) if right.size else right
 
     def _loads(self, radius: Floats, given: Floats) -> Floats:
         """Return the changes of the loads that keep the edge condition."""
         load = given + self._follow * radius
-        if self._cross is None:
-            return load
         other = math.pi * (load @ self._cross)
-        if hasattr(self, "_members"):
+        if self._members.size:
             i, j = self._members
             np.add.at(other, i, self._between * radius[j])
             np.add.at(other, j, self._between * radius[i])
@@ -125,7 +154,7 @@ class Factors:
     def step_of(self, unknowns: Floats, lead: Lead | None) -> Step:
         """Return the step with these unknowns."""
         size, along = self.natural.size, 0.0
-        load = unknowns[-size:] * self._scale[1] if size else np.zeros(0)
+        load = unknowns[-size:] * self._scale[1]
         if self.pinned:
             return Step(np.zeros(size), load)
         radius = unknowns[:size] * self._scale[0]

@@ -1,7 +1,6 @@
 """Adhesive contacts in equilibrium, from a guess, by steps with the factors of a near state.
 
-Each step is improved by those before (D. G. Anderson, J. ACM 12 (1965) 547), and the tangent is factored again where
-steps go too slowly.
+Each step is improved by those before, and the tangent is factored again where steps go too slowly.
 """
 
 import math
@@ -10,11 +9,11 @@ import numpy as np
 
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone, among, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
+from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import leading
 from roughmdr.numerics.arguments import Floats
 
 _SLOW = 0.3  # of the error that a step leaves, from where the tangent is factored again
-_REMEMBERED = 8
 _PATIENCE = 4  # steps with factors of their own, in which the residual has to halve
 _LARGEST_STEP = 0.3  # of a state
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
@@ -28,23 +27,6 @@ def tolerance(problem: Problem, state: State) -> float:
     return float(np.max(_ERROR + _ROUNDING * size / problem.natural, initial=_ERROR))
 
 
-class _Mixing:
-    """Unknowns and the steps from them, all over their scales."""
-
-    def __init__(self) -> None:
-        self._at = list[Floats]()
-        self._steps = list[Floats]()
-
-    def improved(self, at: Floats, step: Floats) -> Floats:
-        """Return the step that goes to where the steps before say that there is none."""
-        self._at, self._steps = [*self._at[-_REMEMBERED:], at], [*self._steps[-_REMEMBERED:], step]
-        if len(self._at) == 1:
-            return step
-        changes = np.diff(np.array(self._steps), axis=0).T
-        part = np.linalg.lstsq(changes, step, rcond=1e-12)[0]
-        return np.asarray(step - (np.diff(np.array(self._at), axis=0).T + changes) @ part)
-
-
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
 def newton(
     problem: Problem, state: State, drive: Drive, factors: Factors | None, along: float = 0.0, lead: Lead | None = None
@@ -53,7 +35,7 @@ def newton(
 
     Its error is inf where there is none to be found.
     """
-    mixing, errors, at = _Mixing(), list[float](), np.zeros(0)
+    mixing, errors = Mixing(), list[float]()
     own = False
     while state.t.size:
         limit = tolerance(problem, state)
@@ -69,7 +51,7 @@ def newton(
         if slow:
             factors = Factors(problem, state)
             lead = None if lead is None else leading(problem, state, drive, factors, lead.asperity)
-            mixing, at = _Mixing(), np.zeros(0)
+            mixing = Mixing()
             if not own:
                 errors = []
             own = True
@@ -77,8 +59,7 @@ def newton(
         factors = factors or Factors(problem, state)
         step = factors.solve(-state.edge * 2.0 * state.release, -state.gap, lead)
         change = factors.unknowns(step, lead)
-        at = at if at.size else np.zeros_like(change)
-        change = mixing.improved(at, change)
+        change = mixing.improved(change)
         step = factors.step_of(change, lead)
         if not np.isfinite(change).all():
             return state._replace(error=math.inf), along
@@ -86,7 +67,7 @@ def newton(
         if largest > _LARGEST_STEP:
             part = _LARGEST_STEP / largest
             step, change = Step(part * step.radius, part * step.load, part * step.along), part * change
-        at = at + change
+        mixing.go(change)
         state, along = moved(problem, state, step, drive), along + step.along
     return state, along
 

@@ -1,18 +1,18 @@
 """The second derivatives of the energy of adhesive contacts over their radii and loads: one symmetric tangent.
 
-Steps with it are found by GMRES, begun from its factors.
+Steps with it are found from those with its factors.
 """
 
 import math
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step
 from roughmdr.interaction.jkr.factors import Factors, Lead, edge_by_radius
+from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.numerics.arguments import Floats
 
-_RESTART = 30
+_MAX_STEPS = 50
 
 
 class Tangent:
@@ -77,29 +77,22 @@ class Tangent:
         edge, gap = self.product(Step(one, nothing))
         return self.solve(-edge, -gap, factors, rtol, lead)
 
+    @np.errstate(all="ignore")  # a singular tangent has no step
     def solve(self, edge: Floats, gap: Floats, factors: Factors, rtol: float, lead: Lead | None = None) -> Step:
-        """Return the step with these changes of de/da and of the gaps."""
-        size, first = gap.size, 0 if self.problem.kernels.pinned else gap.size
-        by_edge, by_gap = 2.0 * factors.release * factors.natural, factors.natural
-
-        def rows(changes: tuple[Floats, Floats]) -> Floats:
-            return np.concatenate([changes[0] / by_edge, changes[1] / by_gap])[size - first :]
-
-        def product(unknown: Floats) -> Floats:
-            return rows(self.product(factors.step_of(unknown.ravel(), lead)))
-
-        def before(right: Floats) -> Floats:
-            edge = np.zeros(size)
-            edge[:first] = right.ravel()[:first]
-            return factors.unknowns(factors.solve(edge * by_edge, right.ravel()[first:] * by_gap, lead), lead)
-
-        right = rows((edge, gap))
-        if not right.any():
-            return Step(np.zeros(size), np.zeros(size))
-        shape = right.size, right.size
-        operator, inverse = (LinearOperator(shape, matvec=each, dtype=np.float64) for each in (product, before))
-        found, _ = gmres(operator, right, M=inverse, rtol=rtol, atol=0.0, restart=min(_RESTART, shape[0]), maxiter=2)
-        return factors.step_of(found, lead)
+        """Return the step with these changes of de/da and of the gaps; NaN where it is not found."""
+        step = factors.solve(edge, gap, lead)
+        found = factors.unknowns(step, lead)
+        mixing, size = Mixing(), float(np.abs(found).max(initial=0.0))
+        for _ in range(_MAX_STEPS):
+            by_edge, by_gap = self.product(factors.step_of(found, lead))
+            change = factors.unknowns(factors.solve(edge - by_edge, gap - by_gap, lead), lead)
+            if not np.abs(change).max(initial=0.0) > rtol * size:
+                return factors.step_of(found + change, lead)
+            way = mixing.improved(change)
+            mixing.go(way)
+            found = found + way
+        nothing = np.full(gap.size, math.nan)
+        return Step(nothing, nothing, math.nan)
 
 
 def leading(problem: Problem, state: State, drive: Drive, factors: Factors, asperity: int) -> Lead:
