@@ -91,7 +91,9 @@ class Factors:
             i, j = self._members
             matrix[i, j] += 0.5 * math.pi / (a[i] * self._by_load[i]) * self._between
             matrix[j, i] += 0.5 * math.pi / (a[j] * self._by_load[j]) * self._between
-        self._lu, self._pivots, _ = dgetrf(matrix.T, overwrite_a=True)  # row by row, so that it is not copied
+        self._lu, self._pivots = matrix.T, np.zeros(0, np.int32)
+        if size:
+            self._lu, self._pivots, _ = dgetrf(matrix.T, overwrite_a=True)  # row by row, so that it is not copied
 
     def _add_bells(self, state: State) -> None:
         """Add what the contacts of overlapping pairs do to each other."""

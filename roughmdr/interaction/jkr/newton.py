@@ -11,7 +11,6 @@ from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, al
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import leading
-from roughmdr.numerics.arguments import Floats
 
 _SLOW = 0.3  # of the error that a step leaves, from where the tangent is factored again
 _PATIENCE = 4  # steps with factors of their own, in which the residual has to halve

@@ -48,10 +48,6 @@ class Adhering(NamedTuple):
     """A warning where contacts overlap as soon as they are made; empty where they do not."""
 
 
-class _LeftOutError(Exception):
-    """An asperity that was left out may touch."""
-
-
 def solve_path(
     ensemble: Ensemble,
     separation: Floats,
@@ -74,14 +70,8 @@ def solve_path(
         raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
     asperities = placed.asperities(whole)
     natural, made = _lone_scales(kernels, asperities, weight)
-    reach = lowest - float(natural.max(initial=0.0))
-    count = int(np.searchsorted(-placed.height, -reach, side="right"))
-    while True:
-        path = _Path(placed, kernels, asperities, natural, made, weight, lowest, min(count, whole))
-        try:
-            return path.follow(separation, ensemble.height.size, effective_modulus, names)
-        except _LeftOutError:
-            count = math.ceil(_GROWTH * count) + 1
+    path = _Path(placed, kernels, asperities, natural, made, weight, lowest)
+    return path.follow(separation, ensemble.height.size, effective_modulus, names)
 
 
 def _lone_scales(kernels: JkrKernels, asperities: Asperities, work: float) -> tuple[Floats, Floats]:
@@ -113,24 +103,36 @@ class _Path:
         made: Floats,
         work: float,
         lowest: float,
-        count: int,
     ) -> None:
-        interaction, at = placed.interaction, placed.at[:count]
-        x, y = np.ascontiguousarray(at.T)
-        self.placed, self.next_height = placed, -math.inf
+        self.placed, self._kernels, self._asperities = placed, kernels, asperities
+        self._natural, self._made, self._work, self._lowest = natural, made, work, lowest
+        reach = lowest - float(natural.max(initial=0.0))
+        self._take(int(np.searchsorted(-placed.height, -reach, side="right")))
+
+    def _take(self, count: int) -> None:
+        """Have the highest asperities."""
+        placed, kernels, interaction = self.placed, self._kernels, self.placed.interaction
+        count, self.next_height = min(count, placed.height.size), -math.inf
         if count < placed.height.size:
             self.next_height = float(placed.height[count])
-        few = Asperities(*(each[:count] for each in asperities))
-        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
-        bound = np.array(
-            [_radius(kernels, few, i, max(float(few.height[i]) - lowest, 0.0), work) for i in range(count)]
-        ).reshape(count)
+        at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
+        coupling = Dense(*np.ascontiguousarray(at.T), placed.patch, interaction.boundary == "periodic")
+        depth = np.maximum(few.height - self._lowest, 0.0)
+        bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
         pairs = coincident.find(at, bound, placed.sides)
         coincident.take_out(pairs, coupling.matrices)
-        self.problem = Problem(kernels, few, coupling, pairs, interaction.order, work, natural[:count])
+        self.problem = Problem(kernels, few, coupling, pairs, interaction.order, self._work, self._natural[:count])
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
-        self.crowded = _crowding(close_pairs(pairs, made[:count]), placed.length, made[:count])
+
+    def _extend(self, state: State) -> State:
+        """Return the state with more asperities, none of which is in contact."""
+        self._take(math.ceil(_GROWTH * state.t.size) + 1)
+        more = self.problem.natural.size - state.t.size
+        inside = np.append(state.inside, np.zeros(more, np.bool_))
+        t, load = (np.append(each, np.zeros(more)) for each in (state.t, state.load))
+        new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
+        return new._replace(factors=state.factors)
 
     def follow(self, separation: Floats, total: int, modulus: float, names: set[str]) -> Adhering:
         """Return the contacts at separations [m]."""
@@ -146,8 +148,11 @@ class _Path:
         for number, h in enumerate((separation / length).tolist()):
             try:
                 if not lost:
-                    state, found, tension = self._advance(state, h, tension)
-                    self._check_complete(state)
+                    new, found, largest = self._advance(state, h, tension)
+                    while not self._complete(new):
+                        state = self._extend(state)
+                        new, found, largest = self._advance(state, h, tension)
+                    state, tension = new, largest
                     for one in found:
                         dissipated += one.dissipated * unit
                         avalanches.append(Avalanche(one.separation * length, one.size, one.dissipated * unit))
@@ -159,10 +164,9 @@ class _Path:
             steps.append(self._totals(state, modulus, dissipated, names))
             parted |= number > 0 and separation[number] > separation[number - 1] and not state.inside.any()
             if number == closest:
-                radius[self.placed.kept[:count]] = np.where(state.inside, state.contacts.radius, 0.0) * length
-        return Adhering(
-            steps, radius, count * len(steps), avalanches, self._pull_off(tension, parted, modulus), self.crowded
-        )
+                radius[self.placed.kept[: state.t.size]] = np.where(state.inside, state.contacts.radius, 0.0) * length
+        pull_off, visits = self._pull_off(tension, parted, modulus), state.t.size * len(steps)
+        return Adhering(steps, radius, visits, avalanches, pull_off, self._crowding())
 
     def _advance(
         self, state: State, h: float, tension: Tension | None
@@ -218,9 +222,22 @@ class _Path:
         force = math.pi * modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
 
-    def _check_complete(self, state: State) -> None:
-        if state.inside.any() and self.next_height - state.separation > min(below_all(state.potential), 0.0):
-            raise _LeftOutError
+    def _complete(self, state: State) -> bool:
+        """Return whether no asperity that was left out can touch."""
+        if not state.inside.any():
+            return True
+        return not self.next_height - state.separation > min(below_all(state.potential), 0.0)
+
+    def _crowding(self) -> str:
+        """Return the warning about contacts that overlap as soon as they are made."""
+        pairs, made = self.problem.pairs, self._made[: self.problem.natural.size]
+        count = np.count_nonzero(pairs.apart[:, 2] < made[pairs.members].sum(axis=1))
+        return (
+            f"{count} pairs of contacts overlap as soon as they are made: they have radii of about "
+            f"{self.placed.length * float(np.median(made)):.3g} m then; coupled pairs cannot tell how they merge"
+            if count
+            else ""
+        )
 
     def _totals(self, state: State, modulus: float, dissipated: float, names: set[str]) -> Step:
         problem, length = self.problem, self.placed.length
@@ -254,20 +271,6 @@ class _Path:
 def none(problem: Problem) -> Floats:
     """Return an outer field of none."""
     return np.zeros((4, problem.natural.size))
-
-
-def close_pairs(pairs: close.Pairs, made: Floats) -> int:
-    """Return how many pairs overlap as soon as both contacts are made."""
-    return int(np.count_nonzero(pairs.apart[:, 2] < made[pairs.members].sum(axis=1)))
-
-
-def _crowding(count: int, length: float, made: Floats) -> str:
-    return (
-        f"{count} pairs of contacts overlap as soon as they are made: they have radii of about "
-        f"{length * float(np.median(made)):.3g} m then; coupled pairs cannot tell how they merge"
-        if count
-        else ""
-    )
 
 
 def prepare(shape: str) -> None:
