@@ -16,7 +16,8 @@ from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent, leading
 
-_LARGEST_CHANGE = 0.4  # of a state in a step
+_LARGEST_CHANGE = 0.2  # of a state in a step by the rate of change
+_NEAR = 0.8  # change of the logarithm of a state on one path
 _LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the state that leads
 _OVERSHOOT = 1.1
 _NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
@@ -114,7 +115,7 @@ def _near(state: State, new: State) -> bool:
     """Return whether a state is an equilibrium near another one."""
     with np.errstate(all="ignore"):
         ratio = np.abs(np.log(new.t / state.t))
-    return math.isfinite(new.error) and bool((ratio < 2.0 * _LARGEST_CHANGE).all())
+    return math.isfinite(new.error) and bool((ratio < _NEAR).all())
 
 
 def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place, Fold | None]:
