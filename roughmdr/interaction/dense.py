@@ -58,8 +58,8 @@ class Dense:
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""
-        touching = np.flatnonzero(load)
-        if 2 * touching.size < load.size:
+        if 2 * np.count_nonzero(load) < load.size:
+            touching = np.flatnonzero(load)
             return np.asarray(self.matrices[:, :, touching] @ load[touching])
         return (self.matrices.reshape(4 * load.size, load.size) @ load).reshape(
             4, -1
@@ -67,9 +67,9 @@ class Dense:
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
-        touching = np.flatnonzero(laplacian)
         _, x, y, lap = self.matrices
-        if 2 * touching.size < laplacian.size:
+        if 2 * np.count_nonzero(laplacian) < laplacian.size:
+            touching = np.flatnonzero(laplacian)
             lap, x, y = (each[:, touching] for each in (lap, x, y))
             laplacian, along_x, along_y = laplacian[touching], along_x[touching], along_y[touching]
         return np.asarray(lap @ laplacian + x @ along_x + y @ along_y)

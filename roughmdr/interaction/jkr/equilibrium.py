@@ -15,6 +15,7 @@ from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 if TYPE_CHECKING:
     from roughmdr.interaction.jkr.factors import Factors
@@ -94,6 +95,32 @@ class State(NamedTuple):
     """The tangent of the contacts at this state or near it."""
 
 
+@njit
+def _compare(
+    inside: Bools,
+    pinned: bool,
+    work: float,
+    contacts: Contacts,
+    reached: Floats,
+    natural: Floats,
+    release: Floats,
+    edge: Floats,
+    gap: Floats,
+) -> float:
+    """Fill the residuals, and return the largest one of the contacts; inf where there is none that a float holds."""
+    largest = 0.0
+    for i in range(inside.size):
+        release[i] = math.sqrt(2.0 * math.pi * work * contacts.radius[i])
+        if not inside[i]:
+            edge[i], gap[i] = 0.0, reached[i] + contacts.lift[i]
+            continue
+        edge[i] = 0.0 if pinned else edge[i] / (2.0 * release[i])
+        gap[i] = reached[i] - contacts.depth[i]
+        residual = max(abs(edge[i]), abs(gap[i])) / natural[i]
+        largest = max(largest, residual if math.isfinite(abs(edge[i]) + abs(gap[i])) else math.inf)
+    return largest
+
+
 def field_of(problem: Problem, load: Floats) -> Floats:
     """Return the displacement by loads with its derivatives, [row, asperity], but for overlapping pairs."""
     if problem.order == 2:
@@ -123,13 +150,11 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     if problem.order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
         potential = by_loads + coupling.of_moments(*moments)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        release = np.sqrt(2.0 * math.pi * problem.work * contacts.radius)
-        edge = np.where(inside & (not problem.kernels.pinned), edge / (2.0 * release), 0.0)
+    release, gap = np.empty((2, t.size))
     reached = problem.asperities.height - separation - potential - outer[0]
-    gap = np.where(inside, reached - contacts.depth, reached + contacts.lift)
-    residual = np.maximum(np.abs(edge), np.abs(gap)) / problem.natural
-    error = float(residual[inside].max(initial=0.0)) if np.isfinite(residual[inside]).all() else math.inf
+    error = _compare(
+        inside, problem.kernels.pinned, problem.work, contacts, reached, problem.natural, release, edge, gap
+    )
     return State(
         inside, t, load, separation, outer, field, contacts, found, potential, by_loads, release, edge, gap, error
     )

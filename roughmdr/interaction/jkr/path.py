@@ -116,7 +116,8 @@ class _Path:
         if count < placed.height.size:
             self.next_height = float(placed.height[count])
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
-        coupling = Dense(*np.ascontiguousarray(at.T), placed.patch, interaction.boundary == "periodic")
+        x, y = np.ascontiguousarray(at.T)
+        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
         depth = np.maximum(few.height - self._lowest, 0.0)
         bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
         pairs = coincident.find(at, bound, placed.sides)
