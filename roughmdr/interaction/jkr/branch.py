@@ -23,8 +23,9 @@ _OVERSHOOT = 1.1
 _NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
 _LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
 _MAX_ROUNDS = 40
+_ROUGH = 1e-8  # error of states on the way, over the natural depth
 _FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
-_SLOPE_RTOL = 1e-6
+_SLOPE_RTOL = 1e-5
 
 
 class NoEquilibriumError(Exception):
@@ -140,7 +141,7 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
         size = _FLAT_STEP
     while size > _LEAST_LEAD_STEP:
         guess, place = _to(problem, here, lead, at * (1.0 + sign * size), drive)
-        new, place = newton(problem, guess, drive, factors, place, lead)
+        new, place = newton(problem, guess, drive, factors, place, lead, _ROUGH)
         if not _near(state, new):
             size *= 0.5
             continue
@@ -194,7 +195,7 @@ def _fold(
     for _ in range(_MAX_ROUNDS):
         lead = leading(problem, best.state, drive, best.factors, number)
         guess, place = _to(problem, best, lead, root.next, drive)
-        found, place = newton(problem, guess, drive, best.factors, place, lead)
+        found, place = newton(problem, guess, drive, best.factors, place, lead, _ROUGH)
         if not math.isfinite(found.error):
             return None
         own = Factors(problem, found)
@@ -203,6 +204,7 @@ def _fold(
             return None
         best = Place(found, own, place)
         if abs(slope) <= still:
-            return best
+            found, place = newton(problem, found, drive, own, place, leading(problem, found, drive, own, number))
+            return best._replace(state=found, along=place) if math.isfinite(found.error) else None
         root.narrow(found.t[number], slope)
     return None

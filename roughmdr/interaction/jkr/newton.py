@@ -12,7 +12,7 @@ from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import leading
 
-_SLOW = 0.3  # of the error that a step leaves, from where the tangent is factored again
+_SLOW = 0.12  # of the error that a step leaves, from where the tangent is factored again
 _PATIENCE = 4  # steps with factors of their own, in which the residual has to halve
 _LARGEST_STEP = 0.3  # of a state
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
@@ -28,17 +28,23 @@ def tolerance(problem: Problem, state: State) -> float:
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
 def newton(
-    problem: Problem, state: State, drive: Drive, factors: Factors | None, along: float = 0.0, lead: Lead | None = None
+    problem: Problem,
+    state: State,
+    drive: Drive,
+    factors: Factors | None,
+    along: float = 0.0,
+    lead: Lead | None = None,
+    error: float = 0.0,
 ) -> tuple[State, float]:
     """Return the equilibrium from a guess, and the place along the path, which changes only with a leading radius.
 
-    Its error is inf where there is none to be found.
+    Its error is inf where there is none to be found; ``error`` is one over the natural depth that is small enough.
     """
     mixing, errors = Mixing(), list[float]()
     own = False
     while state.t.size:
         limit = tolerance(problem, state)
-        if state.error <= limit:
+        if state.error <= max(limit, error):
             break
         slow = bool(errors) and not state.error < _SLOW * errors[-1]
         if slow and errors[-1] <= _AT_REST * limit:
