@@ -1,4 +1,4 @@
-"""The totals of asperities that feel each other, as those of the sum over independent ones."""
+"""The law of asperities that feel each other in pairs, with totals as those of the sum over independent ones."""
 
 import math
 from typing import TYPE_CHECKING, NamedTuple
@@ -7,10 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
+from roughmdr.aggregate.law import LoadSeparation
+from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
+from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error, summits_error
 from roughmdr.numerics.arguments import Floats
 
@@ -47,13 +52,53 @@ class CoupledTotals(NamedTuple):
     """Sizes of the avalanches; None without adhesion."""
 
 
+def law_of_coupled(
+    ensemble: Ensemble,
+    path: LoadingPath,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    interaction: Interaction,
+    names: list[str],
+) -> LoadSeparation:
+    """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
+    work, spread = adhesion.work, float(np.std(ensemble.height))
+    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
+    validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
+    assumptions = Assumptions(
+        ensemble.validity_limits(found.radius),
+        np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
+        radius_uncertainty=float(ensemble.attrs.get("radius_uncertainty", 0.0)),
+        of_surface=bool(ensemble.attrs.get("of_surface", 0)),
+        overlap=found.overlap_share,
+        coupling_error=found.error,
+    )
+    model = "jkr" if work > 0.0 else "none"
+    result = LoadSeparation.of(
+        found.total, names, path.separation, givens, assumptions, found.visits, validity.tabor, model
+    )
+    if found.avalanches is not None:
+        result = result._replace(
+            pull_off=found.pull_off,
+            avalanche_count=float(len(found.avalanches)),
+            avalanche_size_max=float(max(found.avalanches, default=0)),
+        )
+    return result._replace(
+        warnings=(*ensemble.warnings, *found.warnings),
+        overlap_count=float(found.overlap_count),
+        marked_steps=float(found.marked),
+        grid_points=float(found.grid_points),
+    )
+
+
 def sum_coupled(
     ensemble: Ensemble,
     separation: Floats,
     effective_modulus: float,
     interaction: Interaction,
     names: list[str],
-    work: float = 0.0,
+    work: float,
 ) -> CoupledTotals:
     """Return the totals of an ensemble at separations [m], w [J/m2]; SceneError where a variable is not to be had."""
     if work > 0.0:

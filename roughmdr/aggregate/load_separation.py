@@ -63,7 +63,9 @@ def compute(
         if reason := reason_against_adhesion(interaction, adhesion):
             raise SceneError(f"interaction {reason}")
         if interaction.model == "pairwise":
-            return _coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
+            from roughmdr.aggregate.coupled import law_of_coupled
+
+            return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
     columns = ensemble.nondimensional()
     with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
         spread = float(np.std(ensemble.height)) if ensemble.height.size else 0.0
@@ -103,48 +105,6 @@ def compute(
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
     return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
-
-
-def _coupled(
-    ensemble: Ensemble,
-    path: LoadingPath,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    interaction: Interaction,
-    names: list[str],
-) -> LoadSeparation:
-    """Return the law of asperities that feel each other in pairs."""
-    from roughmdr.aggregate.coupled import sum_coupled
-
-    work, spread = adhesion.work, float(np.std(ensemble.height))
-    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
-    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
-    validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
-    assumptions = Assumptions(
-        ensemble.validity_limits(found.radius),
-        np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
-        radius_uncertainty=float(ensemble.attrs.get("radius_uncertainty", 0.0)),
-        of_surface=bool(ensemble.attrs.get("of_surface", 0)),
-        overlap=found.overlap_share,
-        coupling_error=found.error,
-    )
-    model = "jkr" if work > 0.0 else "none"
-    result = LoadSeparation.of(
-        found.total, names, path.separation, givens, assumptions, found.visits, validity.tabor, model
-    )
-    if found.avalanches is not None:
-        result = result._replace(
-            pull_off=found.pull_off,
-            avalanche_count=float(len(found.avalanches)),
-            avalanche_size_max=float(max(found.avalanches, default=0)),
-        )
-    return result._replace(
-        warnings=(*ensemble.warnings, *found.warnings),
-        overlap_count=float(found.overlap_count),
-        marked_steps=float(found.marked),
-        grid_points=float(found.grid_points),
-    )
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:

@@ -7,6 +7,7 @@ about three. They are constants, never measured while a batch runs, so that ever
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
+from roughmdr.scene import Scene
 
 START_UP = 1.2
 """Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
@@ -21,10 +22,13 @@ _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's m
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
 _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
+# With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
+_ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
 _GRID_STEP = 1.2  # of boundary elements, should they be needed
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB
+_ADHERING_PAIR = 100  # bytes of each two asperities with adhesion: four matrices, and parts of them
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
 
 
@@ -52,9 +56,12 @@ def paired_seconds(cell: Cell) -> float:
 
     Each step is one on the grid, where ``beyond`` allows that.
     """
+    count = cell.scene.asperities.expected_count
+    if cell.scene.work > 0.0:
+        return _PAIRWISE_BEGIN + cell.steps * _ADHERING_STEP + count * (_ADHERING + count * count * _ADHERING_SQUARE)
     beyond = None if cell.scene.interaction is None else cell.scene.interaction.beyond
     grid = _GRID_STEP if beyond == "boundary_elements" else 0.0
-    each = grid + _PAIRWISE_STEP + cell.scene.asperities.expected_count * _PAIRWISE_VISIT
+    each = grid + _PAIRWISE_STEP + count * _PAIRWISE_VISIT
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
@@ -72,13 +79,16 @@ def ensemble_bytes(plan: Plan) -> float:
     """Return the memory [byte] of the largest ensemble that is drawn, while its law is computed."""
     drawn = [cell.scene for cell in plan.cells if cell.scene.estimators[0] != "expected"]
     return max(
-        (
-            (_PAIRED_ASPERITY if scene.needs_positions else _ASPERITY) * scene.asperities.expected_count
-            for scene in drawn
-            if scene.asperities.is_random
-        ),
+        (scene.asperities.expected_count * _bytes_of_each(scene) for scene in drawn if scene.asperities.is_random),
         default=0.0,
     )
+
+
+def _bytes_of_each(scene: Scene) -> float:
+    """Return the memory [byte] of an asperity."""
+    if not scene.needs_positions:
+        return _ASPERITY
+    return _PAIRED_ASPERITY + (_ADHERING_PAIR * scene.asperities.expected_count if scene.work > 0.0 else 0.0)
 
 
 def _value_bytes(plan: Plan, runs: int) -> int:

@@ -12,6 +12,7 @@ from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.errors import RoughmdrError, TooMuchContact
 from roughmdr.interaction import Interaction
 from roughmdr.interaction.placed import part_of
+from roughmdr.interaction.settings import reason_against_adhesion
 from roughmdr.scene import Scene
 
 _MAX_ASPERITIES = 1000
@@ -38,8 +39,8 @@ class Prospect(NamedTuple):
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
     coupled_seconds: float
-    """About how long a realisation would take [s] if its asperities felt each other; inf with adhesion, where they
-    cannot."""
+    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion does not
+    let them."""
     interaction: Interaction | None
     """How asperities feel each other."""
 
@@ -58,7 +59,10 @@ def foresee_cells(plan: Plan) -> Prospect:
             foreseen.append(_foreseen(cell.scene, path))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
-    coupled = max(paired_seconds(cell) if cell.scene.work == 0.0 else math.inf for cell in plan.cells)
+    coupled = max(
+        math.inf if reason_against_adhesion(Interaction(), cell.scene.adhesion_model) else paired_seconds(cell)
+        for cell in plan.cells
+    )
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction_model)
 
 

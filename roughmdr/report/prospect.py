@@ -49,7 +49,9 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
     touches = any(cell.law.model_error.largest_fraction > 0.0 for cell in cells)
     if model is None and touches and prospect.coupled_seconds < math.inf:
-        yield "", f"at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
+        parts = any(not math.isnan(cell.fraction_at_pull_off) for cell in cells)
+        how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
+        yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
 
 
 def _pressure_at_closest(cell: "Foreseen") -> float:

@@ -57,7 +57,7 @@ def jump(problem: Problem, state: State, event: Event) -> State:
 
 
 def _alone(problem: Problem, state: State, i: int, t: float, load: float) -> tuple[float, float]:
-    """Return the state and the load at which a contact is at rest on the surface as it is; the guess if there is none."""
+    """Return the state and the load of a contact at rest on the surface as it is; those given where there are none."""
     outer = state.field[:, [i]] + state.outer[:, [i]]
     outer[0] = state.potential[i] + state.outer[0, i]
     one = problem._replace(coupling=problem.coupling.none()).part(np.array([i]))

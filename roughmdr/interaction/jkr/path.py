@@ -24,6 +24,7 @@ from roughmdr.interaction.settings import Interaction
 from roughmdr.interaction.totals import Overlap, Step
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import format_quantity
 from roughmdr.shapes import SHAPES, SharedProfile
 
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
@@ -232,12 +233,15 @@ class _Path:
     def _crowding(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
         pairs, made = self.problem.pairs, self._made[: self.problem.natural.size]
-        count = np.count_nonzero(pairs.apart[:, 2] < made[pairs.members].sum(axis=1))
+        overlapping = pairs.apart[:, 2] < made[pairs.members].sum(axis=1)
+        if not overlapping.any():
+            return ""
+        length, count = self.placed.length, int(np.count_nonzero(overlapping))
+        radius, apart = (format_quantity(length * float(np.median(each)), "m") for each in
+                         (made[pairs.members[overlapping]], pairs.apart[overlapping, 2]))  # fmt: skip
         return (
-            f"{count} pairs of contacts overlap as soon as they are made: they have radii of about "
-            f"{self.placed.length * float(np.median(made)):.3g} m then; coupled pairs cannot tell how they merge"
-            if count
-            else ""
+            f"contacts overlap as soon as they are made ({count} pairs): jump-on radius {radius}, distance {apart} in "
+            "the median; how contacts merge is not in their coupling"
         )
 
     def _totals(self, state: State, modulus: float, dissipated: float, names: set[str]) -> Step:
