@@ -10,9 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction.jkr.equilibrium import Problem, State
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone
 from roughmdr.interaction.jkr.path import Adhering, _Path, solve_path
-from roughmdr.interaction.jkr.equilibrium import Drive, Step, alone
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction
 

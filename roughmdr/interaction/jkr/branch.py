@@ -109,7 +109,7 @@ def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | 
     if not _near(here.state, new):
         return None
     factors = Factors(problem, new)
-    return Place(new, factors, along) if factors.stable else None
+    return None if factors.unstable else Place(new, factors, along)
 
 
 def _near(state: State, new: State) -> bool:
@@ -129,7 +129,7 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     def turning(state: State, factors: Factors) -> float | None:
         """Return the slope of the place over the radius that leads; None where the others are not stable."""
         lead = leading(problem, state, drive, factors, number)
-        if (sign * lead.by_place.radius[number] > 0.0) != factors.stable:
+        if factors.unstable != (0 if sign * lead.by_place.radius[number] > 0.0 else 1):
             return None
         return sign * Tangent(problem, state, drive).rate(factors, _SLOPE_RTOL, lead).along
 

@@ -32,6 +32,8 @@ def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event 
     """
     path = _Path(problem, state, drive)
     here, begun = path.begin, state
+    if here.factors.unstable:  # one that jumped had held another
+        return state, Event("fold", int(path.kept[here.factors.least_stable()]), upwards=False)
     for _ in range(_MAX_PIECES):
         there, fold = piece(path.few, here, path.drive)
         end = path.whole(there)

@@ -5,14 +5,17 @@ Loads follow from the edge condition, so that one number stands for each contact
 """
 
 import math
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from roughmdr.interaction.jkr.equilibrium import Problem, State, Step
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
+
+_ITERATIONS = 5
 
 
 class Lead(NamedTuple):
@@ -86,7 +89,8 @@ class Factors:
         if self.pinned:
             matrix = -self._block
         else:
-            self._follow = -edge_by_radius(problem, state) / self._by_load
+            self._own = edge_by_radius(problem, state)
+            self._follow = -self._own / self._by_load
             _eliminate(self._block, self._cross, a, self._by_load, self._follow, matrix)
             i, j = self._members
             matrix[i, j] += 0.5 * math.pi / (a[i] * self._by_load[i]) * self._between
@@ -106,12 +110,33 @@ class Factors:
             np.add.at(self._cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
         self._between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
 
-    @property
-    def stable(self) -> bool:
-        """Whether an even number of folds lies between the state and one without tension."""
+    @cached_property
+    def unstable(self) -> int:
+        """How many modes have no stable equilibrium.
+
+        Counted by the inertia of the tangent of the first order (Sylvester's law), made even or odd by that factored.
+        """
         swaps = np.count_nonzero(self._pivots != np.arange(self._pivots.size))
-        signs = np.count_nonzero(np.diag(self._lu) < 0.0)
-        return bool((signs + swaps + self._pivots.size) % 2 == 0)
+        odd = (np.count_nonzero(np.diag(self._lu) < 0.0) + swaps + self._pivots.size) % 2
+        if self.pinned or not self._own.size:
+            return int(odd)
+        negative = np.count_nonzero(self._own < 0.0)
+        own = np.where(self._own == 0.0, np.finfo(np.float64).tiny, self._own)
+        loads = self._block.copy()
+        loads[np.diag_indices(own.size)] += self._by_load**2 / (math.pi * own)
+        factored, pivots, _ = dsytrf(loads.T, lower=True, overwrite_a=True)
+        single = np.count_nonzero(np.diag(factored)[pivots > 0] < 0.0)
+        count = int(negative - single - np.count_nonzero(pivots < 0) // 2)  # of each double pivot one is negative
+        return count if count % 2 == odd else abs(count - 1)
+
+    def least_stable(self) -> int:
+        """Return the contact that the least stable mode moves most, by inverse iteration."""
+        a = self._scale[0]
+        mode = np.ones_like(a)
+        for _ in range(_ITERATIONS):
+            mode = self.solve(mode / a, np.zeros_like(a)).radius / a
+            mode /= np.abs(mode).max()
+        return int(np.argmax(np.abs(mode)))
 
     def solve(self, edge: Floats, gap: Floats, lead: Lead | None = None) -> Step:
         """Return the step with these changes of de/da and of the gaps."""
