@@ -4,7 +4,7 @@ The energy is stationary over the loads and, in equilibrium, over the contact ra
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,6 @@ from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
-
-if TYPE_CHECKING:
-    from roughmdr.interaction.jkr.factors import Factors
 
 Bools = NDArray[np.bool_]
 
@@ -91,31 +88,25 @@ class State(NamedTuple):
     """z - h - U less the indentation: 0 in equilibrium; out of contact, negative before first touch."""
     error: float
     """The largest residual over the natural depth."""
-    factors: "Factors | None" = None
-    """The tangent of the contacts at this state or near it."""
+    factors: Any = None
+    """The ``Factors`` of the tangent of the contacts at this state or near it."""
 
 
 @njit
-def _compare(
-    inside: Bools,
-    pinned: bool,
-    work: float,
-    contacts: Contacts,
-    reached: Floats,
-    natural: Floats,
-    release: Floats,
-    edge: Floats,
-    gap: Floats,
-) -> float:
-    """Fill the residuals, and return the largest one of the contacts; inf where there is none that a float holds."""
+def _compare(inside: Bools, pinned: bool, work: float, contacts: Contacts, natural: Floats, rows: Floats) -> float:
+    """Fill ``rows`` of dl, the residuals of the edges (de/da before) and of the gaps (z - h - U before).
+
+    Return the largest of the contacts; inf where there is none that a float holds.
+    """
     largest = 0.0
+    release, edge, gap = rows
     for i in range(inside.size):
         release[i] = math.sqrt(2.0 * math.pi * work * contacts.radius[i])
         if not inside[i]:
-            edge[i], gap[i] = 0.0, reached[i] + contacts.lift[i]
+            edge[i], gap[i] = 0.0, gap[i] + contacts.lift[i]
             continue
         edge[i] = 0.0 if pinned else edge[i] / (2.0 * release[i])
-        gap[i] = reached[i] - contacts.depth[i]
+        gap[i] -= contacts.depth[i]
         residual = max(abs(edge[i]), abs(gap[i])) / natural[i]
         largest = max(largest, residual if math.isfinite(abs(edge[i]) + abs(gap[i])) else math.inf)
     return largest
@@ -150,11 +141,9 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     if problem.order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
         potential = by_loads + coupling.of_moments(*moments)
-    release, gap = np.empty((2, t.size))
-    reached = problem.asperities.height - separation - potential - outer[0]
-    error = _compare(
-        inside, problem.kernels.pinned, problem.work, contacts, reached, problem.natural, release, edge, gap
-    )
+    rows = np.array([edge, edge, problem.asperities.height - separation - potential - outer[0]])
+    error = _compare(inside, problem.kernels.pinned, problem.work, contacts, problem.natural, rows)
+    release, edge, gap = rows
     return State(
         inside, t, load, separation, outer, field, contacts, found, potential, by_loads, release, edge, gap, error
     )

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
+from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Problem, State, Step
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -27,18 +28,9 @@ class Lead(NamedTuple):
 
 
 @njit
-def _fill(
-    matrices: Floats,
-    order: int,
-    a: Floats,
-    lift: Floats,
-    slopes: Floats,
-    by_tilt: Floats,
-    by_radius: Floats,
-    block: Floats,
-    cross: Floats,
-) -> None:
+def _fill(matrices: Floats, order: int, contacts: Contacts, slopes: Floats, block: Floats, cross: Floats) -> None:
     """Fill what the gaps of contacts change by the loads of others, the other way round, and by their radii."""
+    a, lift, by_tilt, by_radius = contacts.radius, contacts.lift, contacts.edge_by_tilt, contacts.moment_by_radius
     for i in range(a.size):
         for j in range(a.size):
             block[i, j] = matrices[0, i, j]
@@ -72,17 +64,8 @@ class Factors:
         self._scale = a, 2.0 / math.pi * a * problem.natural
         self._by_load = contacts.edge_by_load
         self._block, self._cross, matrix = np.empty((3, size, size))
-        _fill(
-            problem.coupling.matrices,
-            problem.order,
-            a,
-            contacts.lift,
-            state.field[1:3] + state.outer[1:3],
-            contacts.edge_by_tilt,
-            contacts.moment_by_radius,
-            self._block,
-            self._cross,
-        )
+        slopes = state.field[1:3] + state.outer[1:3]
+        _fill(problem.coupling.matrices, problem.order, contacts, slopes, self._block, self._cross)
         self._members, self._between = problem.pairs.members.T, np.zeros(0)
         if self._members.size:
             self._add_bells(state)
