@@ -72,7 +72,8 @@ class State(NamedTuple):
     load: Floats
     separation: float
     outer: Floats
-    """Field [row, asperity] of loads that contacts have shed and others have not taken up yet."""
+    """What contacts that have jumped did to others and those have not taken up yet, [row, asperity]: the displacement
+    with its derivatives, as ``field``, and the part of de/da by overlap."""
     field: Floats
     contacts: Contacts
     bells: coincident.Bells
@@ -126,9 +127,9 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     pairs, coupling = problem.pairs, problem.coupling
     field = field_of(problem, load)
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
-    whole = field + outer
+    whole = field + outer[:4]
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
-    by_loads, edge = field[0].copy(), contacts.edge.copy()
+    by_loads, edge = field[0].copy(), contacts.edge + outer[4]
     found = coincident.bells(pairs, contacts.radius)
     if pairs.members.size:
         i, j = pairs.members.T

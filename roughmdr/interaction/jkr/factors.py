@@ -25,6 +25,8 @@ class Lead(NamedTuple):
     asperity: int
     by_place: Step
     """The change of the contacts along the path as the factors have it."""
+    edge: Floats
+    """That of de/da."""
 
 
 @njit
@@ -124,19 +126,16 @@ class Factors:
     def solve(self, edge: Floats, gap: Floats, lead: Lead | None = None) -> Step:
         """Return the step with these changes of de/da and of the gaps."""
         if self.pinned:
-            step = Step(np.zeros_like(gap), self._solved(gap))
-        else:
-            given = edge / self._by_load
-            other = 0.5 * math.pi**2 / (self._scale[0] * self._by_load) * (given @ self._cross)
-            radius = self._solved(gap + self._block @ given - other)
-            step = Step(radius, self._loads(radius, given))
-        if lead is None:
-            return step
-        rate, number = lead.by_place, lead.asperity
-        along = -float(step.radius[number] / rate.radius[number])
-        radius = step.radius + along * rate.radius
-        radius[number] = 0.0
-        return Step(radius, step.load + along * rate.load, along)
+            return Step(np.zeros_like(gap), self._solved(gap))
+        given = edge / self._by_load
+        other = 0.5 * math.pi**2 / (self._scale[0] * self._by_load) * (given @ self._cross)
+        radius, along = self._solved(gap + self._block @ given - other), 0.0
+        if lead is not None:
+            rate, number = lead.by_place.radius, lead.asperity
+            along = -float(radius[number] / rate[number])
+            radius, given = radius + along * rate, given + along * lead.edge / self._by_load
+            radius[number] = 0.0
+        return Step(radius, self._loads(radius, given), along)
 
     def _solved(self, right: Floats) -> Floats:
         return np.asarray(dgetrs(self._lu, self._pivots, right, trans=1)[0]) if right.size else right

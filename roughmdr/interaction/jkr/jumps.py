@@ -9,7 +9,6 @@ from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, 
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.newton import at_rest
 
-_UNMOVED = 1e-11  # of the natural depth, by which the others are out of equilibrium after a jump
 _MAX_JUMPS = 100  # times the number of asperities
 
 
@@ -34,7 +33,7 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     if event.kind == "made":
         depth, begin, upwards = max(float(state.gap[i]), 0.0), 0.0, True
     else:
-        field = state.field[:, i] + state.outer[:, i]
+        field = state.field[:, i] + state.outer[:4, i]
         displaced = 0.5 * contacts.lift[i] * (field[1] ** 2 + field[2] ** 2) - 0.5 * field[3] * contacts.radius[i] ** 2
         depth, begin, upwards = float(contacts.depth[i] + displaced), float(t[i]), event.upwards
     found = kernels.next_state(begin, upwards, depth, problem.work, i, problem.asperities)
@@ -43,22 +42,18 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     if found > 0.0:
         load[i] = kernels.lone_load(found, depth, problem.work, i, problem.asperities)
         t[i], load[i] = _alone(problem, state, i, found, float(load[i]))
-    shed = field_of(problem, state.load - load)
-    shed[0] = 0.0
-    new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
-    shed[0] = state.potential - new.potential
-    new = evaluate(problem, inside, t, load, state.separation, state.outer + shed)
-    if new.error <= _UNMOVED:  # at a fold, where others may be about to follow, no step is sure
-        return new
-    rest = at_rest(problem, new)
-    if not np.isfinite(rest.error):
-        raise NoEquilibriumError
-    return rest
+    outer = state.outer.copy()
+    outer[1:4] += field_of(problem, state.load - load)[1:]
+    new = evaluate(problem, inside, t, load, state.separation, outer)
+    outer[0] += np.where(inside, new.gap, state.potential - new.potential)
+    outer[4] -= 2.0 * new.release * new.edge
+    return evaluate(problem, inside, t, load, state.separation, outer)
 
 
 def _alone(problem: Problem, state: State, i: int, t: float, load: float) -> tuple[float, float]:
     """Return the state and the load of a contact at rest on the surface as it is; those given where there are none."""
-    outer = state.field[:, [i]] + state.outer[:, [i]]
+    outer = state.outer[:, [i]].copy()
+    outer[:4] += state.field[:, [i]]
     outer[0] = state.potential[i] + state.outer[0, i]
     one = problem._replace(coupling=problem.coupling.none()).part(np.array([i]))
     rest = at_rest(one, evaluate(one, np.ones(1, np.bool_), np.array([t]), np.array([load]), state.separation, outer))

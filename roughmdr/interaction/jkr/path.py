@@ -275,7 +275,7 @@ class _Path:
 
 def none(problem: Problem) -> Floats:
     """Return an outer field of none."""
-    return np.zeros((4, problem.natural.size))
+    return np.zeros((5, problem.natural.size))
 
 
 def prepare(shape: str) -> None:

@@ -32,7 +32,7 @@ class Tangent:
         problem, c, state = self.problem, self.state.contacts, self.state
         a, load = c.radius, step.load
         outer = self.drive.outer * step.along
-        edge = self._own * step.radius + c.edge_by_load * load
+        edge = self._own * step.radius + c.edge_by_load * load + outer[4]
         gap = c.edge_by_load / math.pi * step.radius - 0.5 * math.pi / a * load
         gap -= self.drive.separation * step.along + outer[0]
         if problem.order == 1:
@@ -40,8 +40,8 @@ class Tangent:
         else:
             field = problem.coupling.field(load)
             gap -= field[0]
-            field = field + outer
-            whole = state.field + state.outer
+            field = field + outer[:4]
+            whole = state.field + state.outer[:4]
             bent, tilt = 0.25 * field[3], field[1:3]
             along = whole[1] * tilt[0] + whole[2] * tilt[1]
             edge += c.edge_by_curvature * bent + c.edge_by_tilt * along
@@ -98,4 +98,4 @@ class Tangent:
 def leading(problem: Problem, state: State, drive: Drive, factors: Factors, asperity: int) -> Lead:
     """Return the radius of an asperity as one that is given."""
     edge, gap = Tangent(problem, state, drive).along()
-    return Lead(asperity, factors.solve(-edge, -gap))
+    return Lead(asperity, factors.solve(-edge, -gap), -edge)
