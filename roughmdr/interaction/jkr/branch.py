@@ -26,6 +26,7 @@ _MAX_ROUNDS = 40
 _ROUGH = 1e-8  # error of states on the way, over the natural depth
 _FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
 _SLOPE_RTOL = 1e-5
+_SIGN_RTOL = 1e-2
 
 
 class NoEquilibriumError(Exception):
@@ -109,7 +110,17 @@ def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | 
     if not _near(here.state, new):
         return None
     factors = Factors(problem, new)
-    return None if factors.unstable else Place(new, factors, along)
+    return None if factors.unstable or not _yields(problem, new, factors) else Place(new, factors, along)
+
+
+def _yields(problem: Problem, state: State, factors: Factors) -> bool:
+    """Return whether the contact of the least stable mode gives way to a force on its edge, with the whole tangent."""
+    if factors.pinned:
+        return True
+    edge, least = np.zeros_like(state.t), factors.least_stable()
+    edge[least] = 1.0
+    tangent = Tangent(problem, state, Drive(0.0, np.zeros_like(state.outer)))
+    return tangent.solve(edge, np.zeros_like(edge), factors, _SIGN_RTOL).radius[least] > 0.0
 
 
 def _near(state: State, new: State) -> bool:

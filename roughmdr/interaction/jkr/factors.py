@@ -64,7 +64,7 @@ class Factors:
         a = contacts.radius
         self.pinned, self.natural, self.release = problem.kernels.pinned, problem.natural, state.release
         self._scale = a, 2.0 / math.pi * a * problem.natural
-        self._by_load = contacts.edge_by_load
+        self._by_load, self.slope = contacts.edge_by_load, contacts.slope
         self._block, self._cross, matrix = np.empty((3, size, size))
         slopes = state.field[1:3] + state.outer[1:3]
         _fill(problem.coupling.matrices, problem.order, contacts, slopes, self._block, self._cross)

@@ -13,7 +13,7 @@ from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import leading
 
 _SLOW = 0.12  # of the error that a step leaves, from where the tangent is factored again
-_PATIENCE = 4  # steps with factors of their own, in which the residual has to halve
+_PATIENCE = 8  # steps with factors of their own, in which the residual has to halve
 _LARGEST_STEP = 0.3  # of a state
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
 _ERROR = 1e-13  # of the natural depth
@@ -40,8 +40,7 @@ def newton(
 
     Its error is inf where there is none to be found; ``error`` is one over the natural depth that is small enough.
     """
-    mixing, errors = Mixing(), list[float]()
-    own = False
+    mixing, errors, own = Mixing(), list[float](), False
     while state.t.size:
         limit = tolerance(problem, state)
         if state.error <= max(limit, error):
@@ -53,21 +52,19 @@ def newton(
             own and len(errors) >= _PATIENCE and not state.error < 0.5 * errors[-_PATIENCE]
         ):
             return state._replace(error=math.inf), along
-        if slow:
+        if slow and (not own or len(errors) >= _PATIENCE):
             factors = Factors(problem, state)
             lead = None if lead is None else leading(problem, state, drive, factors, lead.asperity)
-            mixing = Mixing()
-            if not own:
-                errors = []
-            own = True
+            mixing, errors, own = Mixing(), [], True
         errors.append(state.error)
         factors = factors or Factors(problem, state)
         step = factors.solve(-state.edge * 2.0 * state.release, -state.gap, lead)
         change = factors.unknowns(step, lead)
         change = mixing.improved(change)
-        step = factors.step_of(change, lead)
         if not np.isfinite(change).all():
             return state._replace(error=math.inf), along
+        step = factors.step_of(change, lead)
+        step = step._replace(radius=step.radius * (state.contacts.slope / factors.slope))  # even steps of the state t
         largest = 0.0 if factors.pinned else float(np.max(np.abs(step.radius) / (state.contacts.slope * state.t)))
         if largest > _LARGEST_STEP:
             part = _LARGEST_STEP / largest
