@@ -120,7 +120,7 @@ def _yields(problem: Problem, state: State, factors: Factors) -> bool:
     edge, least = np.zeros_like(state.t), factors.least_stable()
     edge[least] = 1.0
     tangent = Tangent(problem, state, Drive(0.0, np.zeros_like(state.outer)))
-    return tangent.solve(edge, np.zeros_like(edge), factors, _SIGN_RTOL).radius[least] > 0.0
+    return bool(tangent.solve(edge, np.zeros_like(edge), factors, _SIGN_RTOL).radius[least] > 0.0)
 
 
 def _near(state: State, new: State) -> bool:

@@ -1,7 +1,7 @@
 """A tangent of adhesive contacts that is factored at one state, by which near states find their equilibrium.
 
-All terms of the energy are in it but the moments that neighbours induce, of the fourth order in radius over distance.
-Loads follow from the edge condition, so that one number stands for each contact.
+Loads follow from the edge condition, so that one number stands for each contact. It holds what overlapping pairs do to
+each other, and of all others the terms to the third order in radius over distance, not the moments that they induce.
 """
 
 import math
@@ -47,12 +47,12 @@ def _fill(matrices: Floats, order: int, contacts: Contacts, slopes: Floats, bloc
 
 
 @njit
-def _eliminate(block: Floats, cross: Floats, a: Floats, by_load: Floats, follow: Floats, matrix: Floats) -> None:
-    """Fill the matrix of the radii, with ``follow`` what the loads change by them."""
+def _eliminate(cross: Floats, a: Floats, by_load: Floats, ratio: Floats, matrix: Floats) -> None:
+    """Add to the matrix of the radii what the loads change by them, but for their main part."""
     for i in range(a.size):
-        part = 0.5 * math.pi / (a[i] * by_load[i])
+        part = 0.5 * math.pi**2 / (a[i] * by_load[i])
         for j in range(a.size):
-            matrix[i, j] = cross[i, j] - block[i, j] * follow[j] + part * math.pi * cross[j, i] * follow[j]
+            matrix[i, j] += cross[i, j] - part * cross[j, i] * ratio[j]
         matrix[i, i] += by_load[i] / math.pi
 
 
@@ -65,35 +65,27 @@ class Factors:
         self.pinned, self.natural, self.release = problem.kernels.pinned, problem.natural, state.release
         self._scale = a, 2.0 / math.pi * a * problem.natural
         self._by_load, self.slope = contacts.edge_by_load, contacts.slope
-        self._block, self._cross, matrix = np.empty((3, size, size))
+        self._block, self._cross = np.empty((2, size, size))
         slopes = state.field[1:3] + state.outer[1:3]
         _fill(problem.coupling.matrices, problem.order, contacts, slopes, self._block, self._cross)
-        self._members, self._between = problem.pairs.members.T, np.zeros(0)
-        if self._members.size:
-            self._add_bells(state)
-        if self.pinned:
-            matrix = -self._block
-        else:
+        self._pairs = _Overlapping(problem, state)
+        i, j = problem.pairs.members.T
+        self._block[i, j] += state.bells.value
+        self._block[j, i] += state.bells.value
+        matrix = self._block
+        if not self.pinned:
             self._own = edge_by_radius(problem, state)
-            self._follow = -self._own / self._by_load
-            _eliminate(self._block, self._cross, a, self._by_load, self._follow, matrix)
-            i, j = self._members
-            matrix[i, j] += 0.5 * math.pi / (a[i] * self._by_load[i]) * self._between
-            matrix[j, i] += 0.5 * math.pi / (a[j] * self._by_load[j]) * self._between
+            ratio, near = self._own / self._by_load, self._pairs
+            matrix = self._block * ratio
+            if near.members.size:
+                matrix[:, near.members] = self._block[:, near.members] @ near.ratio
+                matrix[np.ix_(near.members, near.members)] += near.cross
+            _eliminate(self._cross, a, self._by_load, ratio, matrix)
+        else:
+            matrix = -self._block
         self._lu, self._pivots = matrix.T, np.zeros(0, np.int32)
         if size:
             self._lu, self._pivots, _ = dgetrf(matrix.T, overwrite_a=True)  # row by row, so that it is not copied
-
-    def _add_bells(self, state: State) -> None:
-        """Add what the contacts of overlapping pairs do to each other."""
-        i, j = self._members
-        a, p, bells = state.contacts.radius, state.load, state.bells
-        self._block[i, j] += bells.value
-        self._block[j, i] += bells.value
-        for one, other in ((i, j), (j, i)):
-            self._cross[one, other] -= 2.0 / 3.0 * bells.by_spread * a[other] * p[other]
-            np.add.at(self._cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
-        self._between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
 
     @cached_property
     def unstable(self) -> int:
@@ -105,13 +97,20 @@ class Factors:
         odd = (np.count_nonzero(np.diag(self._lu) < 0.0) + swaps + self._pivots.size) % 2
         if self.pinned or not self._own.size:
             return int(odd)
-        negative = np.count_nonzero(self._own < 0.0)
         own = np.where(self._own == 0.0, np.finfo(np.float64).tiny, self._own)
-        loads = self._block.copy()
-        loads[np.diag_indices(own.size)] += self._by_load**2 / (math.pi * own)
+        loads, near = self._block.copy(), self._pairs
+        single = self._by_load**2 / (math.pi * own)
+        single[near.members] = 0.0
+        loads[np.diag_indices(own.size)] += single
+        negative = np.count_nonzero(np.delete(own, near.members) < 0.0)
+        if near.members.size:
+            loads[np.ix_(near.members, near.members)] += (
+                near.by_load.T @ np.linalg.solve(near.own, near.by_load) / math.pi
+            )
+            negative += np.count_nonzero(np.linalg.eigvalsh(near.own) < 0.0)
         factored, pivots, _ = dsytrf(loads.T, lower=True, overwrite_a=True)
-        single = np.count_nonzero(np.diag(factored)[pivots > 0] < 0.0)
-        count = int(negative - single - np.count_nonzero(pivots < 0) // 2)  # of each double pivot one is negative
+        below = np.count_nonzero(np.diag(factored)[pivots > 0] < 0.0)
+        count = int(negative - below - np.count_nonzero(pivots < 0) // 2)  # of each double pivot one is negative
         return count if count % 2 == odd else abs(count - 1)
 
     def least_stable(self) -> int:
@@ -127,28 +126,33 @@ class Factors:
         """Return the step with these changes of de/da and of the gaps."""
         if self.pinned:
             return Step(np.zeros_like(gap), self._solved(gap))
-        given = edge / self._by_load
+        given = self._held(edge)
         other = 0.5 * math.pi**2 / (self._scale[0] * self._by_load) * (given @ self._cross)
         radius, along = self._solved(gap + self._block @ given - other), 0.0
         if lead is not None:
             rate, number = lead.by_place.radius, lead.asperity
             along = -float(radius[number] / rate[number])
-            radius, given = radius + along * rate, given + along * lead.edge / self._by_load
+            radius, given = radius + along * rate, given + along * self._held(lead.edge)
             radius[number] = 0.0
         return Step(radius, self._loads(radius, given), along)
 
     def _solved(self, right: Floats) -> Floats:
         return np.asarray(dgetrs(self._lu, self._pivots, right, trans=1)[0]) if right.size else right
 
+    def _held(self, edge: Floats) -> Floats:
+        """Return the changes of the loads by which de/da changes so, with all radii as they are."""
+        load, near = edge / self._by_load, self._pairs
+        if near.members.size:
+            load[near.members] = np.linalg.solve(near.by_load, edge[near.members])
+        return load
+
     def _loads(self, radius: Floats, given: Floats) -> Floats:
         """Return the changes of the loads that keep the edge condition."""
-        load = given + self._follow * radius
-        other = math.pi * (load @ self._cross)
-        if self._members.size:
-            i, j = self._members
-            np.add.at(other, i, self._between * radius[j])
-            np.add.at(other, j, self._between * radius[i])
-        return np.asarray(load - other / self._by_load)
+        followed, near = self._own / self._by_load * radius, self._pairs
+        if near.members.size:
+            followed[near.members] = near.ratio @ radius[near.members]
+        load = given - followed
+        return np.asarray(load - self._held(math.pi * (load @ self._cross)))
 
     def unknowns(self, step: Step, lead: Lead | None) -> Floats:
         """Return a step over its scales: radii, unless they are pinned, then loads; the place for a leading radius."""
@@ -170,6 +174,30 @@ class Factors:
         if lead is not None:
             along, radius[lead.asperity] = float(unknowns[lead.asperity]), 0.0
         return Step(radius, load, along)
+
+
+class _Overlapping:
+    """What the contacts of overlapping pairs do to each other; matrices over those alone."""
+
+    def __init__(self, problem: Problem, state: State) -> None:
+        self.members, places = np.unique(problem.pairs.members, return_inverse=True)
+        if not self.members.size:
+            return
+        i, j = places.reshape(-1, 2).T
+        a, p, bells = state.contacts.radius[self.members], state.load[self.members], state.bells
+        self.cross = np.zeros((a.size, a.size))
+        """Gaps by radii."""
+        for one, other in ((i, j), (j, i)):
+            np.add.at(self.cross, (one, other), -2.0 / 3.0 * bells.by_spread * a[other] * p[other])
+            np.add.at(self.cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
+        self.own = np.diag(edge_by_radius(problem, state)[self.members])
+        """de/da by radii."""
+        between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
+        self.own[i, j] += between
+        self.own[j, i] += between
+        self.by_load = np.diag(state.contacts.edge_by_load[self.members]) + math.pi * self.cross.T
+        """de/da by loads."""
+        self.ratio = np.linalg.solve(self.by_load, self.own)
 
 
 def edge_by_radius(problem: Problem, state: State) -> Floats:

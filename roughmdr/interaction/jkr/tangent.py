@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step
-from roughmdr.interaction.jkr.factors import Factors, Lead, edge_by_radius
+from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.numerics.arguments import Floats
 
@@ -20,7 +20,6 @@ class Tangent:
 
     def __init__(self, problem: Problem, state: State, drive: Drive) -> None:
         self.problem, self.state, self.drive = problem, state, drive
-        self._own = edge_by_radius(problem, state)
 
     def along(self) -> tuple[Floats, Floats]:
         """Return the derivatives of de/da and of the gaps by the place along the path."""
@@ -32,7 +31,7 @@ class Tangent:
         problem, c, state = self.problem, self.state.contacts, self.state
         a, load = c.radius, step.load
         outer = self.drive.outer * step.along
-        edge = self._own * step.radius + c.edge_by_load * load + outer[4]
+        edge = c.edge_by_radius * step.radius + c.edge_by_load * load + outer[4]
         gap = c.edge_by_load / math.pi * step.radius - 0.5 * math.pi / a * load
         gap -= self.drive.separation * step.along + outer[0]
         if problem.order == 1:
