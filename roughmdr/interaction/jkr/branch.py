@@ -159,6 +159,8 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
         own = Factors(problem, new)
         after = turning(new, own)
         if after is None:
+            if here.leads is not None:  # another radius may lead
+                return here._replace(leads=None), None
             size *= 0.5
             continue
         if after <= 0.0:

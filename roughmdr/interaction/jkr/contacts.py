@@ -26,7 +26,8 @@ from roughmdr.kernels.profile.interface import ProfileKernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import specialise
 
-_STEP = 1e-4  # of the state, for the slope of lambda, which only a small square multiplies
+_STEP = 1e-4  # of the state, for the derivatives of lambda, which only a small square multiplies
+_HELD = 0.3  # state of a contact with a flat up to which its edge keeps it from sliding
 _STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
 _SET_OUT = 0.05  # of the state at a fold, where the edge is at rest: the neighbours move that of the contact alone
 _BISECTIONS = 100
@@ -88,9 +89,10 @@ def strain_of_profile(t: float, params: Floats) -> float:
 
 
 def lift(t: float, size: float, depth: float, params: Floats) -> float:
-    """Return lambda = 2 a/g'."""
+    """Return lambda = 2 a/g', which goes to 0 at the edge of a flat; there with no infinite slope over a."""
     a, da, _, dg, _ = law.terms(t, params)
-    return 2.0 * a * da / dg * size * size / depth
+    slides = 1.0 / (1.0 + (_HELD / t) ** 2) if law.flat else 1.0
+    return 2.0 * a * da / dg * slides * size * size / depth
 
 
 def fill(
@@ -121,18 +123,23 @@ def fill(
         p = math.pi * load[i]
         if law.pinned:
             a, da, g, dg, first, third, strain, shift, shift_by_a = size, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            shift_by_aa = 0.0
         else:
             a, da, g, dg, first = law.terms(t[i], own)
             third = law.cubic_integral(t[i], own) * size**3 * depth
             strain = law.strain(t[i], own) * size * depth * depth
             a, da, g, dg, first = size * a, size * da, depth * g, depth * dg, size * depth * first
-            shift = shift_by_a = 0.0
+            shift = shift_by_a = shift_by_aa = 0.0
             if tilt > 0.0:
-                shift = law.lift(t[i], size, depth, own)
                 step = _STEP * t[i]
-                shift_by_a = (law.lift(t[i] + step, size, depth, own) - law.lift(t[i] - step, size, depth, own)) / (
-                    2.0 * step * da
+                low, shift, high = (
+                    law.lift(t[i] - step, size, depth, own),
+                    law.lift(t[i], size, depth, own),
+                    law.lift(t[i] + step, size, depth, own),
                 )
+                bend = size * (law.terms(t[i] + step, own)[1] - law.terms(t[i] - step, own)[1]) / (2.0 * step)
+                shift_by_a = (high - low) / (2.0 * step * da)
+                shift_by_aa = ((high - 2.0 * shift + low) / (step * step) - shift_by_a * bend) / (da * da)
         third_of_tilt = 4.0 / 3.0 * a**3 - 2.0 * shift * first
         stretch = (first - 0.5 * p) / a + 4.0 / 3.0 * c * a * a
         rising = dg / da  # g'
@@ -148,7 +155,7 @@ def fill(
         out.lift[i] = shift
         out.edge_by_radius[i] = 2.0 * stretch * (rising - stretch / a + 4.0 * c * a) - 2.0 * math.pi * work
         if tilt > 0.0 and not law.pinned:
-            out.edge_by_radius[i] -= square * shift_by_a * a * rising
+            out.edge_by_radius[i] += square * (0.5 * shift_by_aa * (p - 2.0 * first) - shift_by_a * a * rising)
         out.edge_by_load[i] = -math.pi * stretch / a + 0.5 * math.pi * shift_by_a * square
         out.edge_by_curvature[i] = 8.0 / 3.0 * stretch * a * a
         out.edge_by_tilt[i] = shift_by_a * (p - 2.0 * first)
