@@ -21,7 +21,7 @@ _NEAR = 0.8  # change of the logarithm of a state on one path
 _LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the state that leads
 _OVERSHOOT = 1.1
 _NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
-_LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
+LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
 _MAX_ROUNDS = 40
 _ROUGH = 1e-8  # error of states on the way, over the natural depth
 _FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
@@ -102,7 +102,7 @@ def _to(problem: Problem, here: Place, lead: Lead, t: float, drive: Drive) -> tu
 def _at_corner(state: State) -> Fold | None:
     """Return the contact that has shrunk to the edge of its flat, where it is lost."""
     least = int(np.argmin(state.t))
-    return Fold(least, upwards=False) if state.t[least] < _LEAST_STATE else None
+    return Fold(least, upwards=False) if state.t[least] < LEAST_STATE else None
 
 
 def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | None:
@@ -158,9 +158,9 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
             continue
         own = Factors(problem, new)
         after = turning(new, own)
+        if after is None and here.leads is not None:  # another radius may lead
+            break
         if after is None:
-            if here.leads is not None:  # another radius may lead
-                return here._replace(leads=None), None
             size *= 0.5
             continue
         if after <= 0.0:
@@ -183,7 +183,9 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
             same = int(np.argmax(np.abs(np.log(new.t / state.t)))) == number
             return there._replace(leads=fast._replace(t=float(at), slope=slope) if same else None), None
         size *= 0.5
-    raise NoEquilibriumError
+    if here.leads is None:
+        raise NoEquilibriumError
+    return here._replace(leads=None), None
 
 
 def between(problem: Problem, here: Place, there: Place, along: float, drive: Drive) -> State:

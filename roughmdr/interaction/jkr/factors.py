@@ -95,6 +95,8 @@ class Factors:
         """
         swaps = np.count_nonzero(self._pivots != np.arange(self._pivots.size))
         odd = (np.count_nonzero(np.diag(self._lu) < 0.0) + swaps + self._pivots.size) % 2
+        if self._pairs.members.size and not self.pinned:  # without them all loads pull the edge outwards
+            odd ^= int(np.linalg.slogdet(-self._pairs.by_load)[0] < 0.0)
         if self.pinned or not self._own.size:
             return int(odd)
         own = np.where(self._own == 0.0, np.finfo(np.float64).tiny, self._own)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.interaction.jkr.branch import NoEquilibriumError
+from roughmdr.interaction.jkr.branch import LEAST_STATE, NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate, field_of
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.newton import at_rest
@@ -37,6 +37,8 @@ def jump(problem: Problem, state: State, event: Event) -> State:
         displaced = 0.5 * contacts.lift[i] * (field[1] ** 2 + field[2] ** 2) - 0.5 * field[3] * contacts.radius[i] ** 2
         depth, begin, upwards = float(contacts.depth[i] + displaced), float(t[i]), event.upwards
     found = kernels.next_state(begin, upwards, depth, problem.work, i, problem.asperities)
+    if kernels.flat and found < LEAST_STATE:
+        found = 0.0
     inside[i] = found > 0.0
     t[i], load[i] = found, 0.0
     if found > 0.0:

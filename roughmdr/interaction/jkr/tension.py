@@ -46,7 +46,11 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension, *
     """
     first, last = of_state(state), of_state(new)
     best = min(best, last)
-    if not first.contacts or min(first.force, last.force) - abs(last.force - first.force) > best.force:
+    if (
+        not first.contacts
+        or not new.separation > state.separation
+        or min(first.force, last.force) - abs(last.force - first.force) > best.force
+    ):
         return best
     few, state = alone(problem, state)
     new = alone(problem, new)[1]
@@ -59,6 +63,8 @@ def largest_between(problem: Problem, state: State, new: State, best: Tension, *
     root = Bracket((state.separation, low), (new.separation, high))
     for _ in range(_MAX_ROUNDS):
         h = root.next
+        if not state.separation < h < new.separation:
+            break
         part = (h - state.separation) / (new.separation - state.separation)
         t, load = state.t + part * (new.t - state.t), state.load + part * (new.load - state.load)
         middle, _ = newton(few, evaluate(few, state.inside, t, load, h, state.outer), still, factors)
