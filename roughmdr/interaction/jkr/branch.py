@@ -22,8 +22,9 @@ _LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the stat
 _OVERSHOOT = 1.1
 _NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
 LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
-_MAX_ROUNDS = 40
+_MAX_ROUNDS = 200
 _ROUGH = 1e-8  # error of states on the way, over the natural depth
+_KINK = 1e-9  # of a state, across which the slope before a fold jumps
 _FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
 _SLOPE_RTOL = 1e-5
 _SIGN_RTOL = 1e-2
@@ -218,7 +219,7 @@ def _fold(
         if slope is None:
             return None
         best = Place(found, own, place)
-        if abs(slope) <= still:
+        if abs(slope) <= still or root.width <= _KINK * found.t[number]:
             found, place = newton(problem, found, drive, own, place, leading(problem, found, drive, own, number))
             return best._replace(state=found, along=place) if math.isfinite(found.error) else None
         root.narrow(found.t[number], slope)
