@@ -146,8 +146,10 @@ def _numbers(data: Labelled) -> Iterator[str]:
     for name, array in data.coordinates.items():
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
+    marked = data.variables["marked_steps"].values if "marked_steps" in data.variables else np.zeros_like(status)
+    whole = (status == DONE) & (marked == 0.0)  # marked steps may have no value
     for name in ("run_time", "numerical_error", *CURVE_VARIABLES, *(f"{name}_mean" for name in CURVE_VARIABLES)):
-        if name in data.variables and not np.isfinite(data.variables[name].values[status == DONE]).all():
+        if name in data.variables and not np.isfinite(data.variables[name].values[whole]).all():
             yield f"{name} is not finite, and status says that it was computed"
     if "realization_count" in data.variables:
         count = data.variables["realization_count"].values

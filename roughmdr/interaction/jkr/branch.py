@@ -146,23 +146,16 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
         return sign * Tangent(problem, state, drive).rate(factors, _SLOPE_RTOL, lead).along
 
     slope = fast.slope if at == fast.t else turning(state, factors) or 0.0
-    size = _LEAD_STEP
-    if fast.slope > slope > 0.0:  # the fold, were the slope a straight line, and a little further
-        size = min(max(_OVERSHOOT * abs(at - fast.t) / at * slope / (fast.slope - slope), size), _LARGEST_LEAD_STEP)
-    elif problem.kernels.flat and at < _NEAR_FLAT:
-        size = _FLAT_STEP
+    size = _lead_step(problem, fast, float(at), slope)
     while size > _LEAST_LEAD_STEP:
         guess, place = _to(problem, here, lead, at * (1.0 + sign * size), drive)
         new, place = newton(problem, guess, drive, factors, place, lead, _ROUGH)
-        if not _near(state, new):
-            size *= 0.5
-            continue
-        own = Factors(problem, new)
-        after = turning(new, own)
-        if after is None and here.leads is not None:  # another radius may lead
-            break
+        size, near = 0.5 * size, _near(state, new)
+        own = Factors(problem, new) if near else factors
+        after = turning(new, own) if near else None
         if after is None:
-            size *= 0.5
+            if near and here.leads is not None:  # another radius may lead
+                break
             continue
         if after <= 0.0:
             fold = Fold(number, fast.upwards)
@@ -171,9 +164,7 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
             root = Bracket((at, slope), (float(new.t[number]), after))
             if end := _fold(problem, Place(new, own, place), root, drive, number, turning):
                 return end, fold
-            size *= 0.5
-            continue
-        if place >= 1.0:
+        elif place >= 1.0:
             guess = between(problem, here, Place(new, factors, place), 1.0, drive)
             if there := _stable(problem, here, newton(problem, guess, drive, factors)[0], 1.0):
                 return there, None
@@ -183,10 +174,17 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
                 return there, corner
             same = int(np.argmax(np.abs(np.log(new.t / state.t)))) == number
             return there._replace(leads=fast._replace(t=float(at), slope=slope) if same else None), None
-        size *= 0.5
     if here.leads is None:
         raise NoEquilibriumError
     return here._replace(leads=None), None
+
+
+def _lead_step(problem: Problem, fast: Fast, t: float, slope: float) -> float:
+    """Return the first step of the radius that leads, over its state."""
+    if fast.slope > slope > 0.0:  # the fold, were the slope a straight line, and a little further
+        to_fold = abs(t - fast.t) / t * slope / (fast.slope - slope)
+        return min(max(_OVERSHOOT * to_fold, _LEAD_STEP), _LARGEST_LEAD_STEP)
+    return _FLAT_STEP if problem.kernels.flat and t < _NEAR_FLAT else _LEAD_STEP
 
 
 def between(problem: Problem, here: Place, there: Place, along: float, drive: Drive) -> State:

@@ -179,7 +179,7 @@ class Factors:
 
 
 class _Overlapping:
-    """What the contacts of overlapping pairs do to each other; matrices over those alone."""
+    """Matrices of the contacts that overlap others: what those do to each other."""
 
     def __init__(self, problem: Problem, state: State) -> None:
         self.members, places = np.unique(problem.pairs.members, return_inverse=True)
