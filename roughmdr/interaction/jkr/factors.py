@@ -124,6 +124,7 @@ class Factors:
             mode /= np.abs(mode).max()
         return int(np.argmax(np.abs(mode)))
 
+    @np.errstate(all="ignore")  # at a fold they are singular
     def solve(self, edge: Floats, gap: Floats, lead: Lead | None = None) -> Step:
         """Return the step with these changes of de/da and of the gaps."""
         if self.pinned:
