@@ -17,6 +17,7 @@ test: setup lint
 	$(BIN)/python -m pytest -n auto --dist loadfile
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/kernels tests/numerics tests/aggregate/test_sum.py \
 	  tests/interaction/test_close.py tests/interaction/test_contacts.py tests/interaction/test_green.py \
+	  tests/interaction/test_jkr_parts.py \
 	  --ignore tests/numerics/test_fingerprint.py
 
 # The long forms of the random searches, benchmarks, every shape compiled, and more of it uncompiled.

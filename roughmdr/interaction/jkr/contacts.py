@@ -5,9 +5,10 @@ The energy of a contact of radius a under the indentation delta, over E*, is
     e = ∫_0^a (delta' - g - 2 c x^2)^2 dx - pi w a^2/E* + kappa tilt^2/2,    delta' = delta + lambda tilt^2/2
 
 with the curvature c of the surface (H 28, 40, the profile increased by c r^2), lambda = 2 a/g'(a), by which a tilted
-contact slides to its new top (the radius of a paraboloid), and kappa = 4 a^3/3 - 2 lambda ∫ x g' dx, so that the moment
-is that of the coupled tilt, K tilt with K = 4 a^3/3 - 4 a^2 (g - delta)/g'. All that follows is derived from it: load
-P = de/d(delta), second moment M = -de/dc, moment D = de/d(tilt), and the edge condition de/da = 0.
+contact slides to its new top (the radius of a paraboloid; less near the edge of a flat), and
+kappa = 4 a^3/3 - 2 lambda ∫ x g' dx, so that the moment is that of the coupled tilt, K tilt with
+K = 4 a^3/3 - 4 a^2 (g - delta)/g'. All that follows is derived from it: load P = de/d(delta), second moment M = -de/dc,
+moment D = de/d(tilt), and the edge condition de/da = 0.
 
 Lengths are over the side L of the patch, loads over pi E* L^2, energies over E* L^3.
 """
@@ -67,6 +68,7 @@ class JkrKernels(CoupledKernels):
 
     strain: Callable[..., float]
     """(t, params) -> ∫ (g(a) - g)^2 dx over natural size and depth^2."""
+    held: Callable[..., float]
     lift: Callable[..., float]
     """(t, size, depth, params) -> lambda."""
     fill: Callable[..., None]
@@ -91,8 +93,13 @@ def strain_of_profile(t: float, params: Floats) -> float:
 def lift(t: float, size: float, depth: float, params: Floats) -> float:
     """Return lambda = 2 a/g', which goes to 0 at the edge of a flat; there with no infinite slope over a."""
     a, da, _, dg, _ = law.terms(t, params)
-    slides = 1.0 / (1.0 + (_HELD / t) ** 2) if law.flat else 1.0
+    slides = 1.0 - law.held(t)
     return 2.0 * a * da / dg * slides * size * size / depth
+
+
+def held(t: float) -> float:
+    """Return the part of its slide from which the edge of a flat keeps a contact; all of it with the flat's radius."""
+    return _HELD * _HELD / (t * t + _HELD * _HELD) if law.flat else 0.0
 
 
 def fill(
@@ -121,15 +128,14 @@ def fill(
                 out.lift[i] = depth * steep * law.top(0.0, steep, ratio, own)
             continue
         p = math.pi * load[i]
+        shift = shift_by_a = shift_by_aa = 0.0
         if law.pinned:
-            a, da, g, dg, first, third, strain, shift, shift_by_a = size, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            shift_by_aa = 0.0
+            a, da, g, dg, first, third, strain = size, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
         else:
             a, da, g, dg, first = law.terms(t[i], own)
             third = law.cubic_integral(t[i], own) * size**3 * depth
             strain = law.strain(t[i], own) * size * depth * depth
             a, da, g, dg, first = size * a, size * da, depth * g, depth * dg, size * depth * first
-            shift = shift_by_a = shift_by_aa = 0.0
             if tilt > 0.0:
                 step = _STEP * t[i]
                 low, shift, high = (
@@ -141,10 +147,12 @@ def fill(
                 shift_by_a = (high - low) / (2.0 * step * da)
                 shift_by_aa = ((high - 2.0 * shift + low) / (step * step) - shift_by_a * bend) / (da * da)
         third_of_tilt = 4.0 / 3.0 * a**3 - 2.0 * shift * first
+        kept = 0.0 if law.pinned else 4.0 * a * a * law.held(t[i])
         stretch = (first - 0.5 * p) / a + 4.0 / 3.0 * c * a * a
         rising = dg / da  # g'
         out.radius[i], out.slope[i], out.stretch[i] = a, da, stretch
-        out.edge[i] = stretch * stretch - 2.0 * math.pi * work * a + 0.5 * square * shift_by_a * (p - 2.0 * first)
+        turning = shift_by_a * (p - 2.0 * first) + kept
+        out.edge[i] = stretch * stretch - 2.0 * math.pi * work * a + 0.5 * square * turning
         out.depth[i] = g + 2.0 * c * a * a - stretch - 0.5 * shift * square
         out.second_moment[i] = (
             2.0 / 3.0 * a * a * load[i]
@@ -155,10 +163,13 @@ def fill(
         out.lift[i] = shift
         out.edge_by_radius[i] = 2.0 * stretch * (rising - stretch / a + 4.0 * c * a) - 2.0 * math.pi * work
         if tilt > 0.0 and not law.pinned:
-            out.edge_by_radius[i] += square * (0.5 * shift_by_aa * (p - 2.0 * first) - shift_by_a * a * rising)
+            kept_by_a = kept * (2.0 / a - 2.0 * t[i] / (t[i] * t[i] + _HELD * _HELD) / da)
+            out.edge_by_radius[i] += square * (
+                0.5 * (shift_by_aa * (p - 2.0 * first) + kept_by_a) - shift_by_a * a * rising
+            )
         out.edge_by_load[i] = -math.pi * stretch / a + 0.5 * math.pi * shift_by_a * square
         out.edge_by_curvature[i] = 8.0 / 3.0 * stretch * a * a
-        out.edge_by_tilt[i] = shift_by_a * (p - 2.0 * first)
+        out.edge_by_tilt[i] = turning
         out.moment_by_radius[i] = (
             4.0 / 3.0 * a * load[i] - 8.0 / (3.0 * math.pi) * a * first - 32.0 / (9.0 * math.pi) * a**4 * c
         )
@@ -224,6 +235,7 @@ def jkr_kernels(kernels: Kernels) -> JkrKernels:
     whole.pinned, whole.flat = coupled.pinned, coupled.flat
     parts: dict[str, Callable[..., object]] = {
         "strain": strain_of_profile if profile else strain_of_power,
+        "held": held,
         "lift": lift,
         "fill": fill,
         "next_state": next_state,

@@ -1,0 +1,215 @@
+"""The parts that adhesive contacts are solved by, each on its own."""
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import roughmdr as rm
+from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.green import Periodic
+from roughmdr.interaction.jkr import coincident, equilibrium, factors
+from roughmdr.interaction.jkr.bracket import Bracket
+from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels, jkr_kernels
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, evaluate
+from roughmdr.interaction.jkr.factors import Factors
+from roughmdr.interaction.jkr.mixing import Mixing
+from roughmdr.interaction.jkr.tangent import Tangent
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns, Material
+from roughmdr.shapes.base import Shape
+
+Floats = NDArray[np.float64]
+
+WORK = 1e-9
+EXAMPLES: dict[str, Shape] = {
+    "paraboloid": rm.Paraboloid(radius=0.7),
+    "cone": rm.Cone(slope=0.02),
+    "quartic": rm.PowerLaw(exponent=4.0, coefficient=1e4),
+    "sphere": rm.Sphere(radius=0.9),
+    "flat_punch": rm.FlatPunch(radius=2e-3),
+    "truncated_cone": rm.TruncatedCone(slope=0.02, flat_radius=1e-3),
+    "rounded_punch": rm.RoundedPunch(flat_radius=1e-3, edge_radius=0.5),
+}
+
+
+def kernels_of(shape: Shape, count: int) -> tuple[JkrKernels, Asperities]:
+    """Return the kernels of equal asperities, in a patch of side 1 m."""
+    width, rise, params = shape.nondimensional()
+    own = np.array([params], dtype=np.float64).reshape(1, -1)
+    own = own if np.ndim(params) else own[0]
+    columns = Columns(np.full(count, width), np.full(count, rise), np.repeat(own, count, axis=0))
+    law = jkr_kernels(choose(shape.name, Adhesion(), columns.params))
+    made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, count, 0.0)
+    (depth, _), size, _, _ = law.scales(1.0, 0.0, width, rise, law.params_of(made, 0))
+    return law, Asperities(np.zeros(count), np.full(count, depth), np.full(count, size), made)
+
+
+def guess(shape: Shape, at: Floats, order: int) -> tuple[Problem, State]:
+    """Return contacts near those alone at different indentations, of which none is in equilibrium."""
+    law, asperities = kernels_of(shape, len(at))
+    x, y = np.ascontiguousarray(at.T)
+    coupling = Dense(x, y, Periodic(1.0, 1.0), periodic=False)
+    t, load = np.empty((2, len(at)))
+    for i in range(len(at)):
+        depth = 1e-6 * (1.0 + 0.3 * i)
+        t[i] = law.next_state(0.0, True, depth, WORK, i, asperities)
+        load[i] = 1.2 * law.lone_load(t[i], depth, WORK, i, asperities)
+    inside = np.ones(len(at), np.bool_)
+    none = coincident.find(at, np.zeros(len(at)), None)
+    problem = Problem(law, asperities, coupling, none, order, WORK, np.full(len(at), 1e-6))
+    return problem, evaluate(problem, inside, t, load, -1e-6, np.zeros((5, len(at))))
+
+
+AT = np.array([[0.0, 0.0], [0.04, 0.01], [-0.02, 0.05], [0.05, 0.06]])
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_factors_of_the_first_order_are_the_tangent(name: str) -> None:
+    problem, state = guess(EXAMPLES[name], AT, 1)
+    tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
+    rng = np.random.default_rng(4)
+    step = Step(1e-3 * state.contacts.radius * rng.normal(size=4), 1e-3 * np.abs(state.load) * rng.normal(size=4))
+    if problem.kernels.pinned:
+        step = step._replace(radius=np.zeros(4))
+    found = Factors(problem, state).solve(*tangent.product(step))
+    np.testing.assert_allclose(found.load, step.load, rtol=1e-10)
+    np.testing.assert_allclose(found.radius, step.radius, rtol=1e-10)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_factors_of_the_second_order_near_the_tangent_with_distance(name: str) -> None:
+    """By a fourth power or faster: left out are what moments induce."""
+    off = []
+    for part in (1.0, 2.0, 4.0):
+        problem, state = guess(EXAMPLES[name], part * AT, 2)
+        tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
+        gap = 1e-9 * np.array([1.0, -2.0, 0.5, 3.0])
+        own = Factors(problem, state)
+        rough, exact = own.solve(np.zeros(4), gap), tangent.solve(np.zeros(4), gap, own, 1e-14)
+        off.append(float(np.abs(rough.load - exact.load).max() / np.abs(exact.load).max()))
+    assert off[0] < 0.05
+    if off[0] > 1e-12:
+        assert math.log2(off[1] / off[2]) > 3.9
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_unstable_modes_are_counted(seed: int) -> None:
+    """Radii below that of a fold have negative stiffness: as many modes as the second derivatives over radii have."""
+    rng = np.random.default_rng(seed)
+    problem, state = guess(EXAMPLES["paraboloid"], AT, 1)
+    t = state.t * rng.uniform(0.2, 1.1, 4)
+    load = np.array([problem.kernels.lone_load(t[i], 0.0, WORK, i, problem.asperities) for i in range(4)])
+    state = evaluate(problem, state.inside, t, load, -1e-6, state.outer)
+    tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
+    whole = np.empty((8, 8))
+    for column, unit in enumerate(np.eye(8)):
+        edge, gap = tangent.product(Step(unit[:4], unit[4:]))
+        whole[:, column] = np.concatenate([edge, math.pi * gap])
+    over_radii = whole[:4, :4] - whole[:4, 4:] @ np.linalg.solve(whole[4:, 4:], whole[4:, :4])
+    negative = int(np.count_nonzero(np.linalg.eigvalsh(0.5 * (over_radii + over_radii.T)) < 0.0))
+    assert Factors(problem, state).unstable == negative
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_residuals_are_derivatives_of_the_energy(name: str) -> None:
+    """The tangent is the change of the residuals, by differences."""
+    problem, state = guess(EXAMPLES[name], AT, 2)
+    tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
+    for asperity in range(4):
+        size = 1e-5
+        unit = np.eye(4)[asperity]
+        for load in (False, True):
+            if problem.kernels.pinned and not load:
+                continue
+            t = [state.t + sign * size * state.t * unit * (not load) for sign in (1.0, -1.0)]
+            p = [state.load + sign * size * np.abs(state.load) * unit * load for sign in (1.0, -1.0)]
+            more, less = (evaluate(problem, state.inside, *each, -1e-6, state.outer) for each in zip(t, p, strict=True))
+            step = Step(
+                0.5 * (more.contacts.radius - less.contacts.radius) if not load else np.zeros(4),
+                0.5 * (p[0] - p[1]),
+            )
+            edge, gap = tangent.product(step)
+            found = 0.5 * (more.gap - less.gap)
+            assert np.abs(found - gap).max() < 1e-7 * np.abs(gap).max()
+            if not problem.kernels.pinned:
+                found = 0.5 * (more.edge * 2.0 * more.release - less.edge * 2.0 * less.release)
+                assert np.abs(found - edge).max() < 1e-6 * np.abs(edge).max()
+
+
+def plain(function: Any) -> Any:
+    return getattr(function, "py_func", function)
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_compiled_loops_are_their_sources(name: str) -> None:
+    problem, state = guess(EXAMPLES[name], AT, 2)
+    law, asperities = problem.kernels, problem.asperities
+    field = state.field + 1e-4
+    rows = np.array([state.edge, state.edge, state.gap])
+    found: list[list[Floats]] = []
+    for run in (lambda function: function, plain):
+        contacts = Contacts(*np.zeros((len(Contacts._fields), 4)))
+        run(law.fill)(state.inside, state.t, state.load, field, WORK, asperities, contacts)
+        compared = rows.copy()
+        largest = run(equilibrium._compare)(state.inside, law.pinned, WORK, contacts, problem.natural, compared)
+        block, cross = np.zeros((2, 4, 4))
+        run(factors._fill)(problem.coupling.matrices, 2, contacts, field[1:3], block, cross)
+        matrix = block.copy()
+        run(factors._eliminate)(cross, contacts.radius, np.full(4, -0.7), np.full(4, 0.3), matrix)
+        states = [run(law.next_state)(0.0, True, 2e-6, WORK, 1, asperities)]
+        states.append(run(law.next_state)(states[0], False, -1e-3, WORK, 1, asperities))
+        states.append(run(law.lone_load)(state.t[1], 2e-6, WORK, 1, asperities))
+        found.append([np.array(contacts), compared, np.array([largest, *states]), block, matrix])
+    for compiled, source in zip(*found, strict=True):
+        np.testing.assert_allclose(compiled, source, rtol=1e-12, atol=1e-14 * np.abs(source).max())
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_bracket_narrows_to_a_root(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    root, scale = rng.normal(), 10.0 ** rng.uniform(-9.0, 9.0)
+    power = float(rng.choice([1.0, 1.0 / 3.0, 3.0]))
+
+    def value(x: float) -> float:
+        return math.copysign(abs(x / scale - root) ** power, x / scale - root)
+
+    low, high = scale * (root - rng.uniform(0.1, 3.0)), scale * (root + rng.uniform(0.1, 3.0))
+    bracket = Bracket((low, value(low)), (high, value(high)))
+    for _ in range(200):
+        point = bracket.next
+        assert low <= point <= high
+        if bracket.width <= 1e-13 * scale:
+            break
+        bracket.narrow(point, value(point))
+    assert abs(bracket.next - scale * root) <= (1e-4 if power == 3.0 else 1e-12) * scale
+
+
+def test_a_bracket_with_a_jump_halves() -> None:
+    """A straight line through values that jump from -1 to 1e6 goes to one end again and again."""
+    bracket, rounds = Bracket((0.0, -1.0), (1.0, 1e6)), 0
+    while bracket.width > 1e-10:
+        bracket.narrow(bracket.next, -1.0 if bracket.next < 0.37 else 1e6)
+        rounds += 1
+    assert abs(bracket.next - 0.37) < 1e-10
+    assert rounds < 6 * math.log2(1e10)
+
+
+@pytest.mark.parametrize("count", [1, 3, 6])
+def test_mixing_solves_a_linear_iteration_in_as_many_steps_as_unknowns(count: int) -> None:
+    """Though the iteration on its own goes away from the fixed point."""
+    rng = np.random.default_rng(count)
+    matrix = rng.normal(size=(count, count)) + 1.5 * np.eye(count)
+    exact = rng.normal(size=count)
+    at, mixing = np.zeros(count), Mixing()
+    for _ in range(count + 1):
+        way = mixing.improved(matrix @ (exact - at))
+        mixing.go(way)
+        at = at + way
+    np.testing.assert_allclose(at, exact, rtol=1e-8)
