@@ -14,9 +14,12 @@ from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.jkr import coincident, equilibrium, factors
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels, jkr_kernels
+from roughmdr.interaction.jkr.choose import jkr_kernels
+from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, evaluate
 from roughmdr.interaction.jkr.factors import Factors
+from roughmdr.interaction.jkr.interface import JkrKernels
+from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.kernels.adhesion import Adhesion
@@ -58,8 +61,8 @@ def guess(shape: Shape, at: Floats, order: int) -> tuple[Problem, State]:
     t, load = np.empty((2, len(at)))
     for i in range(len(at)):
         depth = 1e-6 * (1.0 + 0.3 * i)
-        t[i] = law.next_state(0.0, True, depth, WORK, i, asperities)
-        load[i] = 1.2 * law.lone_load(t[i], depth, WORK, i, asperities)
+        t[i] = law.next_state(0.0, True, Surface(depth), WORK, i, asperities)
+        load[i] = 1.2 * law.lone_load(t[i], Surface(depth), WORK, i, asperities)
     inside = np.ones(len(at), np.bool_)
     none = coincident.find(at, np.zeros(len(at)), None)
     problem = Problem(law, asperities, coupling, none, order, WORK, np.full(len(at), 1e-6))
@@ -104,7 +107,7 @@ def test_unstable_modes_are_counted(seed: int) -> None:
     rng = np.random.default_rng(seed)
     problem, state = guess(EXAMPLES["paraboloid"], AT, 1)
     t = state.t * rng.uniform(0.2, 1.1, 4)
-    load = np.array([problem.kernels.lone_load(t[i], 0.0, WORK, i, problem.asperities) for i in range(4)])
+    load = np.array([problem.kernels.lone_load(t[i], Surface(0.0), WORK, i, problem.asperities) for i in range(4)])
     state = evaluate(problem, state.inside, t, load, -1e-6, state.outer)
     tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
     whole = np.empty((8, 8))
@@ -163,9 +166,9 @@ def test_the_compiled_loops_are_their_sources(name: str) -> None:
         run(factors._fill)(problem.coupling.matrices, 2, contacts, field[1:3], block, cross)
         matrix = block.copy()
         run(factors._eliminate)(cross, contacts.radius, np.full(4, -0.7), np.full(4, 0.3), matrix)
-        states = [run(law.next_state)(0.0, True, 2e-6, WORK, 1, asperities)]
-        states.append(run(law.next_state)(states[0], False, -1e-3, WORK, 1, asperities))
-        states.append(run(law.lone_load)(state.t[1], 2e-6, WORK, 1, asperities))
+        states = [run(law.next_state)(0.0, True, Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities)]
+        states.append(run(law.next_state)(states[0], False, Surface(-1e-3), WORK, 1, asperities))
+        states.append(run(law.lone_load)(state.t[1], Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities))
         found.append([np.array(contacts), compared, np.array([largest, *states]), block, matrix])
     for compiled, source in zip(*found, strict=True):
         np.testing.assert_allclose(compiled, source, rtol=1e-12, atol=1e-14 * np.abs(source).max())

@@ -14,24 +14,17 @@ Lengths are over the side L of the patch, loads over pi E* L^2, energies over E*
 """
 
 import math
-from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction.contacts import Asperities, CoupledKernels, coupled_kernels
-from roughmdr.kernels.interface import Kernels
-from roughmdr.kernels.profile.interface import ProfileKernels
+from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.jkr.interface import law
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import specialise
 
 _STEP = 1e-4  # of the state, for the derivatives of lambda, which only a small square multiplies
 _HELD = 0.3  # state of a contact with a flat up to which its edge keeps it from sliding
-_STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
-_SET_OUT = 0.05  # of the state at a fold, where the edge is at rest: the neighbours move that of the contact alone
-_BISECTIONS = 100
 
 
 class Contacts(NamedTuple):
@@ -63,23 +56,6 @@ class Contacts(NamedTuple):
     """e."""
 
 
-class JkrKernels(CoupledKernels):
-    """Kernels of a shape without adhesion, with those of its adhesive contacts."""
-
-    strain: Callable[..., float]
-    """(t, params) -> ∫ (g(a) - g)^2 dx over natural size and depth^2."""
-    held: Callable[..., float]
-    lift: Callable[..., float]
-    """(t, size, depth, params) -> lambda."""
-    fill: Callable[..., None]
-    next_state: Callable[..., float]
-    lone_load: Callable[..., float]
-
-
-law = JkrKernels("law")
-"""Stands for the kernels in parts that ``specialise`` is given."""
-
-
 def strain_of_power(t: float, n: float) -> float:
     """Return 2 n^2 t^(2 n + 1)/((n + 1)(2 n + 1))."""
     return 2.0 * n * n / ((n + 1.0) * (2.0 * n + 1.0)) * math.pow(t, 2.0 * n + 1.0)
@@ -95,6 +71,20 @@ def lift(t: float, size: float, depth: float, params: Floats) -> float:
     a, da, _, dg, _ = law.terms(t, params)
     slides = 1.0 - law.held(t)
     return 2.0 * a * da / dg * slides * size * size / depth
+
+
+def slide(t: float, size: float, depth: float, params: Floats) -> tuple[float, float, float]:
+    """Return lambda with its first and second derivative over a."""
+    step = _STEP * t
+    low, here, high = (
+        law.lift(t - step, size, depth, params),
+        law.lift(t, size, depth, params),
+        law.lift(t + step, size, depth, params),
+    )
+    da = size * law.terms(t, params)[1]
+    bend = size * (law.terms(t + step, params)[1] - law.terms(t - step, params)[1]) / (2.0 * step)
+    by_a = (high - low) / (2.0 * step * da)
+    return here, by_a, ((high - 2.0 * here + low) / (step * step) - by_a * bend) / (da * da)
 
 
 def held(t: float) -> float:
@@ -137,15 +127,7 @@ def fill(
             strain = law.strain(t[i], own) * size * depth * depth
             a, da, g, dg, first = size * a, size * da, depth * g, depth * dg, size * depth * first
             if tilt > 0.0:
-                step = _STEP * t[i]
-                low, shift, high = (
-                    law.lift(t[i] - step, size, depth, own),
-                    law.lift(t[i], size, depth, own),
-                    law.lift(t[i] + step, size, depth, own),
-                )
-                bend = size * (law.terms(t[i] + step, own)[1] - law.terms(t[i] - step, own)[1]) / (2.0 * step)
-                shift_by_a = (high - low) / (2.0 * step * da)
-                shift_by_aa = ((high - 2.0 * shift + low) / (step * step) - shift_by_a * bend) / (da * da)
+                shift, shift_by_a, shift_by_aa = law.slide(t[i], size, depth, own)
         third_of_tilt = 4.0 / 3.0 * a**3 - 2.0 * shift * first
         kept = 0.0 if law.pinned else 4.0 * a * a * law.held(t[i])
         stretch = (first - 0.5 * p) / a + 4.0 / 3.0 * c * a * a
@@ -181,66 +163,3 @@ def fill(
             - math.pi * work * a * a
             + 0.5 * third_of_tilt * square
         )
-
-
-def next_state(t: float, upwards: bool, depth: float, work: float, i: int, asperities: Asperities) -> float:
-    """Return the state at which a contact comes to rest alone under an indentation: the next stable one from t on.
-
-    0 where there is none below, so that it is lost; the state is found by bisection, as that of a guess.
-    """
-    own, size = law.params_of(asperities.params, i), asperities.size[i]
-    if law.pinned:
-        return 1.0 if upwards else 0.0
-    stride = _STRIDE if upwards else 1.0 / _STRIDE
-    driven = False
-    last = t = max(t * (1.0 + _SET_OUT if upwards else 1.0 - _SET_OUT), _LEAST_STATE)
-    while _LEAST_STATE <= t <= _MOST_STATE:
-        a, _, g, _, _ = law.terms(t, own)
-        open_ = asperities.depth[i] * g - depth  # how far the edge is stretched
-        pulls = open_ > 0.0 and open_ * open_ > 2.0 * math.pi * work * size * a  # the contact shrinks
-        if pulls != upwards:
-            driven = True
-        elif driven:
-            for _ in range(_BISECTIONS):
-                middle = 0.5 * (last + t)
-                a, _, g, _, _ = law.terms(middle, own)
-                open_ = asperities.depth[i] * g - depth
-                if (open_ > 0.0 and open_ * open_ > 2.0 * math.pi * work * size * a) == upwards:
-                    t = middle
-                else:
-                    last = middle
-            return 0.5 * (last + t)
-        last = t
-        t *= stride
-    return 0.0
-
-
-def lone_load(t: float, depth: float, work: float, i: int, asperities: Asperities) -> float:
-    """Return the load of a contact alone at a state; of a punch, at an indentation."""
-    own, size = law.params_of(asperities.params, i), asperities.size[i]
-    if law.pinned:
-        return float(2.0 / math.pi * size * depth)
-    a, _, _, _, first = law.terms(t, own)
-    a *= size
-    return float(2.0 / math.pi * (size * asperities.depth[i] * first - a * math.sqrt(2.0 * math.pi * work * a)))
-
-
-@cache
-def jkr_kernels(kernels: Kernels) -> JkrKernels:
-    """Return the kernels of a shape without adhesion with those of its adhesive contacts, compiled."""
-    coupled = coupled_kernels(kernels)
-    whole = JkrKernels(f"jkr_{coupled.name}")
-    vars(whole).update(vars(coupled) | {"__name__": whole.__name__})
-    profile = isinstance(kernels, ProfileKernels)
-    whole.pinned, whole.flat = coupled.pinned, coupled.flat
-    parts: dict[str, Callable[..., object]] = {
-        "strain": strain_of_profile if profile else strain_of_power,
-        "held": held,
-        "lift": lift,
-        "fill": fill,
-        "next_state": next_state,
-        "lone_load": lone_load,
-    }
-    for name, part in parts.items():
-        vars(whole)[name] = specialise(part, whole)
-    return whole

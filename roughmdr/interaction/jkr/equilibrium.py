@@ -13,7 +13,8 @@ from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.jkr import coincident
-from roughmdr.interaction.jkr.contacts import Contacts, JkrKernels
+from roughmdr.interaction.jkr.contacts import Contacts
+from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 

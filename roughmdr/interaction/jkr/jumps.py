@@ -7,6 +7,7 @@ import numpy as np
 from roughmdr.interaction.jkr.branch import LEAST_STATE, NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate, field_of
 from roughmdr.interaction.jkr.events import Event, advance
+from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
 
 _MAX_JUMPS = 100  # times the number of asperities
@@ -30,36 +31,25 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     kernels, i = problem.kernels, event.asperity
     inside, t, load = state.inside.copy(), state.t.copy(), state.load.copy()
     contacts = state.contacts
+    field = state.field[:, i] + state.outer[:4, i]
+    square = float(field[1] ** 2 + field[2] ** 2)
     if event.kind == "made":
-        depth, begin, upwards = max(float(state.gap[i]), 0.0), 0.0, True
+        depth, begin, upwards = float(state.gap[i] - contacts.lift[i]), 0.0, True
     else:
-        field = state.field[:, i] + state.outer[:4, i]
-        displaced = 0.5 * contacts.lift[i] * (field[1] ** 2 + field[2] ** 2) - 0.5 * field[3] * contacts.radius[i] ** 2
-        depth, begin, upwards = float(contacts.depth[i] + displaced), float(t[i]), event.upwards
-    found = kernels.next_state(begin, upwards, depth, problem.work, i, problem.asperities)
+        depth, begin, upwards = float(contacts.depth[i]), float(t[i]), event.upwards
+    surface = Surface(depth, 0.25 * float(field[3]), square)
+    found = kernels.next_state(begin, upwards, surface, problem.work, i, problem.asperities)
     if kernels.flat and found < LEAST_STATE:
         found = 0.0
-    inside[i] = found > 0.0
-    t[i], load[i] = found, 0.0
+    inside[i], t[i], load[i] = found > 0.0, found, 0.0
     if found > 0.0:
-        load[i] = kernels.lone_load(found, depth, problem.work, i, problem.asperities)
-        t[i], load[i] = _alone(problem, state, i, found, float(load[i]))
+        load[i] = kernels.lone_load(found, surface, problem.work, i, problem.asperities)
     outer = state.outer.copy()
     outer[1:4] += field_of(problem, state.load - load)[1:]
     new = evaluate(problem, inside, t, load, state.separation, outer)
     outer[0] += np.where(inside, new.gap, state.potential - new.potential)
     outer[4] -= 2.0 * new.release * new.edge
     return evaluate(problem, inside, t, load, state.separation, outer)
-
-
-def _alone(problem: Problem, state: State, i: int, t: float, load: float) -> tuple[float, float]:
-    """Return the state and the load of a contact at rest on the surface as it is; those given where there are none."""
-    outer = state.outer[:, [i]].copy()
-    outer[:4] += state.field[:, [i]]
-    outer[0] = state.potential[i] + state.outer[0, i]
-    one = problem._replace(coupling=problem.coupling.none()).part(np.array([i]))
-    rest = at_rest(one, evaluate(one, np.ones(1, np.bool_), np.array([t]), np.array([load]), state.separation, outer))
-    return (float(rest.t[0]), float(rest.load[0])) if np.isfinite(rest.error) else (t, load)
 
 
 def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Avalanche]:

@@ -14,10 +14,12 @@ from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.contacts import JkrKernels, jkr_kernels
+from roughmdr.interaction.jkr.choose import jkr_kernels
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, alone, energy, evaluate
 from roughmdr.interaction.jkr.events import advance
+from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.lone import MOST_SLIDE, Surface
 from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
@@ -88,7 +90,7 @@ def _radius(kernels: JkrKernels, asperities: Asperities, i: int, depth: float, w
     size = float(asperities.size[i])
     if kernels.pinned:
         return size
-    t = kernels.next_state(0.0, True, depth, work, i, asperities)
+    t = kernels.next_state(0.0, True, Surface(depth), work, i, asperities)
     return size * kernels.terms(t, kernels.params_of(asperities.params, i))[0]
 
 
@@ -267,7 +269,7 @@ class _Path:
             on.size,
             unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
             Overlap(int(overlapping.sum()), share),
-            int(np.count_nonzero(tilt * state.contacts.lift[on] > 2.0 * radius)),
+            int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
             modulus * length**3 * energy(problem, state) if "energy" in names else 0.0,
             dissipated,
         )
