@@ -26,7 +26,7 @@ class Avalanche(NamedTuple):
 def jump(problem: Problem, state: State, event: Event) -> State:
     """Return the state after a jump of one contact, of which all others have felt nothing yet.
 
-    What they would feel is put into the outer field.
+    What they would feel is put into the outer field. NoEquilibriumError where it widens without end.
     """
     kernels, i = problem.kernels, event.asperity
     inside, t, load = state.inside.copy(), state.t.copy(), state.load.copy()
@@ -39,6 +39,8 @@ def jump(problem: Problem, state: State, event: Event) -> State:
         depth, begin, upwards = float(contacts.depth[i]), float(t[i]), event.upwards
     surface = Surface(depth, 0.25 * float(field[3]), square)
     found = kernels.next_state(begin, upwards, surface, problem.work, i, problem.asperities)
+    if upwards and not found:
+        raise NoEquilibriumError
     if kernels.flat and found < LEAST_STATE:
         found = 0.0
     inside[i], t[i], load[i] = found > 0.0, found, 0.0
