@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft2, rfft2
 
 from roughmdr.errors import OutOfRange
@@ -97,8 +98,8 @@ class AdhesiveMap:
         elastic = 0.5 * float(np.vdot(displacement, self._filtered(displacement, self._stiffness)))
         return Adhered(
             force=area * float(np.sum(balance.slope[closed]) - np.sum(balance.pull)),
-            closed=area * np.count_nonzero(closed),
-            attracted=area * np.count_nonzero(self.gap < self.reach),
+            closed=area * float(np.count_nonzero(closed)),
+            attracted=area * float(np.count_nonzero(self.gap < self.reach)),
             energy=area * (elastic - self.reach * float(np.sum(balance.pull))),
         )
 
@@ -149,7 +150,9 @@ class AdhesiveMap:
         return min(-float(np.vdot(r, d)) / curvature, most) if curvature > 0.0 else float(most)
 
 
-def _direction(z: Floats, r: Floats, d: Floats | None, before: tuple[Floats, Floats] | None, free: Floats) -> Floats:
+def _direction(
+    z: Floats, r: Floats, d: Floats | None, before: tuple[Floats, Floats] | None, free: NDArray[np.bool_]
+) -> Floats:
     """Return the next direction by E. Polak and G. Ribiere, from the preconditioned residual ``z``; downhill."""
     if d is None or before is None:
         return -z

@@ -34,13 +34,13 @@ def _curves(panel: "Axes", case: xr.Dataset, quantity: str, share: float) -> Non
 
 
 def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
-    """Draw the largest error of the force over the Tabor number, by spacing and model; one alone for comparison."""
-    groups = {(int(one["asperities"]), float(one["spacing"])) for _, one in result.groupby("case")}
+    """Draw the largest error of the force over the Tabor number, by spacing and model; one in a patch for comparison."""
+    groups = set(zip(result["asperities"].to_numpy().tolist(), result["spacing"].to_numpy().tolist(), strict=True))
     markers = dict(zip(sorted(groups), "ksov", strict=False))
     markers[min(groups)] = "D"
     for (asperities, spacing), marker in markers.items():
         own = result.isel(case=np.flatnonzero((result["asperities"] == asperities) & (result["spacing"] == spacing)))
-        where = "one alone" if asperities == 1 else f"{asperities}, {spacing:g} a0 apart"
+        where = "one in the patch: pairs, order 2" if asperities == 1 else f"{asperities}, {spacing:g} a0 apart"
         for name in ("independent", "second"):
             if asperities == 1 and name == "independent":
                 continue
@@ -85,7 +85,7 @@ def report(result: xr.Dataset) -> str:
     for i in range(result.sizes["case"]):
         case = result.isel(case=i)
         nearest = float(case["nearest"])
-        apart = f"{float(case['spacing']):g} ({nearest:.1f})" if np.isfinite(nearest) else "alone"
+        apart = f"{float(case['spacing']):g} ({f'{nearest:.1f}' if np.isfinite(nearest) else 'images'})"
         head = [f"{int(case['asperities'])}", apart, f"{float(case['tabor']):g}"]
         for name in MODELS:
             found = judge(case, name)
@@ -105,8 +105,8 @@ def report(result: xr.Dataset) -> str:
     grids_head = ["contact", "range over grid", "loading", "unloading", "contact area", "pull-off force", "elements",
                   "pairs"]  # fmt: skip
     return f"""Errors against boundary elements, of the force over the largest tension and of the area over the largest,
-the largest of the steps where as many asperities are in contact; the area of boundary elements is the mean of those
-where the gap is 0 and where it is less than the range:
+the largest of the steps where as many asperities are in contact. One alone has its periodic images as neighbours. The
+area of boundary elements is the mean of those where the gap is 0 and where it is less than the range:
 
 {table([*own, *errors_head], errors)}
 
