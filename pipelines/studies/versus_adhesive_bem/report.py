@@ -34,22 +34,20 @@ def _curves(panel: "Axes", case: xr.Dataset, quantity: str, share: float) -> Non
 
 
 def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
-    """Draw the largest error of the force over the Tabor number, by spacing and model; one in a patch for comparison."""
-    groups = set(zip(result["asperities"].to_numpy().tolist(), result["spacing"].to_numpy().tolist(), strict=True))
-    markers = dict(zip(sorted(groups), "ksov", strict=False))
-    markers[min(groups)] = "D"
-    for (asperities, spacing), marker in markers.items():
-        own = result.isel(case=np.flatnonzero((result["asperities"] == asperities) & (result["spacing"] == spacing)))
-        where = "one in the patch: pairs, order 2" if asperities == 1 else f"{asperities}, {spacing:g} a0 apart"
-        for name in ("independent", "second"):
-            if asperities == 1 and name == "independent":
-                continue
+    """Draw the largest error of the force over the Tabor number, by ensemble and model; one in a patch for comparison.
+
+    Its neighbours, the periodic images, are so far away that it shows the range alone.
+    """
+    numbers, spacings = result["asperities"].to_numpy(), result["spacing"].to_numpy()
+    groups = sorted(set(zip(numbers.tolist(), spacings.tolist(), strict=True)))
+    for (number, spacing), marker in zip(groups, "Dsov", strict=False):
+        own = result.isel(case=np.flatnonzero((numbers == number) & (spacings == spacing)))
+        for name in ("second",) if number == 1 else ("independent", "second"):
             found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
             errors = [100.0 * max(one.loading, one.unloading) for one in found]
-            alone = asperities == 1
-            colour = "k" if alone else _COLOURS[name]
-            label = where if alone else f"{where}: {_LABELS[name]}"
-            panel.loglog(own["tabor"], errors, ":" if alone else "-", marker=marker, color=colour, ms=5, label=label)
+            where = "one in the patch" if number == 1 else f"{number}, {spacing:g} a0 apart"
+            colour, line = ("k", ":") if number == 1 else (_COLOURS[name], "-")
+            panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=f"{where}: {_LABELS[name]}")
     panel.set(xlabel="Tabor number", ylabel="largest error of the force over pull-off [%]")
     panel.set_xticks([2, 3, 4, 6], ["2", "3", "4", "6"])
     panel.set_xticks([], minor=True)
