@@ -39,7 +39,7 @@ class Case(NamedTuple):
     points: int
     """A side of the grid of boundary elements."""
     seed: int = 1
-    step: float = 0.04
+    step: float = 0.05
     """Between separations."""
 
     @property

@@ -45,7 +45,7 @@ def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
         for name in ("second",) if number == 1 else ("independent", "second"):
             found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
             errors = [100.0 * max(one.loading, one.unloading) for one in found]
-            where = "one in the patch" if number == 1 else f"{number}, {spacing:g} a0 apart"
+            where = f"one, {spacing:g} a0 apart" if number == 1 else f"{number}, {spacing:g} a0 apart"
             colour, line = ("k", ":") if number == 1 else (_COLOURS[name], "-")
             panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=f"{where}: {_LABELS[name]}")
     panel.set(xlabel="Tabor number", ylabel="largest error of the force over pull-off [%]")
@@ -113,7 +113,7 @@ stretch at which one alone lets go (a step of the path is {100.0 * _step(result)
 
 {table([*own, *lags_head], lags)}
 
-Errors of the grid, by one of 2/3 as many points a side, the largest contact fraction, and run times of a path:
+How far a grid of 2/3 as many points a side is from the grid, the largest contact fraction, and run times of a path:
 
 {table([*own, *grids_head], grids)}
 """
