@@ -11,8 +11,8 @@ from studies.study import OUTPUT, QUICK
 from roughmdr.storage.files import replace_atomically
 
 NAMES = (
-    "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem", "trust",
-    "traps",
+    "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem",
+    "versus_adhesive_bem", "trust", "traps",
 )  # fmt: skip
 
 

@@ -1,0 +1,97 @@
+"""A few adhesive paraboloids in a periodic patch, their path of separations, and what the models make of them.
+
+All is in units in which E* is 1, the mean radius R is 1, and 2 pi w R^2/E* = a0^3 is 1: a0 is the contact radius to
+which one alone jumps on. Lengths along the plane are in a0, across it in a0^2/R, forces in E* a0^3/R.
+"""
+
+import math
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import roughmdr as rm
+from roughmdr.numerics.arguments import Floats
+
+WORK = 0.5 / math.pi
+DETACHED = -(3.0 * 0.25 ** (4.0 / 3.0))
+"""The indentation at which one alone lets go under fixed grips, t^4 - t at t^3 = 1/4: a measure of separations."""
+MODELS: dict[str, Any] = {
+    "independent": None,
+    "first": {"model": "pairwise", "order": 1},
+    "second": {"model": "pairwise", "order": 2},
+}
+"""Interactions by name; images of the patch are felt by pairs only."""
+_STD_HEIGHT, _STD_RADIUS = 0.15, 0.1
+_LEAST_DISTANCE = 0.7  # of the mean spacing
+_ABOVE, _BEYOND, _BELOW = 0.55, 0.85, 0.15  # path: start and end above the top, and below the last jump-on
+_SCANNED = 400  # separations in which the last jump-on is found
+
+
+class Case(NamedTuple):
+    """An ensemble, its adhesion and its grid."""
+
+    asperities: int
+    spacing: float
+    """The side of the area for each [a0]."""
+    tabor: float
+    points: int
+    """A side of the grid of boundary elements."""
+    seed: int = 1
+    step: float = 0.05
+    """Between separations."""
+
+    @property
+    def size(self) -> float:
+        """The side of the patch."""
+        return self.spacing * math.sqrt(self.asperities)
+
+    @property
+    def reach(self) -> float:
+        """The range of the attraction, w over its strength."""
+        tip = rm.Paraboloid(radius=1.0)
+        return float(WORK * rm.tabor(tip, effective_modulus=1.0, work=WORK, strength=1.0) / self.tabor)
+
+    @property
+    def coarse(self) -> int:
+        """A side of the grid that shows the error of the grid."""
+        return 2 * self.points // 3
+
+    def generate(self) -> xr.Dataset:
+        """Return the ensemble: lognormal radii, normal heights, none too near another; one alone has radius 1."""
+        section: dict[str, object] = {
+            "source": "random", "count": self.asperities, "patch": self.size, "shape": "paraboloid", "radius": 1.0,
+            "height": {"distribution": "normal", "std": _STD_HEIGHT}, "placement": "random",
+        }  # fmt: skip
+        if self.asperities > 1:
+            section["radius"] = {"distribution": "lognormal", "mean": 1.0, "std": _STD_RADIUS}
+            section |= {"placement": "hard_core", "min_distance": _LEAST_DISTANCE * self.spacing}
+        return rm.generate(section, seed=self.seed)
+
+    def separations(self, ensemble: xr.Dataset) -> Floats:
+        """Return the path: until all are in contact to second order, a little beyond, and until all have let go."""
+        height = ensemble["height"].to_numpy()
+        scanned = np.linspace(height.max(), height.min() - 1.5, _SCANNED)
+        count = law(ensemble, scanned, MODELS["second"])["count"]
+        deepest = float(scanned[np.flatnonzero(count == self.asperities)[0]]) - _BELOW
+        loading = np.arange(height.max() + _ABOVE, deepest - 0.5 * self.step, -self.step)
+        unloading = np.arange(loading[-1] + self.step, height.max() + _BEYOND, self.step)
+        return np.concatenate([loading, unloading])
+
+
+def law(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> dict[str, Floats]:
+    """Return force, contact area and number of contacts by roughmdr along a path."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)  # slopes and range are no part of the model compared
+        found = rm.load_separation(
+            ensemble,
+            separation=separation,
+            effective_modulus=1.0,
+            work=WORK,
+            adhesion="jkr",
+            interaction=interaction,
+            variables=["force", "contact_area", "contact_count"],
+        )
+    names = {"force": "force", "area": "contact_area", "count": "contact_count"}
+    return {short: found[name].to_numpy() for short, name in names.items()}
