@@ -71,6 +71,7 @@ def describe_result(result: Labelled, elapsed: float | None = None, *, left_out:
         *_indent("path", attrs.get("path", "").splitlines()),
         *_indent("map", attrs.get("map", "").splitlines()),
         *describe_pull_off(result, _NOT_KNOWN),
+        *_avalanches(result),
         *_contacts_at_ends(result),
         *trust_of_result(result),
         *_adhesion(result),
@@ -164,6 +165,16 @@ def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
     if first or last:
         total = f"{int(layout.done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
         yield "note", f"in contact at the first step in {first}, at the last in {last} of {total}"
+
+
+def _avalanches(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield the number of avalanches of adhesive contacts that feel each other, and the largest."""
+    if result.attrs.get("interaction") != "pairwise" or "avalanche_count" not in result.variables:
+        return
+    counts, sizes = (_values(result, name) for name in ("avalanche_count", "avalanche_size_max"))
+    if np.nanmax(counts, initial=0.0) > 0.0:
+        most, largest = np.nanmax(counts), np.nanmax(sizes)
+        yield "avalanches", f"up to {most:.0f} in a realisation; contacts that jump in the largest: {largest:.0f}"
 
 
 def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:

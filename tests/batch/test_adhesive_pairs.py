@@ -1,0 +1,111 @@
+"""Scenes of asperities that adhere and feel each other: the whole way from the table to the file."""
+
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from scenes import scene
+
+import roughmdr as rm
+
+FEW: dict[str, Any] = {
+    "source": "random",
+    "shape": "paraboloid",
+    "count": 30,
+    "patch": "280 um",
+    "radius": "50 um",
+    "placement": "hard_core",
+    "min_distance": "20 um",
+    "height": {"distribution": "normal", "std": "0.3 um"},
+}
+PATH: dict[str, Any] = {"separation": {"start": "2.5 um", "stop": "0 um", "steps": 12}, "unload": True}
+NAMES = ["force", "contact_count", "energy", "dissipated_energy", "stiffness"]
+
+
+def sticky(realizations: int = 4, **changes: Any) -> dict[str, Any]:
+    table = {"asperities": FEW, "path": PATH, "interaction": {"model": "pairwise"}, "output": {"variables": NAMES}}
+    return scene(batch={"realizations": realizations}, **{**table, **changes})
+
+
+def test_results_are_bit_for_bit_those_of_any_number_of_workers_and_of_a_resume(tmp_path: Path) -> None:
+    one = rm.run(sticky(), out=tmp_path / "one.nc", workers=1)
+    two = rm.run(sticky(), out=tmp_path / "two.nc", workers=2)
+    rm.run(sticky(2), out=tmp_path / "resumed.nc", workers=2)
+    resumed = rm.run(sticky(), out=tmp_path / "resumed.nc", workers=2)
+    for other in (two, resumed):
+        xr.testing.assert_identical(
+            one.drop_vars("run_time").drop_attrs(deep=False), other.drop_vars("run_time").drop_attrs(deep=False)
+        )
+    assert int((one.avalanche_count > 0).sum()) == 4
+    assert (one.avalanche_size_max >= 1).all()
+    assert float(one.marked_steps.max()) == 0.0
+
+
+def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
+    """With twice the steps jumps lose as much, to where they are located; the loss never falls."""
+    fine = {"separation": {**PATH["separation"], "steps": 23}, "unload": True}
+    first, second = (rm.run(sticky(2, path=path), out=tmp_path / "r.nc", resume=False) for path in (PATH, fine))
+    lost = second.dissipated_energy
+    assert (lost.diff("step") >= 0.0).all()
+    np.testing.assert_allclose(first.dissipated_energy[:, -1], lost[:, -1], rtol=1e-9)
+    np.testing.assert_allclose(first.pull_off_force, second.pull_off_force, rtol=1e-9)
+    np.testing.assert_array_equal(first.avalanche_count, second.avalanche_count)
+
+
+def test_commands_foresee_and_describe_them(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(sticky()))
+
+    def command(*words: str) -> str:
+        done = subprocess.run(
+            [sys.executable, "-c", "from roughmdr.cli import main; main()", *words],
+            cwd=tmp_path, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    plan = command("plan", "scene.toml")
+    assert "asperities are coupled in pairs" in plan
+    assert "time" in plan
+    assert "avalanches   up to" in command("run", "scene.toml", "-o", "out.nc", "--workers", "2")
+    assert "avalanches   up to" in command("info", "out.nc")
+
+
+def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:
+    """The jump-on radius is 5.8 um, and neighbours are 11 um apart."""
+    at = {"x": np.array([20e-6, 31e-6, 80e-6]), "y": np.full(3, 50e-6)}
+    columns = {"height": np.zeros(3), "radius": np.full(3, 50e-6), **at}
+    ensemble = xr.Dataset(
+        {name: ("asperity", values) for name, values in columns.items()},
+        attrs={"shape": "paraboloid", "patch": 100e-6, "area": 1e-8},
+    )
+    modulus = 2.0 * np.pi * 0.05 * 50e-6**2 / 5.84e-6**3
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", rm.LimitWarning)
+        rm.load_separation(
+            ensemble, separation=[1e-6, 0.0], effective_modulus=modulus, work=0.05, interaction="pairwise"
+        )
+    told = [str(one.message) for one in caught]
+    assert any("(1 pairs): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
+
+
+@pytest.mark.parametrize("interaction", [{"model": "pairwise", "order": 1}, {"model": "pairwise", "boundary": "free"}])
+def test_steps_without_an_equilibrium_have_no_value_and_are_marked(tmp_path: Path, interaction: Any) -> None:
+    """Contacts pressed into each other until they cover the patch; the file holds what there is, and can be read."""
+    crowded = {**FEW, "patch": "60 um", "placement": "random", "height": {"distribution": "normal", "std": "3 um"}}
+    crowded.pop("min_distance")
+    path = {"separation": {"start": "9 um", "stop": "-9 um", "steps": 10}, "unload": True}
+    result = rm.run(
+        sticky(2, asperities=crowded, path=path, interaction=interaction, output={"variables": ["force"]}),
+        out=tmp_path / "crowded.nc",
+    )
+    lost = result.force.isnull().sum("step")
+    assert (result.marked_steps >= lost).all()
+    assert (result.marked_steps > 0).all()
+    with xr.open_dataset(tmp_path / "crowded.nc") as kept:
+        np.testing.assert_array_equal(kept.force, result.force)
