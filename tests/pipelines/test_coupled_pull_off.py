@@ -39,9 +39,9 @@ def result(folder: Path) -> xr.Dataset:
 def test_the_scales_are_those_of_a_contact_alone() -> None:
     alone = rm.Paraboloid(radius=RADIUS)
     found = rm.pull_off(alone, effective_modulus=MODULUS, work=WORK, control="displacement")
-    assert -float(found.depth) == pytest.approx(PULL_OFF_LENGTH, rel=1e-9)
-    made = rm.indent(alone, depth=0.0, effective_modulus=MODULUS, work=WORK)
-    assert float(made.radius) == pytest.approx(JUMP_ON_RADIUS, rel=1e-9)
+    assert -float(found.indentation) == pytest.approx(PULL_OFF_LENGTH, rel=1e-9)
+    made = rm.indent(alone, indentation=0.0, effective_modulus=MODULUS, work=WORK)
+    assert float(made.contact_radius) == pytest.approx(JUMP_ON_RADIUS, rel=1e-9)
 
 
 def test_every_unloading_ends_with_all_contacts_parted(result: xr.Dataset) -> None:
@@ -57,8 +57,7 @@ def test_no_independent_surface_holds_more_than_its_contacts_one_by_one(result: 
 
 def test_independent_contacts_lose_as_much_as_each_one_alone(result: xr.Dataset) -> None:
     """Each contact that is made is parted: on its own way down and up it jumps twice, whatever its height."""
-    lone = rm.generate({"source": "random", "shape": "paraboloid", "count": 1, "radius": RADIUS, "height": 0.0}, seed=0)
-    once = cycle_of_one(lone)
+    once = cycle_of_one(Surface(1.0, 1, 1000.0).generate(0).assign(height=("asperity", [0.0])))
     alone = result.sel(model="independent")
     np.testing.assert_allclose(alone["dissipated_energy"], alone["contacts"] * once, rtol=1e-9)
 

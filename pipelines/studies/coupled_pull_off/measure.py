@@ -7,13 +7,13 @@ from studies.coupled_pull_off.surfaces import MODELS, Cycle, Surface, cycle
 from studies.study import named
 
 STEPS = 30
-USUAL = {False: (100, 10.0), True: (49, 10.0)}
+USUAL = {False: (100, 10.0), True: (36, 10.0)}
 """Number of asperities where the distance varies, and distance where the number does."""
 SPREADS = {False: (0.3, 1.0, 3.0), True: (0.3, 1.0)}
-DISTANCES = {False: (3.5, 5.0, 7.0, 10.0, 14.0, 20.0), True: (7.0, 20.0)}
-COUNTS = {False: (25, 50, 200, 400), True: (25,)}
+DISTANCES = {False: (5.0, 7.0, 10.0, 14.0, 20.0), True: (7.0, 20.0)}
+COUNTS = {False: (25, 50, 200, 400), True: (16,)}
 _COUNTED_SPREADS = (0.3, 1.0)
-REALIZATIONS = {False: 6, True: 2}
+REALIZATIONS = {False: 3, True: 2}
 UNITS = {"pull_off_force": "N", "dissipated_energy": "J"}
 
 

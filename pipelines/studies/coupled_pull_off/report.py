@@ -106,13 +106,13 @@ def report(result: xr.Dataset) -> str:
         "spread", "asperities", "distance", "pull-off", "coupled", "change", "dissipated", "change",
         "contacts, coupled", "largest avalanche", "contact fraction",
     ]  # fmt: skip
-    return f"""The flat goes down to the same separation with both models, 1.5 pull-off lengths of {length} below the
-mean height, and up until all contacts have parted. Separations count from the deformed mean plane. Height spreads are
-in pull-off lengths, distances in jump-on radii of {radius}. Forces are per asperity over 1.5 pi w R of one alone,
-energies of the cycle per asperity over w times the square of the jump-on radius. Changes are between the models on
-the same surface, mean ± standard deviation over {result.sizes["realization"]} realisations. Contacts and contact fraction are
-those at closest approach, the largest avalanche is of making or of parting, and * stands where steps are marked: too
-dense for a coupling in pairs.
+    return f"""The flat goes down to the same separation with both models, 1.5 pull-off lengths of {length} below
+the mean height, and up until all contacts have parted. Separations count from the deformed mean plane. Height spreads
+are in pull-off lengths, distances in jump-on radii of {radius}. Forces are per asperity over 1.5 pi w R of one
+alone, energies of the cycle per asperity over w times the square of the jump-on radius. Changes are between the
+models on the same surface, mean ± standard deviation over {result.sizes["realization"]} realisations. Contacts
+and contact fraction are those at closest approach, the largest avalanche is of making or of parting, and *
+stands where steps are marked: too dense for a coupling in pairs.
 
 {table(head, rows)}
 
