@@ -50,12 +50,16 @@ CURVE_VARIABLES = _declare(
     ("contact_fraction", "1", "contact area over nominal area"),
     ("contact_radius_sum", "m", "sum of the contact radii"),
     ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
-    ("dissipated_energy", "J", "energy lost in the jumps of contacts since the start of the path"),
+    ("dissipated_energy", "J", "energy lost in jumps since the start of the path"),
+    ("machine_dissipated_energy", "J", "part of it that the machine loses in its jumps; 0 under fixed grips"),
     ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
 )
 """Variables of a load-separation law that [output] can name."""
 
 DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
+
+SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
+"""A variable where a machine moves the flat, else a coordinate."""
 
 ASPERITY = _declare(
     ("indentation", "m", "approach past first touch, positive pressed in"),
@@ -83,6 +87,7 @@ FIELDS = _declare(
 COORDINATES = _declare(
     ("separation", "m", "rigid flat above the datum plane"),
     ("branch", "", "direction in which the flat moved"),
+    ("remote", "m", "far end of the machine's spring above the datum plane, where its force is 0 at the flat"),
     ("height", "m", "summit height above the datum plane"),
     ("x", "m", "x of the summit"),
     ("y", "m", "y of the summit"),

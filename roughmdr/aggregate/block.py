@@ -70,6 +70,23 @@ class SumKernels(Kernels):
     jumps: Callable[..., float]
     add_totals: Callable[..., None]
     loop: Callable[..., int]
+    block_at: Callable[..., Block]
+    """This and what follows: of a flat on a machine."""
+    add_response: Callable[..., None]
+    response: Callable[..., Any]
+    stand: Callable[..., None]
+    stand_at: Callable[..., Any]
+    past_next: Callable[..., float]
+    next_below: Callable[..., float]
+    root_between: Callable[..., Any]
+    root_below: Callable[..., float]
+    rise: Callable[..., Any]
+    sink: Callable[..., Any]
+    arrive: Callable[..., Any]
+    peak_before: Callable[..., Any]
+    through_jumps: Callable[..., Any]
+    rounded: Callable[..., float]
+    follow: Callable[..., None]
 
 
 law = SumKernels("law")

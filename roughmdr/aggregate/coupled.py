@@ -61,7 +61,7 @@ def law_of_coupled(
     names: list[str],
 ) -> LoadSeparation:
     """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
-    work, spread = adhesion.work, float(np.std(ensemble.height))
+    work, spread = adhesion.work, ensemble.spread
     found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))

@@ -78,7 +78,7 @@ def _loop(
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
     Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. The caller has lowered
-    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``_compiled`` says which
+    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``compiled_sum`` says which
     functions the names of ``law`` stand for.
     """
     visits = 0
@@ -132,7 +132,7 @@ def _loop(
 
 
 @cache
-def _compiled(kernels: Kernels) -> SumKernels:
+def compiled_sum(kernels: Kernels) -> SumKernels:
     """Return the kernels with the parts of the sum, compiled with them."""
     whole, together = SumKernels(kernels.name), kernels.found_together
     vars(whole).update({"term_sizes": no_terms, **vars(kernels)})
@@ -178,7 +178,7 @@ def sum_over_asperities(
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     lowered = memory._replace(bottom=memory.bottom - adhesion.range)
-    visits = _compiled(kernels).loop(height, columns, material, adhesion.range, separation, lowered, totals)
+    visits = compiled_sum(kernels).loop(height, columns, material, adhesion.range, separation, lowered, totals)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(totals.total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {kernels.name} with "

@@ -6,8 +6,9 @@ from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, ST
 from roughmdr.numerics.summation import accumulate, block_sum
 
 # Rows of the totals.
-FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR = range(8)
-ROWS = 8
+FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE = range(9)
+"""That of the machine, the energy which its jumps lose, is filled where there is one (``simulate``)."""
+ROWS = 9
 TOTAL_INDEX = {
     "force": FORCE,
     "pressure": FORCE,
@@ -19,6 +20,7 @@ TOTAL_INDEX = {
     "stiffness": STIFFNESS,
     "energy": ENERGY,
     "dissipated_energy": DISSIPATED,
+    "machine_dissipated_energy": MACHINE,
 }
 """The row of the totals that each curve variable is made from."""
 

@@ -54,6 +54,12 @@ class Ensemble:
         parameters, positions = pick(self.parameters), pick(self.positions)
         return replace(self, height=self.height[numbers], parameters=parameters, positions=positions)
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the heights [m]."""
+        with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
+            return float(np.std(self.height)) if self.height.size else 0.0
+
     def nondimensional(self) -> Columns:
         """Return width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""
         if self.shared_profile is None:

@@ -51,6 +51,8 @@ class Kernels(ModuleType):
     """Whether there can be more than one stable branch."""
     cohesive = False
     """Whether adhesion has a range."""
+    hardening = False
+    """Whether it is certain that k grows with the indentation along a branch."""
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
 

@@ -29,9 +29,16 @@ class LoadingPath(NamedTuple):
         first, bottom, top = self.memory
         return LoadingPath(self.separation - origin, Staircase(first, bottom - origin, top - origin))
 
+    def coordinates(self) -> dict[str, Array]:
+        """Return the separation and the branch of each step, labelled."""
+        return {
+            "separation": Array(("step",), self.separation, COORDINATES["separation"].attrs),
+            "branch": self.branch(),
+        }
+
     def branch(self) -> Array:
         """Return the branch of each step, labelled."""
-        return Array(("step",), branches(self.separation), {"long_name": COORDINATES["branch"].long_name})
+        return labelled_branches(self.separation)
 
     def at_detachment(self) -> NDArray[np.bool_]:
         """Return for each step whether contacts may be exactly at their detachment.
@@ -50,3 +57,8 @@ def branches(separation: Floats) -> NDArray[np.str_]:
     next_other = np.append(separation[changes], np.inf)[following]
     rises = (separation > before) | ((separation == before) & (next_other > separation))
     return np.where(rises, "unloading", "loading")
+
+
+def labelled_branches(separation: Floats) -> Array:
+    """Return the branch of each step, labelled."""
+    return Array(("step",), branches(separation), {"long_name": COORDINATES["branch"].long_name})

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.aggregate.load_separation import compute
+from roughmdr.aggregate.compute import compute
 from roughmdr.ensemble import SurfaceAsperities
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError, SceneError

@@ -1,0 +1,133 @@
+"""The law of an ensemble along a path of separations: which totals the asked variables need."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from roughmdr.aggregate import loop, totals
+from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.law import PER_AREA, LoadSeparation
+from roughmdr.aggregate.mean_field import couple
+from roughmdr.aggregate.pull_off import pull_off_of
+from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import SceneError
+from roughmdr.interaction.mean_field import coupling_in, shift
+from roughmdr.interaction.placed import check_placed
+from roughmdr.interaction.settings import Interaction, reason_against_adhesion
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns
+from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import prepare as prepare_pull_off
+from roughmdr.loading.staircase import no_memory
+from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error.interaction import overlap_share, poisson_overlap
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import SHAPES
+
+
+def compute(
+    ensemble: Ensemble,
+    path: LoadingPath,
+    *,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    variables: Iterable[str],
+    interaction: Interaction | None = None,
+) -> LoadSeparation:
+    """Return the law of ``ensemble`` along a path; E* [Pa].
+
+    SceneError where a variable needs a nominal area and there is none, or where the ensemble lacks positions or the
+    patch that the interaction needs, OutOfRange where the contact of an asperity is
+    not representable, or where the contacts have more area than the patch.
+    """
+    names = list(variables)
+    if ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
+        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
+    if interaction is not None:
+        check_placed(ensemble, interaction)
+        if reason := reason_against_adhesion(interaction, adhesion):
+            raise SceneError(f"interaction {reason}")
+        if interaction.model == "pairwise":
+            from roughmdr.aggregate.coupled import law_of_coupled
+
+            return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
+    columns, spread = ensemble.nondimensional(), ensemble.spread
+    validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
+    adhesion = adhesion.resolved(validity.jkr_error)
+    law = choose(ensemble.shape, adhesion, columns[2])
+    rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
+
+    def sums(along: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
+        return loop.sum_over_asperities(
+            law, ensemble.height, columns, effective_modulus, adhesion, along.separation, along.memory, rows
+        )
+
+    if coupling := coupling_in(ensemble, interaction, effective_modulus):
+
+        def independent(separation: Floats) -> tuple[Floats, Floats]:
+            found, _, _ = sums(LoadingPath(separation, no_memory(separation)), {totals.FORCE, totals.STIFFNESS})
+            return found[totals.FORCE], found[totals.STIFFNESS]
+
+        found = shift(independent, path.separation, coupling)
+        shifted = LoadingPath(found.separation, no_memory(found.separation))
+        total, radius, visits = sums(shifted, rows | {totals.STIFFNESS})
+        couple(total, found)
+    else:
+        total, radius, visits = sums(path, rows)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
+    assumptions = Assumptions(
+        ensemble.validity_limits(radius),
+        np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" else 0.0,
+        float(ensemble.attrs.get("radius_uncertainty", 0.0)),
+        bool(ensemble.attrs.get("of_surface", 0)),
+        _overlap(ensemble, radius),
+    )
+    result = LoadSeparation.of(
+        total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
+    )
+    pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
+    return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
+
+
+def _overlap(ensemble: Ensemble, radius: Floats) -> float:
+    """Return the share of contacts that reach into a neighbour's, from their radii [m]; NaN where it is not known."""
+    touching = radius > 0.0
+    contact_radius = radius[touching]
+    if not contact_radius.size:
+        return 0.0
+    if {"x", "y"} <= ensemble.positions.keys():
+        x, y = (ensemble.positions[name][touching] for name in ("x", "y"))
+        return overlap_share(x, y, contact_radius)
+    if ensemble.nominal_area is None:
+        return math.nan
+    return poisson_overlap(contact_radius, ensemble.nominal_area)
+
+
+def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = None) -> None:
+    """Compile the sum for a shape, an adhesion model and an interaction, before several threads or a clock need it."""
+    if interaction is not None and interaction.model == "pairwise":
+        from roughmdr.interaction.solve import prepare as prepare_coupled
+
+        if adhesion.work > 0.0:
+            from roughmdr.interaction.jkr.path import prepare as prepare_adhering
+
+            prepare_adhering(shape)
+        else:
+            prepare_coupled(shape)
+    kind = SHAPES[shape]
+    example = kind(**kind.example())
+    width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
+    columns = Columns(width, rise, params)
+    for model in adhesion.candidates if interaction is None or interaction.model != "pairwise" else ():
+        one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
+        law = choose(shape, one, params)
+        loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
+        if law.adhesive:
+            detachment_depths(law, columns, 1.0, one)
+            prepare_pull_off()
+    if adhesion.work > 0.0:
+        jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))

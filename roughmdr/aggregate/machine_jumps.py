@@ -1,0 +1,77 @@
+"""The jumps of a flat on a machine, met one by one: where the demand turns back, and where it is passed again.
+
+On the way up each detachment comes after a peak of the demand, where the stiffness of the contacts is minus that of the
+machine; a punch that lets go at once has its peak at its detachment. On the way down jumps begin at touches that pull.
+"""
+
+import math
+
+from roughmdr.aggregate.block import law
+from roughmdr.aggregate.passage import Jumps, Search, Stand
+
+_MAX_JUMPS = 10_000_000
+_MAX_ITERATIONS = 100
+_RTOL = 1e-13  # of the way from the last stand to the detachment: an interval with a peak that is narrow enough
+
+
+def through_jumps(at: Stand, target: float, falls: bool, search: Search, jumps: Jumps, step: int) -> Stand:
+    """Return the stand after the last jump before ``target``, and record the jumps up to there."""
+    for _ in range(_MAX_JUMPS):
+        if at.h == math.inf or (at.parted and not falls):
+            break
+        if falls:
+            event = law.next_below(search, at.h)
+            before, after = event + search.beside, event - search.beside
+        else:
+            after = law.past_next(search, at.h)
+            before = after - 2.0 * search.beside
+        if abs(after) == math.inf:
+            break
+        peak = law.peak_before(at, before, search) if not falls else law.stand_at(min(before, at.h), True, search)
+        if peak.demand <= target if falls else peak.demand >= target:
+            break
+        law.stand(search.asperities)
+        beyond = law.stand_at(after, falls, search)
+        law.stand(search.asperities)
+        if beyond.demand <= peak.demand if falls else beyond.demand >= peak.demand:
+            at = beyond
+            continue
+        next_at = law.sink(beyond, peak.demand, search) if falls else law.rise(beyond, peak.demand, search)
+        number = jumps.number[0]
+        jumps.step[number], jumps.demand[number] = step, peak.demand
+        jumps.limits[number, 0], jumps.limits[number, 1] = peak.h, next_at.h
+        jumps.number[0] = number + 1
+        at = next_at
+    return at
+
+
+def peak_before(at: Stand, end: float, search: Search) -> Stand:
+    """Return the peak of the demand between a stand and the end of a smooth interval above it, or its end.
+
+    The slope falls, at last as the inverse root of the distance to the detachment: it is sought in that root.
+    """
+    if not at.h < end:
+        return at
+    last: Stand = law.stand_at(end, False, search)
+    if last.slope >= 0.0:
+        return last
+    if not at.slope > 0.0:
+        return at
+    left, right = math.sqrt(end - at.h), 0.0  # roots of the distances
+    value_left, value_right = at.slope * left, last.slope * math.sqrt(search.beside)
+    best = at
+    for number in range(_MAX_ITERATIONS):
+        part = value_left / (value_left - value_right)
+        root = left + (right - left) * (part if number % 3 < 2 and 0.0 < part < 1.0 else 0.5)
+        h = end - root * root
+        best = law.stand_at(h, False, search)
+        value = best.slope * root
+        if value > 0.0:
+            value_right *= 0.5 if left - root < 0.5 * (left - right) else 1.0
+            left, value_left = root, value
+        else:
+            value_left *= 0.5 if root - right < 0.5 * (left - right) else 1.0
+            right, value_right = root, value
+        if left * left - right * right <= max(_RTOL * (end - at.h), 0.25 * search.beside) or value == 0.0:
+            break
+    return best

@@ -1,0 +1,186 @@
+"""Force and stiffness of an ensemble with the flat anywhere on a leg: what a machine feels of it.
+
+In contrast to the loop over all steps of a path, the next separation is not known before the force at this one is. So
+the natural scales of all asperities are kept, and found when a block is reached first.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.aggregate.block import (
+    CONTACT_ROWS,
+    DEPTH_SCALE,
+    FORCE_SCALE,
+    RADIUS_SCALE,
+    SCALES,
+    STIFFNESS,
+    STIFFNESS_SCALE,
+    Block,
+    law,
+)
+from roughmdr.aggregate.loop import count_above
+from roughmdr.kernels.interface import Columns, Material
+from roughmdr.loading.staircase import Staircase
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.summation import BLOCK, accumulate, block_sum
+
+
+class Response(NamedTuple):
+    """What the contacts answer at a separation."""
+
+    force: float
+    """[N]"""
+    stiffness: float
+    """-dF/dh [N/m], jumps not included."""
+    bound: float
+    """An upper bound of the stiffness [N/m] of these contacts wherever the flat is higher."""
+
+
+class Asperities(NamedTuple):
+    """The asperities of an ensemble, with room for all that is found of them once."""
+
+    height: Floats
+    columns: Columns
+    material: Material
+    adhesion_range: float
+    params: Any
+    """Of all asperities, or one row that all have."""
+    scales: Floats
+    """[block, row, asperity]"""
+    max_scales: Floats
+    """[block, row]"""
+    in_contact: Floats
+    """[block, asperity], where the flat stands."""
+    tried: Floats
+    """[block, asperity], where it was tried last."""
+    contacts: Floats
+    scratch: Floats
+    ready: NDArray[np.int64]
+    """How many blocks are prepared; -1 where a scale is not representable."""
+
+
+class Memory(NamedTuple):
+    """The pairs of the staircase [m] at the begin of a leg, and room for those at a separation, one more."""
+
+    first: NDArray[np.int64]
+    bottom: Floats
+    top: Floats
+    bottom_now: Floats
+    top_now: Floats
+
+
+def keep(
+    height: Floats, columns: Columns, material: Material, adhesion_range: float, prepare: Callable[..., Floats]
+) -> Asperities:
+    """Return asperities of descending height [m], none of which is prepared; ``prepare`` as in ``Kernels``."""
+    blocks, two = (height.size + BLOCK - 1) // BLOCK, min(height.size, 2)
+    params = prepare(material, columns, 0, two, 0.0)
+    size = height.size if params.shape[0] == two else 1
+    return Asperities(
+        height,
+        columns,
+        material,
+        adhesion_range,
+        np.empty((size, *params.shape[1:])),
+        np.empty((blocks, SCALES, BLOCK)),
+        np.empty((blocks, SCALES)),
+        np.zeros((blocks, BLOCK)),
+        np.zeros((blocks, BLOCK)),
+        np.empty((CONTACT_ROWS, BLOCK)),
+        np.empty(BLOCK),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+def block_at(asperities: Asperities, number: int) -> Block:
+    """Return a block with its natural scales; ``asperities.ready`` is -1 where one is not representable."""
+    start = number * BLOCK
+    stop = min(start + BLOCK, asperities.height.size)
+    shared = asperities.params.shape[0] < asperities.height.size
+    if number >= asperities.ready[0] and not (shared and number > 0):
+        asperities.params[0 if shared else start : 1 if shared else stop] = law.prepare(
+            asperities.material, asperities.columns, start, 1 if shared else stop, 0.0
+        )
+    block = Block(
+        asperities.height[start:stop],
+        asperities.params[0:1] if shared else asperities.params[start:stop],
+        asperities.scales[number],
+        asperities.max_scales[number],
+        asperities.tried[number],
+        asperities.in_contact[number],
+        asperities.contacts,
+        asperities.scratch,
+    )
+    if number >= asperities.ready[0]:
+        representable = law.natural_scales(block, asperities.columns, start, asperities.material, False)
+        asperities.ready[0] = number + 1 if representable else -1
+    return block
+
+
+def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> Response:
+    """Return the answer with the flat at h, directly from where it stands; NaN where a scale is not representable.
+
+    ``falls`` says whether the flat goes down on this leg.
+    """
+    count_of_pairs = memory.bottom.size
+    now, reach = Staircase(memory.first, memory.bottom_now, memory.top_now), asperities.adhesion_range
+    for j in range(count_of_pairs):
+        now.bottom[j], now.top[j] = memory.bottom[j] - reach, max(memory.top[j], h)
+    if falls or not law.adhesive:
+        now.bottom[count_of_pairs], now.top[count_of_pairs] = h - reach, h
+        count_of_pairs += 1
+    lowest = now.bottom[0]
+    for j in range(1, count_of_pairs):
+        lowest = min(lowest, now.bottom[j])
+    total, compensation = np.zeros(3), np.zeros(3)
+    for number in range(asperities.in_contact.shape[0]):
+        if asperities.height[number * BLOCK] < lowest:
+            break
+        block = law.block_at(asperities, number)
+        if asperities.ready[0] < 0:
+            return Response(math.nan, math.nan, math.nan)
+        block.in_contact[:] = block.in_contact_before
+        deepest = block.max_scales[DEPTH_SCALE]
+        count = count_above(block.z, law.lowest_in_contact(h, 0, count_of_pairs, now, deepest))
+        block.in_contact[count:] = 0.0
+        if count == 0:
+            continue
+        law.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
+        law.add_response(count, block, asperities.material.effective_modulus, total, compensation)
+    return Response(total[0] + compensation[0], total[1] + compensation[1], total[2] + compensation[2])
+
+
+def add_response(count: int, block: Block, modulus: float, total: Floats, compensation: Floats) -> None:
+    """Add the force, the stiffness and its bound of the first ``count`` asperities of a block.
+
+    Where the stiffness of a contact grows with its indentation it bounds itself; else 2 E* a does, which only a punch
+    of that radius has.
+    """
+    terms, in_contact, contacts, params = block.scratch, block.in_contact, block.contacts, block.params
+    size, load, rigidity = block.scales[RADIUS_SCALE], block.scales[FORCE_SCALE], block.scales[STIFFNESS_SCALE]
+    stiffness = contacts[STIFFNESS]
+    for i in range(count):
+        terms[i] = load[i] * law.force_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
+    accumulate(total, compensation, 0, block_sum(terms, count))
+    for i in range(count):
+        k = rigidity[i] * law.stiffness_at(contacts, params, i)
+        terms[i] = k if not law.adhesive or in_contact[i] > 0.0 else 0.0
+        if law.hardening:
+            stiffness[i] = max(terms[i], 0.0)
+    accumulate(total, compensation, 1, block_sum(terms, count))
+    if law.hardening:
+        accumulate(total, compensation, 2, block_sum(stiffness, count))
+    else:
+        for i in range(count):
+            k = 2.0 * modulus * (size[i] * law.radius_at(contacts, params, i))
+            terms[i] = k if not law.adhesive or in_contact[i] > 0.0 else 0.0
+        accumulate(total, compensation, 2, block_sum(terms, count))
+
+
+def stand(asperities: Asperities) -> None:
+    """Have the flat stand where it was tried last."""
+    asperities.in_contact[:] = asperities.tried

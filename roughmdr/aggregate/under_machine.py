@@ -1,0 +1,133 @@
+"""The separations of a flat that hangs on a machine, from what the machine demands at each step."""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import machine_jumps, passage, response
+from roughmdr.aggregate.block import SumKernels
+from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.loop import compiled_sum
+from roughmdr.errors import OutOfRange
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import Columns, Kernels, Material
+from roughmdr.loading.machine import Machine, legs_of
+from roughmdr.loading.staircase import staircase
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import specialise
+
+_BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
+_NONE = np.zeros(0)
+_PARTS = (
+    response.block_at,
+    response.add_response,
+    response.response,
+    response.stand,
+    passage.stand_at,
+    passage.past_next,
+    passage.next_below,
+    passage.root_between,
+    passage.root_below,
+    passage.rise,
+    passage.sink,
+    passage.arrive,
+    passage.rounded,
+    machine_jumps.peak_before,
+    machine_jumps.through_jumps,
+    passage.follow,
+)
+
+
+class Jump(NamedTuple):
+    """A jump of the flat, at one demand of the machine."""
+
+    step: int
+    """The step that comes after it."""
+    demand: float
+    before: float
+    """The separation [m] that it begins from."""
+    after: float
+    """The separation [m] that it ends at; inf where a dead load pulls the flat off."""
+
+
+@cache
+def _compiled(kernels: Kernels) -> SumKernels:
+    """Return the kernels with the parts of the search, compiled with them; each calls those before it."""
+    whole = SumKernels(kernels.name)
+    vars(whole).update({**vars(compiled_sum(kernels)), "__name__": kernels.name, "hardening": kernels.hardening})
+    for part in _PARTS:
+        vars(whole)[part.__name__] = specialise(part, whole)
+    return whole
+
+
+def separations_of(
+    kernels: Kernels,
+    height: Floats,
+    columns: Columns,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    machine: Machine,
+    demand: Floats,
+    *,
+    jumps: bool = False,
+) -> tuple[Floats, list[Jump]]:
+    """Return the separation [m] at each demand of a machine whose flat comes from infinity; inf where it has flown off.
+
+    Return its ``jumps`` too if they are asked for. height [m] descends. OutOfRange where a contact is not
+    representable.
+    """
+    found = list[Jump]()
+    if not height.size:
+        return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
+    compiled, material = _compiled(kernels), Material(effective_modulus, adhesion.work, adhesion.strength)
+    asperities = response.keep(height, columns, material, adhesion.range, kernels.prepare)
+    touches = detachments = _NONE
+    if kernels.adhesive:
+        touches = np.sort(height + adhesion.range)
+        detachments = np.sort(height + detachment_depths(kernels, columns, effective_modulus, adhesion))
+    first_touch = float(height[0] + adhesion.range)
+    top = max(float(detachments[-1]) if detachments.size else first_touch, first_touch)
+    beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
+    separation, h = np.empty(demand.size), np.inf
+    turns: list[float] = []
+    for leg in legs_of(demand):
+        if h == np.inf:
+            turns.clear()
+            asperities.in_contact[:] = 0.0
+        else:
+            turns.append(h)
+        events = detachments if leg.rises else touches
+        memory = _memory(turns if kernels.adhesive else [])
+        search = passage.Search(machine, asperities, memory, events, first_touch, top, beside)
+        filled = separation[leg.first : leg.first + leg.demand.size]
+        room = _room(events.size + 1 if jumps and kernels.adhesive else 0)
+        compiled.follow(h, leg.demand, not leg.rises, search, filled, room)
+        if np.isnan(filled).any():
+            raise OutOfRange(
+                f"the contact of an asperity is not representable: {kernels.name} with "
+                f"effective modulus {effective_modulus:g} Pa, {adhesion}"
+            )
+        found += [
+            Jump(leg.first + int(room.step[i]), float(room.demand[i]), *room.limits[i].tolist())
+            for i in range(room.number[0])
+        ]
+        h = float(filled[-1])
+    return separation, found
+
+
+def _room(count: int) -> passage.Jumps:
+    """Return room for the jumps of a leg."""
+    steps = np.zeros(count, dtype=np.int64)
+    return passage.Jumps(np.zeros(1, dtype=np.int64), steps, np.empty((count, 2)), np.empty(count))
+
+
+def _memory(turns: list[float]) -> response.Memory:
+    """Return the memory that a leg begins with."""
+    if turns:
+        first, bottom, top = staircase(np.array(turns))
+        bottom, top = bottom[first[-2] :].copy(), top[first[-2] :].copy()
+    else:
+        bottom = top = np.zeros(0)
+    room = bottom.size + 1
+    return response.Memory(np.zeros(1, dtype=np.int64), bottom, top, np.empty(room), np.empty(room))

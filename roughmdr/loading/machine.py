@@ -1,0 +1,127 @@
+"""The machine that moves the flat: a spring in series, its soft limit a dead load, its stiff limit fixed grips.
+
+The spring of stiffness k_m carries the force F = k_m (h - X), X the position of its far end. So the flat at h asks for
+X = h - F/k_m, and under a dead load for the load F itself. Both are the one number
+
+    demand = weight h - compliance F,
+
+with weight 1 and compliance 1/k_m of a spring, 0 and 1 of a dead load: it grows while the machine withdraws. On a
+monotone leg the flat stands at the first separation, in the sense of the leg, at which the demand has passed that of
+the machine.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import OutOfRange
+from roughmdr.loading.path import labelled_branches
+from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.labelled import Array
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES
+
+
+class Machine(NamedTuple):
+    """How a machine answers the force of the contacts."""
+
+    weight: float
+    """1 with a spring, 0 under dead load."""
+    compliance: float
+    """1/k_m [m/N] of a spring, 1 under dead load."""
+
+    @property
+    def is_dead_load(self) -> bool:
+        """Whether the machine keeps the force, whatever the separation."""
+        return self.weight == 0.0
+
+    def demand(self, separation: Floats, force: Floats) -> Floats:
+        """Return the position of the far end [m], or minus the load [N], at which the flat is in equilibrium."""
+        return self.weight * separation - self.compliance * force
+
+    def slope(self, stiffness: Floats) -> Floats:
+        """Return by how much the demand grows with the separation; ``stiffness`` is that of the contacts [N/m]."""
+        return self.weight + self.compliance * stiffness
+
+    def energy(self, separation: Floats, demand: Floats) -> Floats:
+        """Return the energy of the machine [J]: k_m (h - X)^2/2 of the spring, L h of the dead load."""
+        if self.is_dead_load:
+            return -demand * separation
+        off = separation - demand
+        return 0.5 * off * off / self.compliance
+
+
+DEAD_LOAD = Machine(0.0, 1.0)
+
+
+def spring(stiffness: float) -> Machine:
+    """Return the machine with a spring [N/m] in series."""
+    return Machine(1.0, 1.0 / stiffness)
+
+
+class MachinePath(NamedTuple):
+    """What a machine does, step by step."""
+
+    control: str
+    """The quantity that it controls: one of ``CONTROLS``."""
+    values: Floats
+    """That quantity at each step: the load [N] or pressure [Pa], or the position of the far end of the spring [m]."""
+    demand: Floats
+    """The demand of the machine at each step: minus the load [N], or that position [m]."""
+    machine: Machine
+    adhesive: bool
+    """Whether contacts have a memory."""
+
+    @classmethod
+    def along(
+        cls, control: str, values: Floats, *, machine_stiffness: float = 0.0, area: float = 1.0, adhesive: bool
+    ) -> "MachinePath":
+        """Return the path of these values; the stiffness [N/m] is for "remote", the nominal area [m2] for "pressure".
+
+        OutOfRange where a load is not representable.
+        """
+        if control == "remote":
+            return cls(control, values, values, spring(machine_stiffness), adhesive)
+        with np.errstate(over="ignore"):  # refused below
+            load = values * area if control == "pressure" else values
+        if not np.isfinite(load).all():
+            raise OutOfRange(f"a pressure of {np.abs(values).max():g} Pa is not representable on {area:g} m2")
+        return cls(control, values, -load, DEAD_LOAD, adhesive)
+
+    def variables(self, names: list[str]) -> list[str]:
+        """Return the variables of a law that is asked for ``names``: with those that every path of a machine has."""
+        own = ["separation", *(["force"] if self.control == "remote" else [])]
+        return [*own, *(name for name in names if name not in (*own, self.control))]
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the controlled quantity and the branch of each step, labelled."""
+        declared = COORDINATES.get(self.control) or CURVE_VARIABLES[self.control]
+        return {self.control: Array(("step",), self.values, declared.attrs), "branch": self.branch()}
+
+    def branch(self) -> Array:
+        """Return the branch of each step, labelled."""
+        return labelled_branches(self.demand)
+
+
+CONTROLS = {"force": "N", "pressure": "Pa", "remote": "m"}
+"""The quantities that a machine can control, with their units."""
+
+
+class Leg(NamedTuple):
+    """Steps of a path in which the machine moves one way."""
+
+    first: int
+    """The step at which it begins."""
+    demand: Floats
+    """The demand of the machine at each step of the leg."""
+    rises: bool
+    """Whether the demand grows: the flat is pulled."""
+
+
+def legs_of(demand: Floats) -> list[Leg]:
+    """Return the legs of a path that comes from a flat far away; repeated demands belong to the leg before them."""
+    legs, first, rises = list[Leg](), 0, False
+    for step in range(1, demand.size):
+        if demand[step] != demand[step - 1] and (demand[step] > demand[step - 1]) != rises:
+            legs.append(Leg(first, demand[first:step], rises))
+            first, rises = step, not rises
+    return [*legs, Leg(first, demand[first:], rises)]
