@@ -61,6 +61,12 @@ DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
 SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
 """A variable where a machine moves the flat, else a coordinate."""
 
+LAW_VARIABLES = {SEPARATION.name: SEPARATION, **CURVE_VARIABLES}
+"""Variables that a result can have over its steps."""
+
+CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
+"""Quantities that a path can control, with their units: the last three by a machine."""
+
 ASPERITY = _declare(
     ("indentation", "m", "approach past first touch, positive pressed in"),
     ("force", "N", "normal force, compression positive"),
@@ -246,4 +252,4 @@ AUXILIARY_COORDINATES = (
     "cell_key",
     *(row.name for row in RUN_DIAGNOSTICS.values() if row.dtype is str),
 )
-"""Coordinates of a result, other than its swept keys."""
+"""Coordinates of a result, other than its swept keys; the separation is one unless a machine moves the flat."""

@@ -19,7 +19,7 @@ from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES, PULL_OFF_NUMBERS, RUN_VARIABLES, SEPARATION
+from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -119,8 +119,7 @@ def load_separation(
         interaction=coupling,
         variables=names if isinstance(path, LoadingPath) else path.variables(names),
     )
-    declared = {**CURVE_VARIABLES, "separation": SEPARATION}
-    data = {name: Array(("step",), values, declared[name].attrs) for name, values in result.variables.items()}
+    data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     if coupling is not None and coupling.model == "pairwise":
         names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]

@@ -7,13 +7,14 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import AdhesiveMaterial
-from roughmdr.loading.machine import CONTROLS, MachinePath
+from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.schema.arguments import check_number, check_values, exactly_one
+from roughmdr.variables import CONTROLS
 
 
 class MachineArguments(TypedDict, total=False):
-    """What a machine does, as keyword arguments, in place of a separation."""
+    """Controls of a machine as keyword arguments, in place of a separation."""
 
     force: ArrayLike | None
     pressure: ArrayLike | None
@@ -33,10 +34,10 @@ def path_of(
     RoughmdrError unless exactly one control is given, and a machine's stiffness with "remote" alone; OutOfRange for a
     number; SceneError for a pressure without nominal area.
     """
-    machines = {name: given.pop(name, None) for name in CONTROLS}  # type: ignore[misc]
+    machines = {name: given.pop(name, None) for name in CONTROLS if name != "separation"}  # type: ignore[misc]
     stiffness = given.pop("machine_stiffness", None)
     control, raw = exactly_one("load_separation", separation=separation, **machines)
-    values = np.atleast_1d(check_values(control, raw, CONTROLS.get(control, "m")))
+    values = np.atleast_1d(check_values(control, raw, CONTROLS[control]))
     if values.size == 0:
         raise OutOfRange(f"{control} is empty; it must hold at least one number")
     if (stiffness is None) == (control == "remote"):

@@ -30,7 +30,7 @@ from roughmdr.numerics.summation import BLOCK, accumulate, block_sum
 
 
 class Response(NamedTuple):
-    """What the contacts answer at a separation."""
+    """Force and stiffness of all contacts at a separation."""
 
     force: float
     """[N]"""

@@ -1,4 +1,4 @@
-"""The separations of a scene's path, with the ends that follow from its asperities and its material."""
+"""The steps of a scene's path, with the ends that follow from its asperities and its material."""
 
 from typing import NamedTuple
 
@@ -17,21 +17,21 @@ class PathEnds(NamedTuple):
 
 
 class PathFinder:
-    """Finds the separations of cells; ends that follow from equal asperities and materials are found once."""
+    """Finds the steps of cells; ends that follow from equal asperities and materials are found once."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[object, ...], PathEnds] = {}
 
-    def separations(self, cell: Scene) -> Floats:
-        """Return the separations [m] without the appended unloading; SceneError where the path cannot be laid out."""
+    def values(self, cell: Scene) -> Floats:
+        """Return the controlled quantity at each step in SI; SceneError where the path cannot be laid out."""
         path, sigma = cell.path, cell.asperities.sigma if cell.path.uses_sigma else 0.0
         if not path.starts_clear and path.target is None:
-            return path.separations(sigma)
+            return path.whole(path.values(sigma))
         # Sections that cells of a sweep have in common are the same objects.
         key = (cell.effective_modulus, cell.adhesion_model, cell.interaction_model, id(cell.asperities), id(path))
         if key not in self._found:
             self._found[key] = _find(cell, *path.given(sigma))
-        return path.separations(sigma, *self._found[key])
+        return path.whole(path.values(sigma, *self._found[key]))
 
     @property
     def notes(self) -> list[str]:
@@ -53,7 +53,7 @@ def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
     if stop is not None:
         if not stop < begin:
             message = f"must be below {format_quantity(begin, 'm')}, where a path that starts {CLEAR} begins"
-            raise SceneError.of([Fault("path.separation.stop", format_quantity(stop, "m"), message)])
+            raise SceneError.of([Fault(f"path.{cell.path.control}.stop", format_quantity(stop, "m"), message)])
         return PathEnds(clear)
     assert cell.path.target is not None
     return PathEnds(clear, target_stop(cell, cell.path.target, begin))

@@ -1,4 +1,4 @@
-"""The plan of a scene: its cells, each with the path of its flat, and what is left out."""
+"""The plan of a scene: its cells, each with the path of its flat or its machine, and what is left out."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.path_ends import PathFinder
+from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
+from roughmdr.loading.machine import MachinePath, attributes_of
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import COORDINATES, CURVE_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -23,6 +26,19 @@ class Cell(NamedTuple):
 
     scene: Scene
     path: LoadingPath
+    """Under a machine that of usual asperities, by which costs and contacts are foreseen."""
+    machine: MachinePath | None = None
+    """What the machine does; None where the flat itself is moved."""
+
+    @property
+    def controlled(self) -> LoadingPath | MachinePath:
+        """The path that is controlled."""
+        return self.path if self.machine is None else self.machine
+
+    @property
+    def values(self) -> Floats:
+        """The controlled quantity at each step, in SI."""
+        return self.path.separation if self.machine is None else self.machine.values
 
     @property
     def steps(self) -> int:
@@ -49,6 +65,11 @@ class Plan(NamedTuple):
         return self.cells[0].steps
 
     @property
+    def watched(self) -> str:
+        """The variable that [accuracy] is about: under a dead load, which is the force itself, the separation."""
+        return "separation" if self.control in ("force", "pressure") else "force"
+
+    @property
     def keeps_statistics(self) -> bool:
         """Whether statistics over the realisations are kept, not their curves."""
         return self.scene.output.keep == "statistics"
@@ -56,7 +77,20 @@ class Plan(NamedTuple):
     @property
     def unloads(self) -> bool:
         """Whether the flat rises anywhere on its path, which is so in all cells or in none."""
-        return bool((np.diff(self.cells[0].path.separation) > 0.0).any())
+        first = self.cells[0]
+        way = first.path.separation if first.machine is None else first.machine.demand
+        return bool((np.diff(way) > 0.0).any())
+
+    @property
+    def control(self) -> str:
+        """The quantity that the path controls."""
+        return self.scene.cells[0].path.control
+
+    @property
+    def variables(self) -> list[str]:
+        """The variables of the result over its steps."""
+        asked, machine = self.scene.output.variables, self.cells[0].machine
+        return asked if machine is None else machine.variables(asked)
 
     @property
     def warnings(self) -> list[str]:
@@ -76,21 +110,21 @@ class Plan(NamedTuple):
         return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the swept values, the separation over those of them that change it, and the branch."""
-        paths = [cell.path for cell in self.cells]
-        separation, dims = paths[0].separation, ["step"]
+        """Return the swept values, the controlled quantity over those of them that change it, and the branch."""
+        paths = [cell.values for cell in self.cells]
+        values, dims = paths[0], ["step"]
         if any(path is not paths[0] for path in paths):
-            separation = np.array([path.separation for path in paths]).reshape(*self.sizes.values(), -1)
+            values = np.array(paths).reshape(*self.sizes.values(), -1)
             for axis, name in reversed(list(enumerate(self.sizes))):
-                first_only = separation.take([0], axis)
-                if (separation == first_only).all():
-                    separation = first_only.squeeze(axis)
+                first_only = values.take([0], axis)
+                if (values == first_only).all():
+                    values = first_only.squeeze(axis)
                 else:
                     dims.insert(0, name)
         return {
             **self.scene.sweep.coordinates(),
-            "separation": Array(tuple(dims), separation, COORDINATES["separation"].attrs),
-            "branch": self.cells[0].path.branch(),
+            self.control: Array(tuple(dims), values, attributes_of(self.control)),
+            "branch": self.cells[0].controlled.branch(),
         }
 
 
@@ -99,28 +133,37 @@ def make_plan(scene: Scene) -> Plan:
 
     SceneError where a map cannot be read, a path cannot be laid out, or two cells differ in where they load and unload.
     """
-    paths: dict[tuple[bytes, bool], LoadingPath] = {}
+    paths: dict[tuple[object, ...], LoadingPath] = {}
     cells: list[Cell] = []
     first: NDArray[Any] | None = None
+    last: LoadingPath | MachinePath | None = None
     finder = PathFinder()
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         try:
             _check_asperities_read(cell)
-            loading = finder.separations(cell)
+            planned = _planned(cell, finder.values(cell), paths)
         except SceneError as error:
             raise scene.located(error, describe_cell(values)) from None
-        key = loading.tobytes(), cell.work > 0.0
-        if key not in paths:
-            path = LoadingPath.along(loading, unload=cell.path.unload, adhesive=cell.work > 0.0)
-            branch = path.branch().values
+        if planned.controlled is not last:
+            last, branch = planned.controlled, planned.controlled.branch().values
             first = branch if first is None else first
             if not np.array_equal(branch, first):
                 others = "the flat loads and unloads at other steps than in the first cell"
                 raise SceneError(f"sweep: with {describe_cell(values)} {others}")
-            paths[key] = path
-        cells.append(Cell(cell, paths[key]))
+        cells.append(planned)
     left_out = count_by_cell((line for cell in scene.cells for line in _left_out(cell)), len(scene.cells))
     return Plan(scene, tuple(cells), tuple(left_out), tuple(finder.notes))
+
+
+def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], LoadingPath]) -> Cell:
+    """Return a cell with its path; those of separations are made once for equal ``values``."""
+    if cell.path.control == "separation":
+        key = values.tobytes(), cell.work > 0.0
+        if key not in paths:
+            paths[key] = LoadingPath.along(values, unload=False, adhesive=cell.work > 0.0)
+        return Cell(cell, paths[key])
+    machine = machine_path(cell, values)
+    return Cell(cell, usual_path(cell, machine), machine)
 
 
 def _check_asperities_read(cell: Scene) -> None:

@@ -1,13 +1,17 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
-from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
+from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
+from roughmdr.errors import RoughmdrError
+from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
 
 
-def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
+def simulate_ensemble(
+    scene: Scene, path: LoadingPath | MachinePath, ensemble: Ensemble, variables: list[str]
+) -> LoadSeparation:
     """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
-    return compute(
+    return simulate(
         ensemble,
         path,
         effective_modulus=scene.effective_modulus,
@@ -18,13 +22,15 @@ def simulate_ensemble(scene: Scene, path: LoadingPath, ensemble: Ensemble, varia
 
 
 def simulate_realization(
-    scene: Scene, path: LoadingPath, realization: int, variables: list[str], estimator: str
+    scene: Scene, path: LoadingPath | MachinePath, realization: int, variables: list[str], estimator: str
 ) -> LoadSeparation:
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
         from roughmdr import expected
 
         modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+        if isinstance(path, MachinePath):
+            raise RoughmdrError("the expected law under a machine is not available")
         return expected.compute(
             scene.asperities,
             path,

@@ -119,8 +119,11 @@ class Rounds:
             return history
         if cell not in self._rare:
             self._rare[cell] = RareAsperities(self._plan.cells[cell])
-        error = relative_error(moments, self._rare[cell].spread(draws.realizations))
-        known = draws._replace(error=error, drawn_error=relative_error(moments)) if error < math.inf else draws
+        over_range = self._plan.watched == "separation"
+        unmet = self._rare[cell].spread(draws.realizations)
+        error = relative_error(moments, unmet, over_range=over_range)
+        drawn_error = relative_error(moments, over_range=over_range)
+        known = draws._replace(error=error, drawn_error=drawn_error) if error < math.inf else draws
         accepted = history._replace(method=known)
         if is_enough(draws.realizations, error, accuracy):
             return accepted

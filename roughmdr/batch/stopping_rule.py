@@ -15,13 +15,19 @@ _MIN_GROWTH, _MAX_GROWTH = 0.02, 4  # from one look to the next: realisations ad
 _MAX_RATIO = 1e3  # of error to error asked for: above it more than _MAX_GROWTH is missing in any case
 
 
-def relative_error(moments: Moments, unmet: Floats | float = 0.0) -> float:
+def relative_error(moments: Moments, unmet: Floats | float = 0.0, *, over_range: bool = False) -> float:
     """Return the largest standard error of the mean force [step] over its largest magnitude; inf without any force.
 
-    ``unmet`` is the spread that asperities that were not met would add to that of a realisation [N], [step].
+    ``unmet`` is the spread that asperities that were not met would add to that of a realisation [N], [step]. A
+    separation, which has no natural zero, is taken ``over_range``: over the range of its mean. Steps where some
+    realisations have none do not count.
     """
-    largest = float(np.max(np.abs(moments.mean)))
-    error = float(np.max(np.hypot(moments.standard_error, unmet / math.sqrt(moments.size))))
+    known = ~np.isnan(moments.mean)
+    if not known.any():
+        return math.inf
+    mean = moments.mean[known]
+    largest = float(np.ptp(mean)) if over_range else float(np.max(np.abs(mean)))
+    error = float(np.max(np.hypot(moments.standard_error, unmet / math.sqrt(moments.size))[known]))
     return error / largest if largest > 0.0 else math.inf
 
 

@@ -86,7 +86,8 @@ def split_into_tasks(
 def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     """Compile what these runs of a plan need, before several threads or a clock need it, and nothing else."""
     prepared: set[tuple[object, ...]] = set()
-    for (scene, path), estimator in ((runs.cell, runs.estimator) for runs in ranges):
+    for cell, estimator in ((runs.cell, runs.estimator) for runs in ranges):
+        scene, path = cell.scene, cell.path
         adhesion, asperities = scene.adhesion_model, scene.asperities
         shape, draws = asperities.shape_name, estimator != "expected"
         kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, draws, scene.needs_positions
@@ -143,9 +144,9 @@ def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
 
 def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats, KnownMoments, Row]:
     """Return the variables [variable, step], the pull-off and the diagnostics of one realisation."""
-    (scene, path), started = runs.cell, time.perf_counter()
+    scene, started = runs.cell.scene, time.perf_counter()
     try:
-        result = simulate_realization(scene, path, realization, list(names), runs.estimator)
+        result = simulate_realization(scene, runs.cell.controlled, realization, list(names), runs.estimator)
     except Exception as error:  # whatever it is, the other runs go on
         values = np.full((len(names), runs.cell.steps), math.nan)
         remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

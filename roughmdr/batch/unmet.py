@@ -29,13 +29,17 @@ class RareAsperities:
     def __init__(self, cell: Cell) -> None:
         section = cell.scene.asperities
         self._count, self._steps = section.expected_count, cell.steps
+        self._per_force = _per_force(cell)
         try:
             self._squares = [_squares(cell, stream) for stream in section.heavy_tailed_streams]
         except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverses fail so far out:
             self._squares = []  # a run that meets such an asperity fails, and says so
 
     def spread(self, realizations: int) -> Floats:
-        """Return the spread of the force [N], [step], from asperities that so many realisations may not have met."""
+        """Return the spread, [step], from asperities that so many realisations may not have met.
+
+        It is that of the force [N] or, under a dead load, of the separation [m].
+        """
         from scipy.special import ndtri
 
         level = min(_EXPECTED_IF_MET / (realizations * self._count), 0.5)
@@ -43,7 +47,24 @@ class RareAsperities:
         spread = np.zeros(self._steps)
         for largest, squares in self._squares:
             spread = np.hypot(spread, largest * np.sqrt(self._count * (_WEIGHTS[unmet] @ squares[unmet])))
-        return spread
+        return spread * self._per_force
+
+
+def _per_force(cell: Cell) -> float | Floats:
+    """Return what a force [N] at given separation changes, over that force: under a dead load the separation, by 1/k.
+
+    Behind a spring of stiffness k_m the force itself changes by 1/(1 + k/k_m).
+    """
+    if cell.machine is None:
+        return 1.0
+    source = cell.scene.asperities
+    stratified = source.is_random and not source.reason_against("stratified")
+    ensemble = source.ensemble(cell.scene.seed, 0, stratified=stratified)
+    independent = cell.scene.model_copy(update={"interaction": None})
+    stiffness = simulate_ensemble(independent, cell.path, ensemble, ["stiffness"]).variables["stiffness"]
+    total = np.abs(cell.machine.machine.slope(stiffness))
+    per_force = cell.machine.machine.compliance if cell.machine.machine.is_dead_load else 1.0
+    return np.where(total > 0.0, per_force / np.where(total > 0.0, total, 1.0), 0.0)
 
 
 def _squares(cell: Cell, stream: int) -> tuple[float, Floats]:
@@ -73,6 +94,6 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
     try:
-        return simulate_ensemble(*cell, alone, ["force"]).variables["force"]
+        return simulate_ensemble(cell.scene, cell.path, alone, ["force"]).variables["force"]
     except RoughmdrError:
         return np.zeros(cell.steps)

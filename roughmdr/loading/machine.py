@@ -59,10 +59,10 @@ def spring(stiffness: float) -> Machine:
 
 
 class MachinePath(NamedTuple):
-    """What a machine does, step by step."""
+    """The path of a machine, step by step."""
 
     control: str
-    """The quantity that it controls: one of ``CONTROLS``."""
+    """The quantity that it controls: one of ``CONTROLS`` but "separation"."""
     values: Floats
     """That quantity at each step: the load [N] or pressure [Pa], or the position of the far end of the spring [m]."""
     demand: Floats
@@ -94,16 +94,16 @@ class MachinePath(NamedTuple):
 
     def coordinates(self) -> dict[str, Array]:
         """Return the controlled quantity and the branch of each step, labelled."""
-        declared = COORDINATES.get(self.control) or CURVE_VARIABLES[self.control]
-        return {self.control: Array(("step",), self.values, declared.attrs), "branch": self.branch()}
+        return {self.control: Array(("step",), self.values, attributes_of(self.control)), "branch": self.branch()}
 
     def branch(self) -> Array:
         """Return the branch of each step, labelled."""
         return labelled_branches(self.demand)
 
 
-CONTROLS = {"force": "N", "pressure": "Pa", "remote": "m"}
-"""The quantities that a machine can control, with their units."""
+def attributes_of(control: str) -> dict[str, str]:
+    """Return the attributes of the coordinate that a path controls."""
+    return (COORDINATES.get(control) or CURVE_VARIABLES[control]).attrs
 
 
 class Leg(NamedTuple):

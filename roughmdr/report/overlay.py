@@ -11,8 +11,9 @@ from roughmdr.batch.plan import Cell, Plan, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.plots import EXPECTED, OverlayLine, separations
+from roughmdr.report.plots import EXPECTED, OverlayLine
 from roughmdr.report.theory_curves import THEORY_CURVES, TheoryCurve
+from roughmdr.result.layout import control_of, controlled_values
 from roughmdr.scene import read
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
@@ -42,8 +43,10 @@ def plan_of_result(file: Path | None, result: Labelled) -> Plan:
 
     SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
     """
-    plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), separations(result)
-    planned = np.array([cell.path.separation for cell in plan.cells])
+    if control_of(result) != "separation":
+        raise StoreError(f"{file or 'result'}: theories and the expected law are over separation, not under a machine")
+    plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), controlled_values(result)
+    planned = np.array([cell.values for cell in plan.cells])
     if (
         stored.size != planned.size
         or np.abs(stored.reshape(planned.shape) - planned).max() > _SEPARATION_RTOL * np.abs(planned).max()

@@ -11,11 +11,18 @@ from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.trust import trust_of_result
-from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
+from roughmdr.result.layout import (
+    cell_label,
+    cells_of,
+    control_of,
+    controlled_values,
+    done_of,
+    realizations_in_words,
+)
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.files import check_ending, replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONTROLS, LAW_VARIABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +34,7 @@ _BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 _THEORY_COLOURS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _MAX_LABELS = 16
+_CONTROL_NAMES = {**{name: name for name in CONTROLS}, "remote": "position of the far end of the spring"}
 
 
 class OverlayLine(NamedTuple):
@@ -45,7 +53,7 @@ class _Curve(NamedTuple):
     cell: int
     pass_number: int  # counts the loadings and unloadings of the path, from 0
     branch: str
-    separation: Floats
+    control: Floats  # the controlled quantity
     mean: Floats
     error: Floats  # standard error of the mean; NaN if there is none
     model_error: Floats  # of a force, over itself; NaN where it is not known, or of other variables
@@ -53,7 +61,7 @@ class _Curve(NamedTuple):
 
 
 def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) -> "Figure":
-    """Draw variables of a result against separation, with ``lines`` over them.
+    """Draw variables of a result against the controlled quantity, with ``lines`` over them.
 
     Every realisation is a thin line, the mean a thick one, twice its standard error a band, and of a force the error of
     the model a grey one, where the result has its curve. The cells of a sweep have a colour each and no thin lines;
@@ -76,7 +84,7 @@ def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) 
     for ax, name in zip(axes.flat, names, strict=False):
         selected = [line for line in lines if line.variable == name]
         overlay = [(line, _overlay_style(line.label, overlays, line.cell, len(cells))) for line in selected]
-        _draw_panel(ax, name, list(_curves_of(result, name)), labels, overlay)
+        _draw_panel(ax, (control_of(result), name), list(_curves_of(result, name)), labels, overlay)
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     handles, named = axes.flat[0].get_legend_handles_labels()
@@ -105,13 +113,6 @@ def save(figure: "Figure", path: Path) -> None:
         figure.savefig(temporary, dpi=160, format=format_of(path))
 
 
-def separations(result: Labelled) -> Floats:
-    """Return the separation [m] of every cell, over the swept keys and step."""
-    separation, sizes = result.coordinates["separation"], swept_sizes(result)
-    shape = [size if name in separation.dims else 1 for name, size in sizes.items()]
-    return np.broadcast_to(separation.values.reshape(*shape, -1), (*sizes.values(), separation.values.shape[-1]))
-
-
 def format_of(path: Path) -> str:
     """Return the format of a picture by its name; StoreError if there is no such format."""
     return check_ending(path, "picture", (".png", ".pdf", ".svg")).removeprefix(".")
@@ -127,10 +128,10 @@ def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:
     else:
         mean, error = (result.variables[f"{name}_{statistic}"].values for statistic in ("mean", "sem"))
         runs, done = np.empty((*mean.shape[:-1], 0, branches.size)), np.empty((*mean.shape[:-1], 0), dtype=bool)
-    separation, model_error = separations(result), _mean_model_error(result, name, mean)
+    control, model_error = controlled_values(result), _mean_model_error(result, name, mean)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         for pass_number, steps in enumerate(passes):
-            columns = separation[cell][steps], mean[cell][steps], error[cell][steps], model_error[cell][steps]
+            columns = control[cell][steps], mean[cell][steps], error[cell][steps], model_error[cell][steps]
             yield _Curve(number, pass_number, str(branches[steps[0]]), *columns, runs[cell][done[cell]][:, steps])
 
 
@@ -145,17 +146,23 @@ def _mean_model_error(result: Labelled, name: str, mean: Floats) -> Floats:
 
 
 def _draw_panel(
-    ax: "Axes", name: str, curves: list[_Curve], labels: list[str], overlay: list[tuple[OverlayLine, dict[str, Any]]]
+    ax: "Axes",
+    names: tuple[str, str],
+    curves: list[_Curve],
+    labels: list[str],
+    overlay: list[tuple[OverlayLine, dict[str, Any]]],
 ) -> None:
-    units = CURVE_VARIABLES[name].units
-    h_scale, h_prefix = _si_scale(np.concatenate([curve.separation for curve in curves]))
+    """Draw one variable over the controlled quantity; ``names`` are those of both."""
+    control, name = names
+    units = LAW_VARIABLES[name].units
+    h_scale, h_prefix = _si_scale(np.concatenate([curve.control for curve in curves]))
     visible = _visible_values(name, curves)
     scale, prefix = (1.0, "") if units == "1" else _si_scale(visible, power=2 if units == "m2" else 1)
 
     def draw_means(axes: "Axes", linewidth: float) -> None:
         for curve in curves:
             style = _curve_style(curve, labels)
-            axes.plot(curve.separation / h_scale, curve.mean / scale, lw=linewidth, **style)
+            axes.plot(curve.control / h_scale, curve.mean / scale, lw=linewidth, **style)
         for line, style in overlay:
             axes.plot(line.separation / h_scale, line.values / scale, **style)
 
@@ -163,8 +170,8 @@ def _draw_panel(
         if np.isfinite(curve.model_error).any():
             off = curve.model_error * np.abs(curve.mean) / scale
             middle = curve.mean / scale
-            ax.fill_between(curve.separation / h_scale, middle - off, middle + off, color="0.85", lw=0, zorder=0.5)
-        h, mean, error = curve.separation / h_scale, curve.mean / scale, curve.error / scale
+            ax.fill_between(curve.control / h_scale, middle - off, middle + off, color="0.85", lw=0, zorder=0.5)
+        h, mean, error = curve.control / h_scale, curve.mean / scale, curve.error / scale
         colour = _curve_style(curve, labels)["color"]
         if len(labels) == 1 and curve.runs.size:
             ax.plot(h, curve.runs.T / scale, color=colour, lw=0.3, alpha=0.25)
@@ -174,14 +181,14 @@ def _draw_panel(
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
-        h = np.concatenate([curve.separation for curve in curves]) / h_scale
+        h = np.concatenate([curve.control for curve in curves]) / h_scale
         _add_tension_inset(ax, h, np.concatenate([curve.mean for curve in curves]) / scale, draw_means)
     low, high = float(visible.min()) / scale, float(visible.max()) / scale
     if high > low:
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
     unit = units.replace(" m-1", "/m").replace("m2", "m²")
     ax.set_ylabel(f"{name.replace('_', ' ')}" + (f" [{prefix}{unit}]" if unit != "1" else ""))
-    ax.set_xlabel(f"separation [{h_prefix}m]")
+    ax.set_xlabel(f"{_CONTROL_NAMES[control]} [{h_prefix}{CONTROLS[control]}]")
 
 
 def _curve_style(curve: _Curve, labels: list[str]) -> dict[str, Any]:

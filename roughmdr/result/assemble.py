@@ -21,10 +21,10 @@ from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
 from roughmdr.variables import (
     ADHESION_CODES,
-    CURVE_VARIABLES,
     DONE,
     ESTIMATORS,
     FAILED,
+    LAW_VARIABLES,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
     Variable,
@@ -49,7 +49,8 @@ def assemble(
     data, coordinates = _curves(plan, collected.values, variables, runs), plan.coordinates()
 
     if plan.unloads:
-        data |= pull_off_numbers(plan, methods, collected, list(variables).index("force"))
+        force = list(variables).index("force") if "force" in variables else None
+        data |= pull_off_numbers(plan, methods, collected, force)
 
     def of_cells(name: str, values: list[Any]) -> Array:
         return _array(
@@ -99,10 +100,12 @@ def _curves(
     NaN stands for a standard error that is not computed: that of a single realisation, and of the stiffness where
     contacts may be at the point of detachment, since its variance is infinite.
     """
-    at_detachment = np.array([cell.path.at_detachment() for cell in plan.cells])
+    # Behind a machine the stiffness of contacts is bounded below, by minus that of the machine.
+    fixed = plan.control == "separation"
+    at_detachment = np.array([cell.path.at_detachment() & fixed for cell in plan.cells])
     data: dict[str, Array] = {}
-    for name in plan.scene.output.variables:
-        variable, number = CURVE_VARIABLES[name], list(variables).index(name)
+    for name in plan.variables:
+        variable, number = LAW_VARIABLES[name], list(variables).index(name)
         for statistic, array in collected.items():
             values, attrs = array[..., number, :], variable.attrs
             if statistic in _STATISTICS:

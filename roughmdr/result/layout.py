@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, CURVE_VARIABLES, DONE
+from roughmdr.variables import AUXILIARY_COORDINATES, CONTROLS, DONE, LAW_VARIABLES
 
 
 def stored_variables(result: Labelled) -> list[str]:
@@ -17,8 +18,20 @@ def stored_variables(result: Labelled) -> list[str]:
     return [
         name.removesuffix("_mean")
         for name, array in result.variables.items()
-        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in CURVE_VARIABLES
+        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW_VARIABLES
     ]
+
+
+def control_of(result: Labelled) -> str:
+    """Return the quantity that the path of a result controls."""
+    return next(name for name in CONTROLS if name in result.coordinates)
+
+
+def controlled_values(result: Labelled) -> Floats:
+    """Return the controlled quantity of every cell in SI, over the swept keys and step."""
+    values, sizes = result.coordinates[control_of(result)], swept_sizes(result)
+    shape = [size if name in values.dims else 1 for name, size in sizes.items()]
+    return np.broadcast_to(values.values.reshape(*shape, -1), (*sizes.values(), values.values.shape[-1]))
 
 
 def estimator_of(result: Labelled) -> str:

@@ -21,16 +21,18 @@ _OVER_AREA = {_FORCE: _PRESSURE, "pull_off_contact_area": "pull_off_contact_frac
 
 
 def pull_off_numbers(
-    plan: Plan, methods: Sequence[CellMethod], collected: CollectedResults, force: int
+    plan: Plan, methods: Sequence[CellMethod], collected: CollectedResults, force: int | None
 ) -> dict[str, Array]:
     """Return the variables of ``PULL_OFF``, of a batch with an unloading; ``force`` is its index among the variables.
+
+    Under a dead load, where it has none, the mean law has no pull-off either.
 
     The mean law has no pull-off, and NaN, where half of the realisations or more end in contact.
     """
     swept, sizes = tuple(plan.sizes), tuple(plan.sizes.values())
     found, done = collected.pull_offs, collected.diagnostics["status"] == DONE
     if plan.keeps_statistics:
-        mean_force, dims = collected.values["mean"][:, force], swept
+        mean_force, dims = None if force is None else collected.values["mean"][:, force], swept
         mean_lowest, count, all_done = (
             found[:, MEAN, 0],
             found[:, COUNT, 0],
@@ -42,22 +44,11 @@ def pull_off_numbers(
             for statistic, values in _statistics(found[..., number]).items()
         }
     else:
-        mean_force, _ = mean_and_error(collected.values["curves"][:, :, force], done)
+        mean_force = None if force is None else mean_and_error(collected.values["curves"][:, :, force], done)[0]
         dims, all_done = (*swept, "realization"), done.sum(axis=1).astype(float)
         mean_lowest, _ = mean_and_error(found[..., 0], np.isfinite(found[..., 0]))
         count = np.isfinite(found[..., 0]).sum(axis=1).astype(float)
         numbers = {name: found[..., number] for number, name in enumerate(PULL_OFF_NUMBERS)}
-    of_mean = np.array(
-        [
-            lowest_of_mean(cell.path.separation, curve) if 2.0 * each > total else math.nan
-            for cell, curve, each, total in zip(plan.cells, mean_force, count, all_done, strict=True)
-        ]
-    )
-    # The mean law is nowhere lower than the mean of the lowest forces; a parabola through few steps may be.
-    of_mean = np.where(count == all_done, np.maximum(of_mean, mean_lowest), of_mean)
-    for cell, method in enumerate(methods):
-        if method.estimator == "expected":
-            of_mean[cell] = found[cell, MEAN if plan.keeps_statistics else 0, 0]
     area = np.array([cell.scene.asperities.nominal_area or math.nan for cell in plan.cells])
     if np.isfinite(area).any():
         numbers |= {
@@ -73,6 +64,16 @@ def pull_off_numbers(
 
     data = {name: array(name, dims, values) for name, values in numbers.items()}
     data["pull_off_count"] = array("pull_off_count", swept, np.where(np.isnan(count), 0.0, count))
+    of_mean = np.full(len(plan.cells), math.nan)
+    if mean_force is not None:
+        for cell, curve in enumerate(mean_force):
+            if 2.0 * count[cell] > all_done[cell]:
+                of_mean[cell] = lowest_of_mean(plan.cells[cell].values, curve)
+    # The mean law is nowhere lower than the mean of the lowest forces; a parabola through few steps may be.
+    of_mean = np.where(count == all_done, np.maximum(of_mean, mean_lowest), of_mean)
+    for cell, method in enumerate(methods):
+        if method.estimator == "expected":
+            of_mean[cell] = found[cell, MEAN if plan.keeps_statistics else 0, 0]
     data[f"{_FORCE}_of_mean"] = array(f"{_FORCE}_of_mean", swept, of_mean)
     if np.isfinite(area).any():
         data[f"{_PRESSURE}_of_mean"] = array(f"{_PRESSURE}_of_mean", swept, of_mean / area)

@@ -164,8 +164,8 @@ def execute(
 
 def _computed_variables(plan: Plan) -> tuple[str, ...]:
     """Return the variables that are computed: those asked for and, for an error asked for or a pull-off, the force."""
-    asked = plan.scene.output.variables
-    needed = plan.scene.accuracy is not None or plan.unloads
+    asked = plan.variables
+    needed = plan.control == "separation" and (plan.scene.accuracy is not None or plan.unloads)
     return tuple([*asked, _FORCE] if needed and _FORCE not in asked else asked)
 
 
@@ -181,7 +181,8 @@ class _Batch:
     _runs_per_task: int | None
 
     def __post_init__(self) -> None:
-        plan, watched = self._plan, None if self._plan.scene.accuracy is None else _FORCE
+        plan = self._plan
+        watched = None if plan.scene.accuracy is None else plan.watched
         self._variables = _computed_variables(plan)
         self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
 

@@ -1,18 +1,20 @@
-"""[path]: the separations of the rigid flat."""
+"""[path]: the separations of the rigid flat, or what the machine does that moves it."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
-from roughmdr.errors import SceneError
+from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.separation import CLEAR, Separation, SeparationReader, Target
-from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.variables import CONTROLS
 
 _START = SeparationReader(clear=True, other=f', or "{CLEAR}"')
 _STOP = SeparationReader(other=', or a target such as { contact_fraction = 0.02 } or { pressure = "1 MPa" }')
+_FORCE, _PRESSURE = Quantity("N"), Quantity("Pa")
 _Separation = Annotated[Separation, BeforeValidator(SeparationReader())]
 
 
@@ -27,23 +29,104 @@ class Range(Section):
     steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
 
 
-class FlatPath(Section):
-    """[path]: a range or a list of separations; ``unload`` appends the same separations in reverse."""
+class RemoteRange(Section):
+    """``steps`` positions of the far end of the machine's spring from ``start`` to ``stop``, both included."""
 
-    separation: Annotated[
-        Annotated[Range, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
-        Discriminator(
-            lambda value: {dict: "range", Range: "range", list: "list"}.get(type(value)),
-            custom_error_type="neither",
-            custom_error_message="must be a table with start, stop and steps, or a list",
-        ),
-    ]
+    start: Annotated[Separation | None, BeforeValidator(_START)] = None
+    stop: Annotated[Separation, BeforeValidator(SeparationReader())]
+    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+
+
+class ForceRange(Section):
+    """``steps`` loads from ``start`` to ``stop``, both included."""
+
+    start: Annotated[float, BeforeValidator(_FORCE)] = 0.0
+    stop: Annotated[float, BeforeValidator(_FORCE)]
+    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+
+
+class PressureRange(Section):
+    """``steps`` loads over the nominal area from ``start`` to ``stop``, both included."""
+
+    start: Annotated[float, BeforeValidator(_PRESSURE)] = 0.0
+    stop: Annotated[float, BeforeValidator(_PRESSURE)]
+    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+
+
+_RangeOrList = Discriminator(
+    lambda value: "list" if isinstance(value, list) else ("range" if isinstance(value, dict | Section) else None),
+    custom_error_type="neither",
+    custom_error_message="must be a table with start, stop and steps, or a list",
+)
+
+
+class FlatPath(Section):
+    """[path]: a range or a list of separations, or of what a machine controls in place of them.
+
+    A machine presses with a ``force`` or a ``pressure``, a dead load, or moves the far end of a spring of
+    ``machine_stiffness``, ``remote``. ``unload`` appends the steps in reverse, after ``hold`` more at the last.
+    """
+
+    separation: (
+        Annotated[
+            Annotated[Range, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
+            _RangeOrList,
+        ]
+        | None
+    ) = None
+    remote: (
+        Annotated[
+            Annotated[RemoteRange, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
+            _RangeOrList,
+        ]
+        | None
+    ) = None
+    force: (
+        Annotated[
+            Annotated[ForceRange, Tag("range")]
+            | Annotated[list[Annotated[float, BeforeValidator(_FORCE)]], Field(min_length=1), Tag("list")],
+            _RangeOrList,
+        ]
+        | None
+    ) = None
+    pressure: (
+        Annotated[
+            Annotated[PressureRange, Tag("range")]
+            | Annotated[list[Annotated[float, BeforeValidator(_PRESSURE)]], Field(min_length=1), Tag("list")],
+            _RangeOrList,
+        ]
+        | None
+    ) = None
+    machine_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0.0))] | None = None
+    hold: Annotated[int, BeforeValidator(WholeNumber(0, 1_000_000))] = 0
     unload: StrictBool = False
 
+    @model_validator(mode="after")
+    def _one_control(self) -> "FlatPath":
+        given = [name for name in CONTROLS if getattr(self, name) is not None]
+        if len(given) != 1:
+            got = " and ".join(given) or "none"
+            raise RoughmdrError(f"takes exactly one of {', '.join(CONTROLS)}; got {got}")
+        if (self.machine_stiffness is not None) != (given == ["remote"]):
+            if self.machine_stiffness is None:
+                raise RoughmdrError("needs machine_stiffness, that of the spring that remote moves the far end of")
+            raise EntryError("machine_stiffness", self.machine_stiffness, "goes with remote only")
+        return self
+
     @property
-    def _ends(self) -> list[Separation | Target | None]:
-        path = self.separation
-        return [path.start, path.stop] if isinstance(path, Range) else [*path]
+    def control(self) -> str:
+        """The quantity that is controlled."""
+        return next(name for name in CONTROLS if getattr(self, name) is not None)
+
+    @property
+    def _steps(self) -> Range | RemoteRange | ForceRange | PressureRange | list[Any]:
+        steps: Range | RemoteRange | ForceRange | PressureRange | list[Any] = getattr(self, self.control)
+        return steps
+
+    @property
+    def _ends(self) -> list[Separation | Target | float | None]:
+        steps = self._steps
+        return [*steps] if isinstance(steps, list) else [steps.start, steps.stop]
 
     @property
     def starts_clear(self) -> bool:
@@ -68,29 +151,38 @@ class FlatPath(Section):
         return f"cannot be given in sigma: the heights' standard deviation is {sigma:g} m"
 
     def given(self, sigma: float) -> list[float | None]:
-        """Return the separations that are given, or both ends of the range [m]; None for "clear" and a target.
+        """Return the steps that are given, or both ends of the range, in SI; None for "clear" and a target.
 
         ``sigma`` [m] is the heights' standard deviation; SceneError if the path is given in sigma and there is none.
         """
         if fault := self.sigma_fault(sigma):
-            raise SceneError(f"path.separation: {fault}")
-        return [end.metres(sigma) if isinstance(end, Separation) else None for end in self._ends]
+            raise SceneError(f"path.{self.control}: {fault}")
+        return [
+            end.metres(sigma) if isinstance(end, Separation) else (end if isinstance(end, float) else None)
+            for end in self._ends
+        ]
 
-    def separations(self, sigma: float, clear: float | None = None, reached: float | None = None) -> Floats:
-        """Return the separations [m] without the appended unloading; sigma [m] is the heights' standard deviation.
+    def values(self, sigma: float, clear: float | None = None, reached: float | None = None) -> Floats:
+        """Return the controlled quantity at each step in SI, without hold and unloading.
 
+        sigma [m] is the heights' standard deviation.
         ``clear`` and ``reached`` [m] are the start and the stop of a range where it does not give them as separations.
         SceneError if the path is given in sigma and there is none, or if it is not finite.
         """
-        given = self.given(sigma)
-        if isinstance(self.separation, Range):
+        given, steps = self.given(sigma), self._steps
+        if isinstance(steps, list):
+            path = np.array(given, dtype=np.float64)
+        else:
             pairs = zip(given, (clear, reached), strict=True)
             ends = np.array([end if found is None else found for end, found in pairs], dtype=np.float64)
             start, stop = ends.tolist()
             finite = math.isfinite(stop - start)
-            path = np.linspace(start, stop, self.separation.steps) if finite else np.array([np.inf])
-        else:
-            path = np.array(given, dtype=np.float64)
+            path = np.linspace(start, stop, steps.steps) if finite else np.array([np.inf])
         if not np.isfinite(path).all():
-            raise SceneError("path.separation: reaches beyond the largest float")
+            raise SceneError(f"path.{self.control}: reaches beyond the largest float")
         return path
+
+    def whole(self, values: Floats) -> Floats:
+        """Return the values of all steps, hold and unloading included."""
+        held = np.full(self.hold, values[-1])
+        return np.concatenate([values, held, values[::-1]] if self.unload else [values, held])

@@ -102,12 +102,14 @@ class Scene(Section):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
             self._check_accuracy(self.accuracy)
+        if self.path.control == "pressure" and asperities.is_random and asperities.nominal_area is None:
+            raise mismatch("path.pressure", "needs a nominal area: asperities.patch")
         if estimator == "expected" and realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
         if not asperities.is_random:
             return self
         if fault := self.path.sigma_fault(asperities.sigma):
-            raise mismatch("path.separation", fault)
+            raise mismatch(f"path.{self.path.control}", fault)
         exponent = asperities.min_exponent
         if self.work > 0.0 and not exponent > 0.5:
             key = "exponent" if asperities.shared_profile is None else "terms"
@@ -144,7 +146,9 @@ class Scene(Section):
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
         drawn = "stratified" if is_whole else "sampled"
-        return (drawn,) if self.reason_against("expected") else (drawn, "expected")
+        # Under a machine the expected law is that of a surface without end, not the mean of such patches.
+        alone = self.path.control != "separation" or bool(self.reason_against("expected"))
+        return (drawn,) if alone else (drawn, "expected")
 
     @property
     def effective_modulus(self) -> float:

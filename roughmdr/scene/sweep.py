@@ -15,10 +15,16 @@ from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
+from roughmdr.variables import CONTROLS
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
 _STOP = "path.separation.stop"
-_PATH_KEYS = ("path.separation.start", _STOP, f"{_STOP}.contact_fraction", f"{_STOP}.pressure")
+_PATH_KEYS = (
+    *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),
+    f"{_STOP}.contact_fraction",
+    f"{_STOP}.pressure",
+    "path.machine_stiffness",
+)
 _ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
 _NUM = WholeNumber(2, 100_000)
 _MAX_CELLS = 100_000
@@ -68,7 +74,8 @@ class Sweep:
         """Return the swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
-            unit = {"units": axis.unit.replace("/m^2", " m-2")} if axis.values.dtype.kind != "U" else {}
+            spelled = axis.unit.replace("/m^2", " m-2").replace("/m", " m-1")
+            unit = {"units": spelled} if axis.values.dtype.kind != "U" else {}
             dimension = "cell" if self.mode == "zip" else axis.name
             coordinates[axis.name] = Array((dimension,), axis.values, {**unit, "long_name": axis.long_name})
         return coordinates

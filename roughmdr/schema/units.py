@@ -27,6 +27,7 @@ _BASES: dict[str, tuple[tuple[str, int], ...]] = {
     "Pa": (("Pa", 1), ("N/m^2", 1)),
     "J/m^2": (("J/m^2", 1), ("N/m", 1)),
     "N": (("N", 1),),
+    "N/m": (("N/m", 1),),
 }
 DIMENSIONLESS = "1"
 
@@ -46,6 +47,7 @@ def _table(dimension: str) -> dict[str, Decimal]:
 _EXAMPLES = {
     "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
     "m-2": '"1e9 /m^2"', "N": '"3 mN"',
+    "N/m": '"0.1 N/m"',
 }  # fmt: skip
 _SHOWN = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2"}

@@ -19,7 +19,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
-from roughmdr.variables import AUXILIARY_COORDINATES
+from roughmdr.variables import AUXILIARY_COORDINATES, CONTROLS
 
 if TYPE_CHECKING:
     import netCDF4
@@ -37,8 +37,11 @@ def read_netcdf(path: Path) -> Labelled:
         arrays, coordinates = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
         for name, variable in file.variables.items():
             attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-            named = attrs.pop("coordinates", "")
-            coordinates |= set(named.split()) if isinstance(named, str) else set()
+            text = attrs.pop("coordinates", "")
+            named = set(text.split()) if isinstance(text, str) else set()
+            coordinates |= named
+            if "separation" not in named and not named.isdisjoint(CONTROLS):  # a machine moves the flat
+                coordinates.discard("separation")
             attrs.pop("_FillValue", None)
             arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
             if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format

@@ -11,9 +11,11 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
+    CONTROLS,
     CURVE_VARIABLES,
     DONE,
     FAILED,
+    LAW_VARIABLES,
     NOT_RUN,
     PULL_OFF_NUMBERS,
     RUN_DIAGNOSTICS,
@@ -38,12 +40,14 @@ def find_fault(data: Labelled) -> str:
 
 def _missing(data: Labelled) -> Iterator[str]:
     required = (
-        (("separation", "branch"), data.coordinates),
+        (("branch",), data.coordinates),
         (_REQUIRED_VARIABLES, data.variables),
         ((*_REQUIRED_TEXTS, "seed"), data.attrs),
     )
     if missing := [name for names, present in required for name in names if name not in present]:
         yield f"it has no {', '.join(missing)}"
+    if not any(name in data.coordinates for name in CONTROLS):
+        yield f"it has none of {', '.join(CONTROLS)} as a coordinate"
 
 
 def _attributes(data: Labelled) -> Iterator[str]:
@@ -86,10 +90,11 @@ def _arrays(data: Labelled) -> Iterator[str]:
         holder = data.coordinates if kind == "text" else data.variables
         if name in holder:
             yield from _mismatches(name, holder[name], dims, kind)
-    separation = data.coordinates["separation"]
-    if [dim for dim in cells if dim in separation.dims] != list(separation.dims[:-1]):
-        yield f"separation has the dimensions {', '.join(separation.dims)}; it must have swept keys and step"
-    yield from _mismatches("separation", separation, (*separation.dims[:-1], "step"), "f")
+    control = next(name for name in CONTROLS if name in data.coordinates)
+    values = data.coordinates[control]
+    if [dim for dim in cells if dim in values.dims] != list(values.dims[:-1]):
+        yield f"{control} has the dimensions {', '.join(values.dims)}; it must have swept keys and step"
+    yield from _mismatches(control, values, (*values.dims[:-1], "step"), "f")
     for name, array in data.coordinates.items():
         if name not in AUXILIARY_COORDINATES and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"
@@ -102,7 +107,7 @@ def _arrays(data: Labelled) -> Iterator[str]:
 def _curves(data: Labelled) -> Iterator[str]:
     """Find curves of the wrong kind: at least one is needed, over runs and steps, with all statistics or none."""
     dims, found = (*data.variables["status"].dims, "step"), False
-    for name in CURVE_VARIABLES:
+    for name in LAW_VARIABLES:
         statistics = [f"{name}_{statistic}" for statistic in _STATISTICS]
         missing = [part for part in statistics if part not in data.variables]
         if missing and statistics[0] not in missing:
@@ -112,7 +117,7 @@ def _curves(data: Labelled) -> Iterator[str]:
                 found = True
                 yield from _mismatches(part, data.variables[part], dims, "f")
     if not found:
-        yield f"it has none of {', '.join(CURVE_VARIABLES)}"
+        yield f"it has none of {', '.join(LAW_VARIABLES)}"
 
 
 def _pull_offs(data: Labelled) -> Iterator[str]:

@@ -178,7 +178,7 @@ def test_multiples_of_sigma_are_from_z_0_all_the_same() -> None:
     height = {"distribution": "gamma", "a": 4.0, "scale": "1 um"}
     asked = read(scene(asperities={**ASPERITIES, "height": height}))
     assert asked.asperities.sigma == pytest.approx(2 * UM, rel=1e-14)
-    assert asked.path.separations(asked.asperities.sigma)[0] == pytest.approx(6 * UM, rel=1e-14)
+    assert asked.path.values(asked.asperities.sigma)[0] == pytest.approx(6 * UM, rel=1e-14)
 
 
 OWN = {"distribution": "expon", "scale": "1 um"}

@@ -31,7 +31,7 @@ def test_the_scene_of_the_demo() -> None:
     assert demo.path.starts_clear
     assert demo.path.target is not None
     assert demo.path.target.contact_fraction == 0.04
-    np.testing.assert_allclose(demo.path.separations(0.0, 7e-6, 1e-6), np.linspace(7e-6, 1e-6, 200), rtol=1e-15)
+    np.testing.assert_allclose(demo.path.values(0.0, 7e-6, 1e-6), np.linspace(7e-6, 1e-6, 200), rtol=1e-15)
 
 
 def test_defaults(tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_defaults(tmp_path: Path) -> None:
     assert plain.title == "mine"
     assert (plain.seed, plain.work, plain.batch.realizations, plain.path.unload) == (0, 0.0, 1, False)
     assert plain.output.variables == ["force", "contact_area", "contact_count", "stiffness"]
-    np.testing.assert_array_equal(plain.path.separations(2e-6), [2e-6, 0.0, -1e-6])
+    np.testing.assert_array_equal(plain.path.values(2e-6), [2e-6, 0.0, -1e-6])
 
 
 def test_both_bodies_count() -> None:
@@ -53,7 +53,7 @@ def test_both_bodies_count() -> None:
 def test_changes_are_toml_or_strings() -> None:
     asked = read(SCENE, ["adhesion.work=10 mJ/m^2", "asperities.count=5", "title=Mine", 'path.separation=["1 um", 0]'])
     assert (asked.work, asked.asperities.count, asked.title) == (0.01, 5, "Mine")
-    assert asked.path.separations(1.0).tolist() == [1e-6, 0.0]
+    assert asked.path.values(1.0).tolist() == [1e-6, 0.0]
     assert "count = 5" in asked.toml
     assert read(asked).toml == asked.toml
     assert SCENE["asperities"]["count"] == 1000

@@ -16,7 +16,7 @@ from roughmdr.errors import StoreError
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
-from roughmdr.variables import CURVE_VARIABLES, DONE, FAILED, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
+from roughmdr.variables import DONE, FAILED, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
 
 _MAX_CHANGES = 5  # in a message
 _LAYOUT_PARTS = ("title", "output", "batch", "accuracy", "sweep")
@@ -89,7 +89,7 @@ def _what_would_be_lost(old: Labelled, plan: Plan, reusable: ReusableRows) -> st
     if others := sum(not reusable.matches([key]) for key in _keys(old)):
         return f"{others} cell{'s' * (others > 1)} more"
     output = plan.scene.output
-    names = [name for name in CURVE_VARIABLES if name in old.variables or f"{name}_mean" in old.variables]
+    names = [name for name in LAW_VARIABLES if name in old.variables or f"{name}_mean" in old.variables]
     if unasked := [name for name in names if name not in output.variables]:
         return ", ".join(unasked)
     if "realization" in old.sizes and output.keep == "statistics":
@@ -142,7 +142,7 @@ def _task_result_of(old: Labelled) -> TaskResult:
     shape = -1, status.shape[-1]
     cell, first = np.nonzero(status.reshape(shape) == DONE)
     arrays = old.variables | old.coordinates
-    names = [name for name in CURVE_VARIABLES if name in old.variables]
+    names = [name for name in LAW_VARIABLES if name in old.variables]
     curves = [arrays[name].values.reshape(-1, *arrays[name].values.shape[-2:])[cell, first] for name in names]
     pull_offs = np.full((cell.size, len(KNOWN_ROWS), len(PULL_OFF_NUMBERS)), np.nan)
     if set(PULL_OFF_NUMBERS) <= set(arrays):

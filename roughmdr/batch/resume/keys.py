@@ -39,7 +39,7 @@ def keys_of(plan: Plan, estimator: str) -> list[str]:
 
 
 def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
-    scene, path = cell
+    scene = cell.scene
     section = scene.asperities
     if id(section) not in sections:  # a file counts by its content, not by its name
         section_by_content = section.model_copy(update={"file": section.content_hash}) if section.inputs else section
@@ -49,7 +49,8 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
         tuple(scene.adhesion_model),
         scene.interaction_model,
         sections[id(section)],
-        hashlib.sha256(path.separation.tobytes()).hexdigest(),
+        hashlib.sha256(cell.values.tobytes()).hexdigest(),
+        *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine))),
         scene.seed,
         estimator,
         versions(),

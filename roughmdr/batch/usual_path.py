@@ -1,0 +1,47 @@
+"""The path of the machine of a cell, and that on which it moves the flat over usual asperities."""
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath, simulate
+from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.loading.machine import MachinePath
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+
+
+def machine_path(cell: Scene, values: Floats) -> MachinePath:
+    """Return the path of a machine that controls these values, in SI; SceneError where it needs a nominal area."""
+    path, area = cell.path, cell.asperities.nominal_area
+    if path.control == "pressure" and area is None:
+        raise SceneError.of([Fault("path.pressure", "", "needs a nominal area, which these asperities do not have")])
+    return MachinePath.along(
+        path.control,
+        values,
+        machine_stiffness=path.machine_stiffness or 0.0,
+        area=area or 1.0,
+        adhesive=cell.work > 0.0,
+    )
+
+
+def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
+    """Return the path of the flat on evenly drawn, independent asperities; clear of them where it has been pulled off.
+
+    SceneError where there is none.
+    """
+    source, adhesion = cell.asperities, cell.adhesion_model
+    stratified = source.is_random and not source.reason_against("stratified")
+    ensemble = source.ensemble(cell.seed, 0, stratified=stratified)
+    try:
+        law = simulate(
+            ensemble,
+            machine,
+            effective_modulus=cell.effective_modulus,
+            adhesion=adhesion,
+            variables=["separation"],
+        )
+    except RoughmdrError as error:
+        raise SceneError.of([Fault(f"path.{machine.control}", "", f"cannot be followed: {error}")]) from error
+    clear = clear_separation(ensemble, cell.effective_modulus, adhesion)
+    separation = np.where(np.isnan(law.variables["separation"]), clear, law.variables["separation"])
+    return LoadingPath.along(separation, unload=False, adhesive=machine.adhesive)
