@@ -37,10 +37,7 @@ def through_jumps(at: Stand, target: float, falls: bool, search: Search, jumps: 
             at = beyond
             continue
         next_at = law.sink(beyond, peak.demand, search) if falls else law.rise(beyond, peak.demand, search)
-        number = jumps.number[0]
-        jumps.step[number], jumps.demand[number] = step, peak.demand
-        jumps.limits[number, 0], jumps.limits[number, 1] = peak.h, next_at.h
-        jumps.number[0] = number + 1
+        law.record(jumps, step, peak.demand, peak.h, next_at.h)
         at = next_at
     return at
 

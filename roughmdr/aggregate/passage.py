@@ -26,6 +26,9 @@ _MAX_EVALUATIONS = 1_000_000  # on the way to one demand
 _LAST = 4.0  # roundings: a shorter step of Newton's method is the last
 _GRID = 2.0**-45  # of the distance to the highest place of contact: the last digit of a separation
 _DOUBTFUL = 2.0**-3  # of that: nearer to the middle of two such separations the demand there decides
+_NEGLIGIBLE = 2.0**-51  # of that distance: so far from its root the search may end
+_NEAR = 2.0**-25  # of that distance: so far from its root it may end if the bend leaves so little
+_MOST_BENT = 0.25  # change of the slope on the way to a root, over the slope, that its bend may tell
 _GROWTH = 2.0  # of the distance to the highest place of contact, at most in a step
 _FIRST_STEP = 2.0**-10  # of the natural depth, where contacts have no stiffness yet
 
@@ -43,6 +46,10 @@ class Stand(NamedTuple):
     """Upper bound of the slope for these contacts at a higher flat."""
     parted: bool
     """Whether no contact is left."""
+    bend: float
+    """d(slope)/dh; NaN where it is not known."""
+    twist: float
+    """How much that may be off."""
 
 
 class Search(NamedTuple):
@@ -79,7 +86,44 @@ def stand_at(h: float, falls: bool, search: Search) -> Stand:
     answer: Response = law.response(h, falls, search.asperities, search.memory)
     w, c = search.machine
     parted = answer.bound == 0.0 and answer.stiffness == 0.0 and answer.force == 0.0
-    return Stand(h, w * h - c * answer.force, w + c * answer.stiffness, w + c * answer.bound, parted)
+    return Stand(
+        h, w * h - c * answer.force, w + c * answer.stiffness, w + c * answer.bound, parted, math.nan, math.nan
+    )
+
+
+def bent(at: Stand, before: Stand) -> Stand:
+    """Return a stand with the bend of the demand, of which nothing jumps between it and one before."""
+    way = at.h - before.h
+    if way == 0.0:
+        return at
+    bend = (at.slope - before.slope) / way
+    twist = 12.0 * abs((at.demand - before.demand) / way - 0.5 * (at.slope + before.slope)) / abs(way)
+    return Stand(at.h, at.demand, at.slope, at.bound, at.parted, bend, twist)
+
+
+def root_from(at: Stand, target: float) -> float:
+    """Return where the demand is ``target`` by its slope and, if that is known, its bend; NaN where it falls."""
+    if not at.slope > 0.0:
+        return math.nan
+    way = (target - at.demand) / at.slope
+    turn = 0.5 * at.bend / at.slope * way
+    return at.h + (way * (1.0 - turn) if abs(turn) < _MOST_BENT else way)
+
+
+def is_last(at: Stand, root: float, search: Search) -> bool:
+    """Return whether a root is so near that the demand need not be looked at there."""
+    way, distance = abs(root - at.h), abs(search.top - root)
+    if way <= _LAST * np.spacing(max(abs(at.h), abs(root))):
+        return True
+    turn = at.bend / at.slope * way
+    off = turn * turn * way + at.twist / at.slope * way * way
+    return bool(way <= _NEAR * distance and off <= _NEGLIGIBLE * distance)
+
+
+def moved(at: Stand, root: float, target: float) -> Stand:
+    """Return the stand at a root that is so near that nothing is computed there."""
+    slope = at.slope + at.bend * (root - at.h) if not math.isnan(at.bend) else at.slope
+    return Stand(root, target, slope, at.bound, at.parted, at.bend, at.twist)
 
 
 def past_next(search: Search, h: float) -> float:
@@ -97,81 +141,99 @@ def next_below(search: Search, h: float) -> float:
 def rise(at: Stand, target: float, search: Search) -> Stand:
     """Return the first stand from here up at which the demand is ``target``; at inf where a dead load has none."""
     for _ in range(_MAX_EVALUATIONS):
-        missing = target - at.demand
-        if at.parted or not missing > 0.0:
+        if at.parted or not at.demand < target:
             break
-        past = law.past_next(search, at.h)
-        root = at.h + missing / at.slope if at.slope > 0.0 else math.inf
-        if root < past:
-            if root - at.h <= _LAST * np.spacing(max(abs(at.h), abs(root))):
+        past, root = law.past_next(search, at.h), law.root_from(at, target)
+        smooth = root < past
+        if smooth:
+            if law.is_last(at, root, search):
+                at = law.moved(at, root, target)
                 break
             after = root
         else:
-            after = max(at.h + missing / at.bound, past) if at.bound > 0.0 else math.inf
+            after = max(at.h + (target - at.demand) / at.bound, past) if at.bound > 0.0 else math.inf
             if after == math.inf:
-                return Stand(math.inf, target, 0.0, 0.0, True)
+                return Stand(math.inf, target, 0.0, 0.0, True, math.nan, math.nan)
         tried = law.stand_at(after, False, search)
         if tried.demand > target and after - at.h > search.beside:
-            tried = law.root_between(at, tried, target, False, search)  # the bound does not hold
+            tried = law.root_between(at, tried, target, False, search)  # of the bend, or no bound
+        elif smooth:
+            tried = law.bent(tried, at)
         law.stand(search.asperities)
         at = tried
     if at.parted and target > at.demand:
-        return Stand(target if search.machine.weight > 0.0 else math.inf, target, at.slope, at.bound, True)
+        h = target if search.machine.weight > 0.0 else math.inf
+        return Stand(h, target, at.slope, at.bound, True, math.nan, math.nan)
     return at
 
 
 def sink(at: Stand, target: float, search: Search) -> Stand:
     """Return the first stand from here down at which the demand is ``target``."""
+    deep_h, deep_bound = math.inf, 0.0  # a look further down, whose bound holds up to here
     for _ in range(_MAX_EVALUATIONS):
         excess = at.demand - target
         if not excess > 0.0:
             break
         touch = law.next_below(search, at.h)
-        root = law.root_below(at, excess, touch, search)
-        tried: Stand = law.stand_at(root, True, search)
-        if root <= touch:
-            safe = at.h - excess / tried.bound if tried.bound > 0.0 else -math.inf
-            if root < safe < touch:
+        root = law.root_below(at, target, touch, search)
+        if root > touch:
+            if law.is_last(at, root, search):
+                at = law.moved(at, root, target)
+                break
+            tried = law.bent(law.stand_at(root, True, search), at)
+            if tried.demand <= target:
+                at = law.root_between(tried, at, target, True, search)
+                break
+        else:
+            safe = at.h - excess / deep_bound if deep_bound > 0.0 else -math.inf
+            tried = at
+            if not deep_h <= safe:
+                tried = law.stand_at(root, True, search)
+                deep_h, deep_bound = root, tried.bound
+                safe = at.h - excess / deep_bound if deep_bound > 0.0 else -math.inf
+            if safe > root:
+                if safe >= touch:  # it may pass before the touch
+                    if touch + search.beside < at.h:
+                        tried = law.stand_at(touch + search.beside, True, search)
+                        if tried.demand <= target:
+                            at = law.root_between(tried, at, target, True, search)
+                            break
+                    safe = touch - search.beside
                 tried = law.stand_at(safe, True, search)
-            elif safe >= touch:  # it may pass before the touch
-                root = touch + search.beside
-                tried = law.stand_at(min(root, at.h), True, search)
-        if tried.demand <= target and root > touch:
-            reached: Stand = law.root_between(tried, at, target, True, search)
-            return reached
-        if root > touch and root - touch <= search.beside:
-            tried = law.stand_at(touch - search.beside, True, search)
         law.stand(search.asperities)
         at = tried
     return at
 
 
-def root_below(at: Stand, excess: float, touch: float, search: Search) -> float:
+def root_below(at: Stand, target: float, touch: float, search: Search) -> float:
     """Return where Newton's method goes down, not much deeper than contacts are already; at most to the first touch."""
-    root = at.h - excess / at.slope if at.slope > 0.0 else -math.inf
+    root = law.root_from(at, target)
+    root = -math.inf if math.isnan(root) else root
     if at.parted and touch > -math.inf:
-        return max(root, touch)
+        return float(max(root, touch))
     depth = search.asperities.max_scales[0, DEPTH_SCALE]
     return float(max(root, at.h - max(_GROWTH * (search.top - at.h), _FIRST_STEP * depth)))
 
 
 def root_between(low: Stand, high: Stand, target: float, falls: bool, search: Search) -> Stand:
     """Return the stand with a demand between two, by Newton's method from the lower one."""
-    left, right, at = low.h, high.h, low
+    left, right = low.h, high.h
+    at: Stand = law.bent(low, high)
     for _ in range(_MAX_EVALUATIONS):
-        h = at.h + (target - at.demand) / at.slope if at.slope > 0.0 else math.inf
-        if abs(h - at.h) <= _LAST * np.spacing(max(abs(left), abs(right))):
+        h = law.root_from(at, target)
+        if left <= h <= right and law.is_last(at, h, search):
+            at = law.moved(at, h, target)
             break
         if not left < h < right:
             h = left + 0.5 * (right - left)
             if not left < h < right:
                 break
-        at = law.stand_at(h, falls, search)
+        at = law.bent(law.stand_at(h, falls, search), at)
         if at.demand <= target:
             left = h
         else:
             right = h
-    law.stand(search.asperities)
+        law.stand(search.asperities)
     return at
 
 
@@ -179,7 +241,7 @@ def rounded(at: Stand, target: float, falls: bool, search: Search) -> float:
     """Return the separation [m] with so many digits that it does not depend on where the search for it began."""
     if at.h == math.inf or at.parted:
         return at.h
-    h = at.h + (target - at.demand) / at.slope if at.slope > 0.0 else at.h
+    h = at.h
     off = search.top - h
     grid = max(math.ldexp(_GRID, math.ceil(math.log2(off))), search.beside) if 0.0 < off < math.inf else 0.0
     if grid == 0.0:
@@ -197,13 +259,13 @@ def follow(h: float, demand: Floats, falls: bool, search: Search, separation: Fl
 
     NaN where a natural scale is not representable. Jumps are recorded where there is room for them.
     """
-    at = Stand(h, math.inf, 0.0, 0.0, True)
+    at = Stand(h, math.inf, 0.0, 0.0, True, math.nan, math.nan)
     if h < math.inf:
         at = law.stand_at(h, falls, search)
     for step in range(demand.size):
         target = demand[step]
         if at.h == math.inf and falls:
-            at = law.arrive(target, search)
+            at = law.arrive(target, search, jumps, step)
         if at.h < math.inf:
             if jumps.limits.size:
                 at = law.through_jumps(at, target, falls, search, jumps, step)
@@ -214,12 +276,31 @@ def follow(h: float, demand: Floats, falls: bool, search: Search, separation: Fl
             return
 
 
-def arrive(target: float, search: Search) -> Stand:
-    """Return where a flat from afar comes to, at most just above first touch; inf under a dead load that pulls."""
+def arrive(target: float, search: Search, jumps: Jumps, step: int) -> Stand:
+    """Return where a flat from afar comes to, at most just above first touch; inf under a dead load that pulls.
+
+    Without any load it is pulled down at first touch.
+    """
     if search.machine.weight > 0.0 and target > search.first_touch:
-        return Stand(target, target, 1.0, 1.0, True)
+        return Stand(target, target, 1.0, 1.0, True, math.nan, math.nan)
     if search.machine.weight == 0.0 and target > 0.0:
-        return Stand(math.inf, math.inf, 0.0, 0.0, True)
+        return Stand(math.inf, math.inf, 0.0, 0.0, True, math.nan, math.nan)
     at: Stand = law.stand_at(search.first_touch + search.beside, True, search)
     law.stand(search.asperities)
+    if law.adhesive and not at.demand > target:
+        beyond: Stand = law.stand_at(search.first_touch - search.beside, True, search)
+        law.stand(search.asperities)
+        if beyond.demand > target:
+            snapped: Stand = law.sink(beyond, target, search)
+            law.record(jumps, step, target, at.h, snapped.h)
+            return snapped
     return at
+
+
+def record(jumps: Jumps, step: int, demand: float, before: float, after: float) -> None:
+    """Record a jump, where there is room for it."""
+    number = jumps.number[0]
+    if number < jumps.step.size:
+        jumps.step[number], jumps.demand[number] = step, demand
+        jumps.limits[number, 0], jumps.limits[number, 1] = before, after
+        jumps.number[0] = number + 1
