@@ -65,8 +65,8 @@ class BruteForce:
             self._sink(target) if falls else self._rise(target)
             force = float(self.force(np.array([self.h]))[0]) if self.h < math.inf else 0.0
             found.append((self.h, force, len(self.contacts)))
-        h, force, count = zip(*found, strict=True)
-        return np.array(h), np.array(force), list(count)
+        separation, forces, count = zip(*found, strict=True)
+        return np.array(separation), np.array(forces), list(count)
 
     def _sink(self, target: float) -> None:
         """Go down to the first separation at which the demand is at most the target."""

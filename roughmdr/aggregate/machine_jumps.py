@@ -7,7 +7,7 @@ machine; a punch that lets go at once has its peak at its detachment. On the way
 import math
 
 from roughmdr.aggregate.block import law
-from roughmdr.aggregate.passage import Jumps, Search, Stand
+from roughmdr.aggregate.machine_stand import Jumps, Search, Stand
 
 _MAX_JUMPS = 10_000_000
 _MAX_ITERATIONS = 100

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import machine_jumps, passage, response
+from roughmdr.aggregate import machine_jumps, machine_stand, passage, response
 from roughmdr.aggregate.block import SumKernels
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.loop import compiled_sum
@@ -24,20 +24,20 @@ _PARTS = (
     response.add_response,
     response.response,
     response.stand,
-    passage.stand_at,
-    passage.bent,
-    passage.root_from,
-    passage.is_last,
-    passage.moved,
-    passage.past_next,
-    passage.next_below,
+    machine_stand.stand_at,
+    machine_stand.bent,
+    machine_stand.root_from,
+    machine_stand.is_last,
+    machine_stand.moved,
+    machine_stand.past_next,
+    machine_stand.next_below,
     passage.root_between,
     passage.root_below,
     passage.rise,
     passage.sink,
     passage.record,
     passage.arrive,
-    passage.rounded,
+    machine_stand.rounded,
     machine_jumps.peak_before,
     machine_jumps.through_jumps,
     passage.follow,
@@ -104,7 +104,7 @@ def separations_of(
             turns.append(h)
         events = detachments if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
-        search = passage.Search(machine, asperities, memory, events, first_touch, top, beside)
+        search = machine_stand.Search(machine, asperities, memory, events, first_touch, top, beside)
         filled = separation[leg.first : leg.first + leg.demand.size]
         room = _room(events.size + 1 if jumps and kernels.adhesive else 0)
         compiled.follow(h, leg.demand, not leg.rises, search, filled, room)
@@ -121,10 +121,10 @@ def separations_of(
     return separation, found
 
 
-def _room(count: int) -> passage.Jumps:
+def _room(count: int) -> machine_stand.Jumps:
     """Return room for the jumps of a leg."""
     steps = np.zeros(count, dtype=np.int64)
-    return passage.Jumps(np.zeros(1, dtype=np.int64), steps, np.empty((count, 2)), np.empty(count))
+    return machine_stand.Jumps(np.zeros(1, dtype=np.int64), steps, np.empty((count, 2)), np.empty(count))
 
 
 def _memory(turns: list[float]) -> response.Memory:

@@ -6,10 +6,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
-from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.separation import CLEAR, Separation, SeparationReader, Target
-from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.schema.faults import mismatch
+from roughmdr.schema.quantities import Quantity, Section, WholeNumber
 from roughmdr.variables import CONTROLS
 
 _START = SeparationReader(clear=True, other=f', or "{CLEAR}"')
@@ -104,13 +105,14 @@ class FlatPath(Section):
     @model_validator(mode="after")
     def _one_control(self) -> "FlatPath":
         given = [name for name in CONTROLS if getattr(self, name) is not None]
-        if len(given) != 1:
-            got = " and ".join(given) or "none"
-            raise RoughmdrError(f"takes exactly one of {', '.join(CONTROLS)}; got {got}")
-        if (self.machine_stiffness is not None) != (given == ["remote"]):
-            if self.machine_stiffness is None:
-                raise RoughmdrError("needs machine_stiffness, that of the spring that remote moves the far end of")
-            raise EntryError("machine_stiffness", self.machine_stiffness, "goes with remote only")
+        if not given:
+            raise mismatch("path.separation", "is missing")
+        if len(given) > 1:
+            raise mismatch(f"path.{given[1]}", f"does not go with path.{given[0]}: a path controls one of the two")
+        if self.machine_stiffness is None and given == ["remote"]:
+            raise mismatch("path.machine_stiffness", "is missing")
+        if self.machine_stiffness is not None and given != ["remote"]:
+            raise mismatch("path.machine_stiffness", "goes with path.remote only, the far end of the spring")
         return self
 
     @property

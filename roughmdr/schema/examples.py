@@ -31,6 +31,13 @@ _KEYS = {
     "path.separation.start": '"4 sigma"',
     "path.separation.stop": '"0 sigma"',
     "path.separation.steps": "200",
+    "path.force.stop": '"1 mN"',
+    "path.force.steps": "200",
+    "path.pressure.stop": '"1 MPa"',
+    "path.pressure.steps": "200",
+    "path.remote.stop": '"-2 sigma"',
+    "path.remote.steps": "200",
+    "path.machine_stiffness": '"1 kN/m"',
     **{f"{section}.{key}": value for section, keys in _SECTIONS.items() for key, value in keys.items()},
 }
 

@@ -117,7 +117,7 @@ def _curves(data: Labelled) -> Iterator[str]:
                 found = True
                 yield from _mismatches(part, data.variables[part], dims, "f")
     if not found:
-        yield f"it has none of {', '.join(LAW_VARIABLES)}"
+        yield f"it has none of {', '.join(CURVE_VARIABLES)}"
 
 
 def _pull_offs(data: Labelled) -> Iterator[str]:

@@ -53,7 +53,7 @@ def test_a_realisation_equals_the_ensemble_pressed_alone(base: xr.Dataset) -> No
     data = rm.generate(asked.asperities, seed=7, realization=4)
     alone = rm.load_separation(
         data,
-        separation=asked.path.separations(1e-6),
+        separation=asked.path.values(1e-6),
         effective_modulus=asked.effective_modulus,
         work=asked.work,
         unload=True,

@@ -115,6 +115,16 @@ BASES: dict[str, dict[str, Any]] = {
         }
         for target, value in (("contact_fraction", 0.02), ("pressure", "1 kPa"))
     },
+    "a load": {**SCENE, "path": {"force": {"start": "0 N", "stop": "1 uN", "steps": 9}, "unload": True, "hold": 2}},
+    "a pressure": {**SCENE, "path": {"pressure": {"start": "0 Pa", "stop": "1 Pa", "steps": 9}}},
+    "a spring": {
+        **SCENE,
+        "path": {
+            "remote": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 9},
+            "machine_stiffness": "1 kN/m",
+            "unload": True,
+        },
+    },
 }
 MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
 NONSENSE: dict[str, object] = {

@@ -77,13 +77,14 @@ def reference(rough: Rough, *, quick: bool) -> Reference:
 
 def simulate(rough: Rough, estimator: str, realization: int = 0) -> Curve:
     """Compute one realisation, or the expected curve."""
-    found = simulate_realization(*_cell(rough), realization, VARIABLES, estimator)
+    cell = _cell(rough)
+    found = simulate_realization(cell.scene, cell.path, realization, VARIABLES, estimator)
     return Curve(found.variables["force"], found.variables["contact_area"], found.visits)
 
 
 def _by_nodes(rough: Rough, order: float) -> Callable[[], Curve]:
     """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
-    scene, path = _cell(rough)
+    scene, path, _ = _cell(rough)
     problem = Problem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
 
     def action() -> Curve:

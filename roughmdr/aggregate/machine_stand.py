@@ -1,0 +1,143 @@
+"""The flat on a machine at one separation: what it demands there, and where it would demand something else."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.aggregate.block import law
+from roughmdr.aggregate.response import Asperities, Memory, Response
+from roughmdr.loading.machine import Machine
+from roughmdr.numerics.arguments import Floats
+
+_LAST = 4.0  # roundings: a shorter step of Newton's method is the last
+_GRID = 2.0**-45  # of the distance to the highest place of contact: the last digit of a separation
+_DOUBTFUL = 2.0**-3  # of that: nearer to the middle of two such separations the demand there decides
+_NEGLIGIBLE = 2.0**-51  # of that distance: so far from its root the search may end
+_NEAR = 2.0**-25  # of that distance: so far from its root it may end if the bend leaves so little
+_MOST_BENT = 0.25  # change of the slope on the way to a root, over the slope, that its bend may tell
+
+
+class Stand(NamedTuple):
+    """Where the flat stands, or a separation that it is tried at."""
+
+    h: float
+    """[m]"""
+    demand: float
+    """[m] or [N], as of ``Machine``."""
+    slope: float
+    """d(demand)/dh."""
+    bound: float
+    """Upper bound of the slope for these contacts at a higher flat."""
+    parted: bool
+    """Whether no contact is left."""
+    bend: float
+    """d(slope)/dh; NaN where it is not known."""
+    twist: float
+    """How much that may be off."""
+
+
+class Search(NamedTuple):
+    """A leg on which passages are sought."""
+
+    machine: Machine
+    asperities: Asperities
+    memory: Memory
+    events: Floats
+    """Separations [m], ascending, at which contacts are lost on the way up, or made on the way down."""
+    first_touch: float
+    """The separation [m] at which the first contact is made."""
+    top: float
+    """A separation [m] at or above all at which there is contact."""
+    beside: float
+    """A few roundings of any separation [m]."""
+
+
+class Jumps(NamedTuple):
+    """The jumps of a leg, and room for more; no room at all where they are not asked for."""
+
+    number: NDArray[np.int64]
+    """How many there are."""
+    step: NDArray[np.int64]
+    """Before which step of the leg each is."""
+    limits: Floats
+    """Separations [m] before and after each, [jump, 2]; inf after it where a dead load pulls off."""
+    demand: Floats
+    """The demand of the machine at each."""
+
+
+def stand_at(h: float, falls: bool, search: Search) -> Stand:
+    """Try the flat at h."""
+    answer: Response = law.response(h, falls, search.asperities, search.memory)
+    w, c = search.machine
+    parted = answer.bound == 0.0 and answer.stiffness == 0.0 and answer.force == 0.0
+    return Stand(
+        h, w * h - c * answer.force, w + c * answer.stiffness, w + c * answer.bound, parted, math.nan, math.nan
+    )
+
+
+def bent(at: Stand, before: Stand) -> Stand:
+    """Return a stand with the bend of the demand, of which nothing jumps between it and one before."""
+    way = at.h - before.h
+    if way == 0.0:
+        return at
+    bend = (at.slope - before.slope) / way
+    twist = 12.0 * abs((at.demand - before.demand) / way - 0.5 * (at.slope + before.slope)) / abs(way)
+    return Stand(at.h, at.demand, at.slope, at.bound, at.parted, bend, twist)
+
+
+def root_from(at: Stand, target: float) -> float:
+    """Return where the demand is ``target`` by its slope and, if that is known, its bend; NaN where it falls."""
+    if not at.slope > 0.0:
+        return math.nan
+    way = (target - at.demand) / at.slope
+    turn = 0.5 * at.bend / at.slope * way
+    return at.h + (way * (1.0 - turn) if abs(turn) < _MOST_BENT else way)
+
+
+def is_last(at: Stand, root: float, search: Search) -> bool:
+    """Return whether a root is so near that the demand need not be looked at there."""
+    way, distance = abs(root - at.h), abs(search.top - root)
+    if way <= _LAST * np.spacing(max(abs(at.h), abs(root))):
+        return True
+    turn = at.bend / at.slope * way
+    off = turn * turn * way + at.twist / at.slope * way * way
+    return bool(way <= _NEAR * distance and off <= _NEGLIGIBLE * distance)
+
+
+def moved(at: Stand, root: float, target: float) -> Stand:
+    """Return the stand at a root that is so near that nothing is computed there."""
+    slope = at.slope + at.bend * (root - at.h) if not math.isnan(at.bend) else at.slope
+    return Stand(root, target, slope, at.bound, at.parted, at.bend, at.twist)
+
+
+def past_next(search: Search, h: float) -> float:
+    """Return a separation just past the next detachment above h; inf where there is none."""
+    number = np.searchsorted(search.events, h - search.beside, side="right")
+    return search.events[number] + search.beside if number < search.events.size else math.inf
+
+
+def next_below(search: Search, h: float) -> float:
+    """Return the next touch below h; -inf where there is none."""
+    number = np.searchsorted(search.events, h, side="left")
+    return search.events[number - 1] if number > 0 else -math.inf
+
+
+def rounded(at: Stand, target: float, falls: bool, search: Search) -> float:
+    """Return the separation [m] with so many digits that it does not depend on where the search for it began."""
+    if at.h == math.inf or at.parted:
+        return at.h
+    h = at.h
+    off = search.top - h
+    grid = max(math.ldexp(_GRID, math.ceil(math.log2(off))), search.beside) if 0.0 < off < math.inf else 0.0
+    if grid == 0.0:
+        return h
+    number = math.floor(off / grid)
+    part = off / grid - number
+    if abs(part - 0.5) < _DOUBTFUL:
+        middle = law.stand_at(search.top - (number + 0.5) * grid, falls, search)
+        part = 0.0 if middle.demand < target else 1.0
+    near: float = search.top - (number + (1.0 if part > 0.5 else 0.0)) * grid
+    crossed = law.next_below(search, max(h, near)) >= min(h, near)
+    return h if crossed else near
