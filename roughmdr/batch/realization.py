@@ -2,7 +2,6 @@
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
-from roughmdr.errors import RoughmdrError
 from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
 
@@ -30,7 +29,16 @@ def simulate_realization(
 
         modulus, adhesion = scene.effective_modulus, scene.adhesion_model
         if isinstance(path, MachinePath):
-            raise RoughmdrError("the expected law under a machine is not available")
+            from roughmdr.expected.under_machine import compute_under_machine
+
+            return compute_under_machine(
+                scene.asperities,
+                path,
+                effective_modulus=modulus,
+                adhesion=adhesion,
+                interaction=scene.interaction_model,
+                variables=variables,
+            )
         return expected.compute(
             scene.asperities,
             path,

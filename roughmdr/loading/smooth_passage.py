@@ -11,18 +11,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.errors import OutOfRange
+from roughmdr.errors import OutOfRange, TooMuchContact
 from roughmdr.loading.machine import Leg, Machine, legs_of
 from roughmdr.numerics.arguments import Floats
 
 _POINTS = 32  # intervals of a leg at first
-_MAX_ROUNDS, _MAX_DOUBLINGS = 30, 60
-_RTOL = 2e-14  # of the distance to the first touch: a shorter move is the last
+_MAX_ROUNDS, _MAX_EXTENSIONS, _MAX_HALVINGS = 30, 200, 8
+_GROWTH, _BEYOND = 1.4, 1.05  # of a step further down: over the last, and over the one by the slope
+_RTOL = 1e-13  # of the distance to the first touch: a shorter move is the last
 _BISECTIONS = 50
 _FIRST = 2.0**-6  # of the depth scale: how far the flat is tried below first touch
 
 ForceAndStiffness = Callable[[Floats, Floats], tuple[Floats, Floats]]
-"""(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness [N/m]."""
+"""(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness -dF/dh [N/m].
+
+The stiffness is NaN where it is not known, as that of a mean law in which contacts are made and lost all along.
+"""
 
 
 class Table(NamedTuple):
@@ -81,28 +85,38 @@ class _Search:
         for _ in range(_MAX_ROUNDS):
             before = h
             h, flown = _first_passages(table, target)
-            if flown.any() and not self._machine.is_dead_load:
-                h = np.where(flown, demand, h)  # all contacts are lost
+            if flown.any():  # all contacts are lost, or as good as all
+                h = np.where(flown, np.where(demand > 0.0, np.inf, end) if self._machine.is_dead_load else demand, h)
             moved = ~flown & ~(np.abs(h - before) <= _RTOL * np.abs(h - begin) + 4.0 * np.spacing(np.abs(h)))
             new = np.setdiff1d(h[~flown & moved], table.h)
             if not new.size:
-                return np.where(flown & self._machine.is_dead_load, np.inf, h)
+                return h
             table = self._with(table, new)
         raise OutOfRange("path: the separations under the machine do not converge")
 
     def _to_end(self, last: float, begin: float, end: float) -> Table:
         """Return the law from the begin to where the last demand is passed, or all contacts are lost."""
         table = self._with(None, np.linspace(begin, end, _POINTS + 1))
-        for _ in range(_MAX_DOUBLINGS if not self._rises else 0):
-            if table.demand[-1] <= last:
-                break
-            low = float(table.h[-1])
-            further = np.linspace(low, low + 2.0 * (low - begin), _POINTS // 2 + 1)[1:]
-            table = self._with(table, further)
-        else:
-            if not self._rises:
-                raise OutOfRange("path: the load is out of reach of these contacts")
-        return table
+        if self._rises:
+            return table
+        step = begin - end
+        for _ in range(_MAX_EXTENSIONS):
+            excess, low = float(table.demand[-1]) - last, float(table.h[-1])
+            if excess <= 0.0:
+                return table
+            fall = -float(table.slope[-1])
+            step = min(_GROWTH * step, _BEYOND * excess / fall) if fall > 0.0 else _GROWTH * step
+            table, step = self._extended(table, low, max(step, _POINTS * float(np.spacing(abs(low)))))
+        raise OutOfRange("path: the load is out of reach of these contacts")
+
+    def _extended(self, table: Table, low: float, step: float) -> tuple[Table, float]:
+        """Return the table with separations down to a step below the lowest, or less if that is too much contact."""
+        for _ in range(_MAX_HALVINGS):
+            try:
+                return self._with(table, np.linspace(low, low - step, _POINTS // 4 + 1)[1:]), step
+            except TooMuchContact as error:
+                refused, step = error, 0.5 * step
+        raise refused
 
     def _with(self, table: Table | None, h: Floats) -> Table:
         """Return the table with more separations."""
@@ -111,10 +125,12 @@ class _Search:
         demand, slope = self._machine.demand(h, force), self._machine.slope(stiffness)
         sign = -1.0 if self._rises else 1.0
         new = Table(h, sign * demand, -slope)
-        if table is None:
-            return new
-        order = np.argsort(sign * -np.concatenate([table.h, h]), kind="stable")
-        return Table(*(np.concatenate(pair)[order] for pair in zip(table, new, strict=True)))
+        if table is not None:
+            order = np.argsort(sign * -np.concatenate([table.h, h]), kind="stable")
+            new = Table(*(np.concatenate(pair)[order] for pair in zip(table, new, strict=True)))
+        if np.isnan(slope).any():
+            new = new._replace(slope=np.gradient(new.demand, np.abs(new.h - new.h[0]), edge_order=2))
+        return new
 
 
 def _first_passages(table: Table, target: Floats) -> tuple[Floats, NDArray[np.bool_]]:

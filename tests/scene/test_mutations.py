@@ -116,7 +116,7 @@ BASES: dict[str, dict[str, Any]] = {
         for target, value in (("contact_fraction", 0.02), ("pressure", "1 kPa"))
     },
     "a load": {**SCENE, "path": {"force": {"start": "0 N", "stop": "1 uN", "steps": 9}, "unload": True, "hold": 2}},
-    "a pressure": {**SCENE, "path": {"pressure": {"start": "0 Pa", "stop": "1 Pa", "steps": 9}}},
+    "a pressure": {**SCENE, "path": {"pressure": {"start": "0 Pa", "stop": "1 Pa", "steps": 9}, "unload": False}},
     "a spring": {
         **SCENE,
         "path": {

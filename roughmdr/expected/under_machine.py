@@ -1,0 +1,64 @@
+"""The expected law of asperities whose flat hangs on a machine: that of a surface without end."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath, LoadSeparation
+from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.ensemble import Source
+from roughmdr.errors import OutOfRange, SceneError
+from roughmdr.expected.compute import compute
+from roughmdr.interaction.settings import Interaction
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.smooth_passage import separations_of
+from roughmdr.numerics.arguments import Floats
+
+_CHANCE = 1e-9  # that an asperity is higher than where the search begins
+_LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
+
+
+def compute_under_machine(
+    source: Source,
+    path: MachinePath,
+    *,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    variables: Iterable[str],
+    interaction: Interaction | None = None,
+) -> LoadSeparation:
+    """Return the expected law along the path of a machine, with the separation; arguments and errors as ``compute``.
+
+    SceneError for an energy that jumps lose: the jumps of a mean law are not those of patches.
+    """
+    names = list(variables)
+    if lost := sorted(_LOSSES.intersection(names)):
+        raise SceneError(f"variables: {', '.join(lost)} of an expected law under a machine are not available")
+
+    def along(separation: Floats, names: list[str]) -> LoadSeparation:
+        return compute(
+            source,
+            LoadingPath.along(separation, unload=False, adhesive=path.adhesive),
+            effective_modulus=effective_modulus,
+            adhesion=adhesion,
+            variables=names,
+            interaction=interaction,
+        )
+
+    def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
+        found = along(np.concatenate([turns, separation]), ["force", "stiffness"]).variables
+        force, stiffness = (found[name][turns.size :] for name in ("force", "stiffness"))
+        return force, np.full_like(stiffness, np.nan) if path.adhesive else stiffness
+
+    extreme = source.extremes(_CHANCE)
+    first_touch = float(extreme.height.max()) + (adhesion.range if adhesion.cohesive else 0.0)
+    clear = clear_separation(extreme, effective_modulus, adhesion)
+    if not np.isfinite(clear):
+        raise OutOfRange("the contact of asperities as extreme as there may be is not representable")
+    depth = source.sigma or float(extreme.nondimensional().rise[0])
+    separation = separations_of(law, path.demand, path.machine, first_touch, max(clear, first_touch), depth)
+    flown = np.isinf(separation)
+    separation = np.where(flown, max(clear, first_touch), separation)
+    found = along(separation, [name for name in names if name != "separation"])
+    return found._replace(variables={**found.variables, "separation": np.where(flown, np.nan, separation)})
