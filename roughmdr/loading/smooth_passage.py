@@ -23,9 +23,9 @@ _BISECTIONS = 50
 _FIRST = 2.0**-6  # of the depth scale: how far the flat is tried below first touch
 
 ForceAndStiffness = Callable[[Floats, Floats], tuple[Floats, Floats]]
-"""(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness -dF/dh [N/m].
+"""(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness [N/m].
 
-The stiffness is NaN where it is not known, as that of a mean law in which contacts are made and lost all along.
+The stiffness is -dF/dh, NaN where it is not known, as of a mean law in which contacts are made and lost all along.
 """
 
 
