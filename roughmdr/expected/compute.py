@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, STIFFNESS, TOTAL_INDEX
+from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, MACHINE, STIFFNESS, TOTAL_INDEX
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -143,7 +143,7 @@ def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
 
     They are the force, the area, the count and all others that are asked for but the energy lost in jumps.
     """
-    asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] != DISSIPATED)]
+    asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] not in (DISSIPATED, MACHINE))]
     needed = (AREA, COUNT)
     return tuple(dict.fromkeys([*asked, *needed])), tuple(row for row in needed if row not in asked)
 

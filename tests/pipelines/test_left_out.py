@@ -58,7 +58,7 @@ def test_what_is_counted_with_nothing_forced_on_is_a_run(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_only_asperities_within_reach_are_visited(studied: Studied, name: str) -> None:
     scene = scene_of(ASPERITIES, **SCENES[name])
-    loading = scene.path.separations(scene.asperities.sigma)
+    loading = scene.path.values(scene.asperities.sigma)
     ensemble = scene.asperities.ensemble(scene.seed, 0)
     reduced = np.pi**2 * (scene.work / scene.effective_modulus) ** 2 * ensemble.parameters["radius"]
     deepest = (0.75 * np.cbrt(reduced)).max()  # |delta_c| of a paraboloid; all are visited down to the deepest
