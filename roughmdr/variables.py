@@ -61,11 +61,32 @@ DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
 SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
 """A variable where a machine moves the flat, else a coordinate."""
 
-LAW_VARIABLES = {SEPARATION.name: SEPARATION, **CURVE_VARIABLES}
+REMOTE = Variable(
+    "remote", "m", "far end of the machine's spring above the datum plane, where its force is 0 at the flat"
+)
+"""A coordinate where a path controls it, a variable where it follows from a preload."""
+
+LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES}
 """Variables that a result can have over its steps."""
 
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
 """Quantities that a path can control, with their units: the last three by a machine."""
+
+TRAVEL = Variable("travel", "1", "way of the flat, or of the far end of its spring: clear at 0, at the preload at 1")
+"""The coordinate of a path to a preload, which each realisation reaches at a separation of its own."""
+
+PRELOADS = {
+    "preload": ("force", "N"),
+    "preload_pressure": ("pressure", "Pa"),
+    "preload_contact_fraction": ("contact_fraction", "1"),
+}
+"""Preloads that a path can lead to: the quantity that loading goes on to, and its unit."""
+
+DEFAULT_STEPS = 200
+"""Of the loading to a preload."""
+
+STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units}
+"""Coordinates that a result can have over its steps, with their units."""
 
 ASPERITY = _declare(
     ("indentation", "m", "approach past first touch, positive pressed in"),
@@ -93,11 +114,10 @@ FIELDS = _declare(
 COORDINATES = _declare(
     ("separation", "m", "rigid flat above the datum plane"),
     ("branch", "", "direction in which the flat moved"),
-    ("remote", "m", "far end of the machine's spring above the datum plane, where its force is 0 at the flat"),
     ("height", "m", "summit height above the datum plane"),
     ("x", "m", "x of the summit"),
     ("y", "m", "y of the summit"),
-)
+) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL}
 
 DONE, FAILED, NOT_RUN = range(3)
 """Codes of ``status``."""

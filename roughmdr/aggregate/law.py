@@ -83,6 +83,10 @@ class LoadSeparation(NamedTuple):
         extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
         return cls(results, relative, model_error, extremes, visits, tabor, model)
 
+    def only(self, names: list[str]) -> LoadSeparation:
+        """Return the law with these variables, in this order."""
+        return self._replace(variables={name: self.variables[name] for name in names})
+
 
 def _over_area(name: str, total: Floats, area: float) -> Floats:
     with np.errstate(over="ignore"):  # refused below

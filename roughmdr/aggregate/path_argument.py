@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import AdhesiveMaterial
-from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.machine import MachinePath, Preload, travel
 from roughmdr.loading.path import LoadingPath
-from roughmdr.schema.arguments import check_number, check_values, exactly_one
-from roughmdr.variables import CONTROLS
+from roughmdr.schema.arguments import check_number, check_steps, check_values, exactly_one
+from roughmdr.variables import CONTROLS, DEFAULT_STEPS, PRELOADS
 
 
 class MachineArguments(TypedDict, total=False):
@@ -20,6 +20,10 @@ class MachineArguments(TypedDict, total=False):
     pressure: ArrayLike | None
     remote: ArrayLike | None
     machine_stiffness: float | str | None
+    preload: float | str | None
+    preload_pressure: float | str | None
+    preload_contact_fraction: float | None
+    steps: int | None
 
 
 class LawArguments(AdhesiveMaterial, MachineArguments, total=False):
@@ -34,23 +38,31 @@ def path_of(
     RoughmdrError unless exactly one control is given, and a machine's stiffness with "remote" alone; OutOfRange for a
     number; SceneError for a pressure without nominal area.
     """
-    machines = {name: given.pop(name, None) for name in CONTROLS if name != "separation"}  # type: ignore[misc]
-    stiffness = given.pop("machine_stiffness", None)
+    names = [*(name for name in CONTROLS if name != "separation"), *PRELOADS]
+    machines = {name: given.pop(name, None) for name in names}  # type: ignore[misc]
+    stiffness, steps = given.pop("machine_stiffness", None), given.pop("steps", None)
     control, raw = exactly_one("load_separation", separation=separation, **machines)
-    values = np.atleast_1d(check_values(control, raw, CONTROLS[control]))
+    if control == "remote" and stiffness is None:
+        raise RoughmdrError("machine_stiffness is missing; remote needs it")
+    if control != "remote" and control not in PRELOADS and stiffness is not None:
+        raise RoughmdrError("machine_stiffness goes with remote or a preload only")
+    if control not in PRELOADS and steps is not None:
+        raise RoughmdrError(f"steps goes with a preload only; {control} holds its own")
+    spring = None if stiffness is None else check_number("machine_stiffness", stiffness, "N/m")
+    per_area = control in ("pressure", "preload_pressure", "preload_contact_fraction")
+    if per_area and area is None:
+        raise SceneError(f"ensemble: attribute nominal_area is missing; {control} needs it")
+    if control in PRELOADS:
+        values = travel(DEFAULT_STEPS if steps is None else check_steps(steps))
+    else:
+        values = np.atleast_1d(check_values(control, raw, CONTROLS[control]))
     if values.size == 0:
         raise OutOfRange(f"{control} is empty; it must hold at least one number")
-    if (stiffness is None) == (control == "remote"):
-        got = "goes with remote only" if stiffness is not None else "is missing; remote needs it"
-        raise RoughmdrError(f"machine_stiffness {got}")
     if control == "separation":
         return LoadingPath.along(values, unload=unload, adhesive=adhesive)
-    if control == "pressure" and area is None:
-        raise SceneError("ensemble: attribute nominal_area is missing; a path of pressures needs it")
-    return MachinePath.along(
-        control,
-        np.concatenate([values, values[::-1]]) if unload else values,
-        machine_stiffness=check_number("machine_stiffness", stiffness, "N/m") if stiffness is not None else 0.0,
-        area=area or 1.0,
-        adhesive=adhesive,
-    )
+    values = np.concatenate([values, values[::-1]]) if unload else values
+    if control in PRELOADS:
+        quantity, unit = PRELOADS[control]
+        preload = Preload(quantity, check_number(control, raw, unit))
+        return MachinePath.to_preload(values, preload, machine_stiffness=spring, adhesive=adhesive)
+    return MachinePath.along(control, values, machine_stiffness=spring or 0.0, area=area or 1.0, adhesive=adhesive)

@@ -8,17 +8,22 @@ from roughmdr.aggregate.compute import compute
 from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.machine_loss import machine_loss
+from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import Jump, separations_of
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import SceneError
+from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading import smooth_passage
-from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
+
+OF_MACHINE = {"separation", "remote"}
+"""Variables that the machine gives."""
+_LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
 
 
 def simulate(
@@ -35,7 +40,8 @@ def simulate(
     That is NaN where a dead load has pulled the flat off. Errors as ``compute``.
     """
     names = list(variables)
-    if isinstance(path, LoadingPath):
+
+    def along(path: LoadingPath, names: list[str]) -> LoadSeparation:
         return compute(
             ensemble,
             path,
@@ -44,28 +50,35 @@ def simulate(
             variables=names,
             interaction=interaction,
         )
-    lossy = not {"dissipated_energy", "machine_dissipated_energy"}.isdisjoint(names)
-    separation, jumps = _separations(ensemble, path, effective_modulus, adhesion, interaction, jumps=lossy)
-    flown, clear = np.isinf(separation), clear_separation(ensemble, effective_modulus, adhesion)
-    separation = np.where(flown, clear, separation)
 
-    def along(separation: Floats, names: list[str]) -> LoadSeparation:
-        return compute(
-            ensemble,
-            LoadingPath.along(separation, unload=False, adhesive=path.adhesive),
-            effective_modulus=effective_modulus,
-            adhesion=adhesion,
-            variables=names,
-            interaction=interaction,
-        )
+    if isinstance(path, LoadingPath):
+        return along(path, names)
+    clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
 
-    law = along(separation, [name for name in names if name != "separation"])
-    variables = {**law.variables, "separation": np.where(flown, np.nan, separation)}
-    if jumps:
-        lost = machine_loss(path.machine, jumps, separation, clear, along)
-        losing = {"dissipated_energy", "machine_dissipated_energy"}.intersection(names)
-        variables |= {name: variables[name] + lost for name in losing}
-    return law._replace(variables=variables)
+    def under(path: MachinePath, names: list[str]) -> LoadSeparation:
+        lossy = not _LOSSES.isdisjoint(names)
+        separation, jumps = _separations(ensemble, path, effective_modulus, adhesion, interaction, jumps=lossy)
+        flown = np.isinf(separation)
+        separation = np.where(flown, clear, separation)
+        law = along(_way(separation, path), [name for name in names if name not in OF_MACHINE])
+        variables = {**law.variables, "separation": np.where(flown, np.nan, separation), "remote": path.demand}
+        if jumps:
+            lost = machine_loss(path.machine, jumps, separation, clear, lambda h, names: along(_way(h, path), names))
+            variables |= {name: variables[name] + lost for name in _LOSSES.intersection(names)}
+        return law._replace(variables=variables).only(names)
+
+    if path.preload is not None:
+        if not ensemble.height.size:
+            raise OutOfRange("path: without asperities no preload is reached")
+        depth = ensemble.spread or float(ensemble.nondimensional().rise[0])
+        coupled = interaction is not None and interaction.model == "pairwise"
+        path = to_preload(path, Specimen(under, clear, depth, ensemble.nominal_area, coupled))
+    return under(path, names)
+
+
+def _way(separation: Floats, path: MachinePath) -> LoadingPath:
+    """Return the path of the flat that a machine moves."""
+    return LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
 
 
 def _separations(
@@ -78,6 +91,8 @@ def _separations(
     jumps: bool,
 ) -> tuple[Floats, list[Jump]]:
     """Return the separation at each step of a machine, and its jumps; inf where a dead load has pulled the flat off."""
+    if path.machine == FIXED_GRIPS:
+        return path.demand, []
     columns = ensemble.nondimensional()
     validity = jkr_validity(ensemble.shape, ensemble.spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)

@@ -12,7 +12,7 @@ from roughmdr.batch.path_ends import PathFinder
 from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
-from roughmdr.loading.machine import MachinePath, attributes_of
+from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
@@ -34,6 +34,11 @@ class Cell(NamedTuple):
     def controlled(self) -> LoadingPath | MachinePath:
         """The path that is controlled."""
         return self.path if self.machine is None else self.machine
+
+    @property
+    def fixed_grips(self) -> bool:
+        """Whether nothing gives way between the flat and what moves it."""
+        return self.machine is None or self.machine.machine == FIXED_GRIPS
 
     @property
     def values(self) -> Floats:

@@ -4,25 +4,20 @@ It is sought in the expected law where the asperities have one, else in a strati
 drawn, in the asperities themselves. Asperities that feel each other do so in pairs, as precisely as they are asked to.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
-from roughmdr.errors import Fault, RoughmdrError, SceneError, TooMuchContact
+from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.loading.first_reached import Law, OutOfReach, first_reached
 from roughmdr.model_error.refusal import Givens, likely_cause
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import Target
 
-_POINTS = 16  # separations that the law is computed at together
 _RTOL = 1e-14  # of the distance from the start
-_MAX_DOUBLINGS = 60
 _MOST_OF_PATCH = 0.3  # of the nominal area: a contact that is none of many
 _FIRST = 1e-6  # of the width of an asperity: the first distance where all summits are at the start
-
-_Law = Callable[[Floats], Floats]
 
 
 def target_stop(scene: Scene, target: Target, start: float) -> float:
@@ -37,7 +32,8 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
     scene, pairwise = scene.without_grid, scene.interaction_model if scene.needs_positions else None
     rtol = _RTOL if pairwise is None else pairwise.error
     try:
-        stop = _first_reached(_law(scene, [target.variable], start), target, start, max(distances), rtol)
+        law = _law(scene, [target.variable], start)
+        stop = first_reached(law, target.value, start, max(distances), rtol, target.variable)
         at_stop = (_law(scene, [name], start)(np.array([stop]))[0] for name in ("contact_fraction", "contact_count"))
         fraction, contacts = map(float, at_stop)
         if fraction > _MOST_OF_PATCH * contacts:
@@ -47,11 +43,13 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
         return stop
     except SceneError:
         raise
+    except OutOfReach as error:
+        raise _fault(target, str(error)) from error
     except RoughmdrError as error:
         raise _fault(target, f"cannot be looked for: {error}") from error
 
 
-def _law(scene: Scene, names: list[str], start: float) -> _Law:
+def _law(scene: Scene, names: list[str], start: float) -> Law:
     """Return the function: falling separations [m] -> the variable there, in loading from ``start`` [m]."""
     source, variable = scene.asperities, names[0]
 
@@ -63,46 +61,6 @@ def _law(scene: Scene, names: list[str], start: float) -> _Law:
     stratified = source.is_random and not source.reason_against("stratified")
     ensemble = source.ensemble(scene.seed, 0, stratified=stratified, with_positions=scene.needs_positions)
     return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
-
-
-def _first_reached(law: _Law, target: Target, start: float, distance: float, rtol: float) -> float:
-    """Return the largest separation [m] with the target, by search in ever longer and then ever shorter intervals."""
-    if law(np.array([start]))[0] >= target.value:
-        raise _fault(target, f"is reached above the start, {start:.4g} m; start must be higher")
-    above, below, most = start, start - distance, 0.0
-    for _ in range(_MAX_DOUBLINGS):
-        h, values = _between(law, above, below)
-        if (values >= target.value).any():
-            break
-        most = max(most, float(values.max()))
-        above, below, distance = below, below - 2.0 * distance, 2.0 * distance
-    else:
-        raise _fault(target, f"is out of reach: the largest {target.variable} of these asperities is {most:.4g}")
-    while True:
-        first = int(np.argmax(values >= target.value))
-        above, below = float(h[first - 1]) if first else above, float(h[first])
-        resolution = max(rtol * (start - below), float(np.spacing(max(abs(above), abs(below)))))
-        if above - below <= resolution:
-            return below
-        h, values = _between(law, above, below)
-
-
-def _between(law: _Law, above: float, below: float) -> tuple[Floats, Floats]:
-    """Return separations [m] from next to ``above`` to ``below``, and the law there."""
-    h = np.linspace(above, below, _POINTS + 1)[1:]
-    return h, _capped(law, h)
-
-
-def _capped(law: _Law, separations: Floats) -> Floats:
-    """Return the law at falling separations [m]: inf where there would be more contact than nominal area."""
-    try:
-        return law(separations)
-    except TooMuchContact:
-        if separations.size == 1:
-            return np.array([np.inf])
-        half = separations.size // 2
-        first, rest = _capped(law, separations[:half]), np.full(separations.size - half, np.inf)
-        return np.concatenate([first, _capped(law, separations[half:]) if np.isfinite(first[-1]) else rest])
 
 
 def _fault(target: Target, message: str) -> SceneError:

@@ -13,8 +13,11 @@ from roughmdr.scene import Scene
 def machine_path(cell: Scene, values: Floats) -> MachinePath:
     """Return the path of a machine that controls these values, in SI; SceneError where it needs a nominal area."""
     path, area = cell.path, cell.asperities.nominal_area
-    if path.control == "pressure" and area is None:
-        raise SceneError.of([Fault("path.pressure", "", "needs a nominal area, which these asperities do not have")])
+    if path.area_key and area is None:
+        raise SceneError.of([Fault(path.area_key, "", "needs a nominal area, which these asperities do not have")])
+    if path.to_preload:
+        stiffness, adhesive = path.machine_stiffness, cell.work > 0.0
+        return MachinePath.to_preload(values, path.to_preload, machine_stiffness=stiffness, adhesive=adhesive)
     return MachinePath.along(
         path.control,
         values,
@@ -41,7 +44,7 @@ def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
             variables=["separation"],
         )
     except RoughmdrError as error:
-        raise SceneError.of([Fault(f"path.{machine.control}", "", f"cannot be followed: {error}")]) from error
+        raise SceneError.of([Fault(f"path.{cell.path.key}", "", f"cannot be followed: {error}")]) from error
     clear = clear_separation(ensemble, cell.effective_modulus, adhesion)
     separation = np.where(np.isnan(law.variables["separation"]), clear, law.variables["separation"])
     return LoadingPath.along(separation, unload=False, adhesive=machine.adhesive)

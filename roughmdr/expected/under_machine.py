@@ -6,12 +6,14 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.aggregate.preload import Specimen, to_preload
+from roughmdr.aggregate.simulate import OF_MACHINE
 from roughmdr.ensemble import Source
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.expected.compute import compute
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.loading.smooth_passage import separations_of
 from roughmdr.numerics.arguments import Floats
 
@@ -33,8 +35,15 @@ def compute_under_machine(
     SceneError for an energy that jumps lose: the jumps of a mean law are not those of patches.
     """
     names = list(variables)
-    if lost := sorted(_LOSSES.intersection(names)):
+    if path.machine != FIXED_GRIPS and (lost := sorted(_LOSSES.intersection(names))):
         raise SceneError(f"variables: {', '.join(lost)} of an expected law under a machine are not available")
+    extreme = source.extremes(_CHANCE)
+    first_touch = float(extreme.height.max()) + (adhesion.range if adhesion.cohesive else 0.0)
+    clear = clear_separation(extreme, effective_modulus, adhesion)
+    if not np.isfinite(clear):
+        raise OutOfRange("the contact of asperities as extreme as there may be is not representable")
+    clear = max(clear, first_touch)
+    depth = source.sigma or float(extreme.nondimensional().rise[0])
 
     def along(separation: Floats, names: list[str]) -> LoadSeparation:
         return compute(
@@ -51,14 +60,16 @@ def compute_under_machine(
         force, stiffness = (found[name][turns.size :] for name in ("force", "stiffness"))
         return force, np.full_like(stiffness, np.nan) if path.adhesive else stiffness
 
-    extreme = source.extremes(_CHANCE)
-    first_touch = float(extreme.height.max()) + (adhesion.range if adhesion.cohesive else 0.0)
-    clear = clear_separation(extreme, effective_modulus, adhesion)
-    if not np.isfinite(clear):
-        raise OutOfRange("the contact of asperities as extreme as there may be is not representable")
-    depth = source.sigma or float(extreme.nondimensional().rise[0])
-    separation = separations_of(law, path.demand, path.machine, first_touch, max(clear, first_touch), depth)
-    flown = np.isinf(separation)
-    separation = np.where(flown, max(clear, first_touch), separation)
-    found = along(separation, [name for name in names if name != "separation"])
-    return found._replace(variables={**found.variables, "separation": np.where(flown, np.nan, separation)})
+    def under(path: MachinePath, names: list[str]) -> LoadSeparation:
+        separation = path.demand
+        if path.machine != FIXED_GRIPS:
+            separation = separations_of(law, path.demand, path.machine, first_touch, clear, depth)
+        flown = np.isinf(separation)
+        separation = np.where(flown, clear, separation)
+        found = along(separation, [name for name in names if name not in OF_MACHINE])
+        own = {"separation": np.where(flown, np.nan, separation), "remote": path.demand}
+        return found._replace(variables={**found.variables, **own}).only(names)
+
+    if path.preload is not None:
+        path = to_preload(path, Specimen(under, clear, depth, source.nominal_area, coupled=False))
+    return under(path, names)

@@ -18,16 +18,16 @@ from roughmdr.errors import OutOfRange
 from roughmdr.loading.path import labelled_branches
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import COORDINATES, CURVE_VARIABLES
+from roughmdr.variables import COORDINATES, CURVE_VARIABLES, REMOTE, SEPARATION, TRAVEL
 
 
 class Machine(NamedTuple):
     """How a machine answers the force of the contacts."""
 
     weight: float
-    """1 with a spring, 0 under dead load."""
+    """1 with a spring or fixed grips, 0 under dead load."""
     compliance: float
-    """1/k_m [m/N] of a spring, 1 under dead load."""
+    """1/k_m [m/N] of a spring, 0 of fixed grips, 1 under dead load."""
 
     @property
     def is_dead_load(self) -> bool:
@@ -50,7 +50,7 @@ class Machine(NamedTuple):
         return 0.5 * off * off / self.compliance
 
 
-DEAD_LOAD = Machine(0.0, 1.0)
+DEAD_LOAD, FIXED_GRIPS = Machine(0.0, 1.0), Machine(1.0, 0.0)
 
 
 def spring(stiffness: float) -> Machine:
@@ -58,18 +58,33 @@ def spring(stiffness: float) -> Machine:
     return Machine(1.0, 1.0 / stiffness)
 
 
+class Preload(NamedTuple):
+    """What loading goes on to."""
+
+    quantity: str
+    """One of "force", "pressure" and "contact_fraction"."""
+    value: float
+    """In SI."""
+
+
 class MachinePath(NamedTuple):
     """The path of a machine, step by step."""
 
     control: str
-    """The quantity that it controls: one of ``CONTROLS`` but "separation"."""
+    """The quantity that it controls: one of ``STEP_COORDINATES`` but "separation"."""
     values: Floats
-    """That quantity at each step: the load [N] or pressure [Pa], or the position of the far end of the spring [m]."""
+    """That quantity at each step: the load [N] or pressure [Pa], the position of the far end of the spring [m], or the
+    travel [1].
+    """
     demand: Floats
-    """The demand of the machine at each step: minus the load [N], or that position [m]."""
+    """The demand of the machine at each step: minus the load [N], or that position [m]; minus the travel, as long as
+    where it leads to is not known.
+    """
     machine: Machine
     adhesive: bool
     """Whether contacts have a memory."""
+    preload: Preload | None = None
+    """Where a travel leads to, as long as that is not known."""
 
     @classmethod
     def along(
@@ -87,9 +102,24 @@ class MachinePath(NamedTuple):
             raise OutOfRange(f"a pressure of {np.abs(values).max():g} Pa is not representable on {area:g} m2")
         return cls(control, values, -load, DEAD_LOAD, adhesive)
 
+    @classmethod
+    def to_preload(
+        cls, travel: Floats, preload: Preload, *, machine_stiffness: float | None, adhesive: bool
+    ) -> "MachinePath":
+        """Return the path to a preload with these travels, through a spring [N/m] or, where that is None, none."""
+        machine = FIXED_GRIPS if machine_stiffness is None else spring(machine_stiffness)
+        return cls(TRAVEL.name, travel, -travel, machine, adhesive, preload)
+
+    def between(self, clear: float, turn: float) -> "MachinePath":
+        """Return the path whose travel goes from ``clear`` [m] to ``turn`` [m], which it meets to the last bit."""
+        demand = np.where(self.values == 1.0, turn, clear + self.values * (turn - clear))
+        return self._replace(demand=demand, preload=None)
+
     def variables(self, names: list[str]) -> list[str]:
         """Return the variables of a law that is asked for ``names``: with those that every path of a machine has."""
-        own = ["separation", *(["force"] if self.control == "remote" else [])]
+        own = [SEPARATION.name]
+        own += [REMOTE.name] if self.control == TRAVEL.name and self.machine != FIXED_GRIPS else []
+        own += ["force"] if self.control in (REMOTE.name, TRAVEL.name) else []
         return [*own, *(name for name in names if name not in (*own, self.control))]
 
     def coordinates(self) -> dict[str, Array]:
@@ -99,6 +129,11 @@ class MachinePath(NamedTuple):
     def branch(self) -> Array:
         """Return the branch of each step, labelled."""
         return labelled_branches(self.demand)
+
+
+def travel(steps: int) -> Floats:
+    """Return the travels of loading to a preload, from 0 to 1."""
+    return np.linspace(0.0, 1.0, steps)
 
 
 def attributes_of(control: str) -> dict[str, str]:

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result.layout import (
+    abscissa_of,
     cell_label,
     cells_of,
     control_of,
@@ -22,7 +24,7 @@ from roughmdr.result.layout import (
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.files import check_ending, replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import CONTROLS, LAW_VARIABLES
+from roughmdr.variables import LAW_VARIABLES, STEP_COORDINATES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +36,7 @@ _BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 _THEORY_COLOURS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _MAX_LABELS = 16
-_CONTROL_NAMES = {**{name: name for name in CONTROLS}, "remote": "position of the far end of the spring"}
+_ABSCISSA_NAMES = {**{name: name for name in STEP_COORDINATES}, "remote": "position of the far end of the spring"}
 
 
 class OverlayLine(NamedTuple):
@@ -53,16 +55,18 @@ class _Curve(NamedTuple):
     cell: int
     pass_number: int  # counts the loadings and unloadings of the path, from 0
     branch: str
-    control: Floats  # the controlled quantity
+    abscissa: Floats  # the controlled quantity, or what stands in its place
     mean: Floats
     error: Floats  # standard error of the mean; NaN if there is none
     model_error: Floats  # of a force, over itself; NaN where it is not known, or of other variables
     runs: Floats  # [realization, step]; computed realisations, none if only statistics were kept
+    abscissae: Floats  # of each of them
 
 
 def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) -> "Figure":
     """Draw variables of a result against the controlled quantity, with ``lines`` over them.
 
+    Where that is the travel to a preload, the separation or the far end of the spring stands in its place.
     Every realisation is a thin line, the mean a thick one, twice its standard error a band, and of a force the error of
     the model a grey one, where the result has its curve. The cells of a sweep have a colour each and no thin lines;
     unloading is dashed. The expected law is thin and dark, theory curves are dotted. The title says how far the force
@@ -74,6 +78,7 @@ def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) 
 
     if not done_of(result).any():
         raise StoreError("there is nothing to draw: no run was computed")
+    names = [name for name in names if name != abscissa_of(result)] or names
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     cells, overlays = cells_of(result), list(dict.fromkeys(line.label for line in lines))
@@ -84,7 +89,7 @@ def draw(result: Labelled, names: list[str], lines: Sequence[OverlayLine] = ()) 
     for ax, name in zip(axes.flat, names, strict=False):
         selected = [line for line in lines if line.variable == name]
         overlay = [(line, _overlay_style(line.label, overlays, line.cell, len(cells))) for line in selected]
-        _draw_panel(ax, (control_of(result), name), list(_curves_of(result, name)), labels, overlay)
+        _draw_panel(ax, (abscissa_of(result), name), list(_curves_of(result, name)), labels, overlay)
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     handles, named = axes.flat[0].get_legend_handles_labels()
@@ -128,11 +133,25 @@ def _curves_of(result: Labelled, name: str) -> Iterator[_Curve]:
     else:
         mean, error = (result.variables[f"{name}_{statistic}"].values for statistic in ("mean", "sem"))
         runs, done = np.empty((*mean.shape[:-1], 0, branches.size)), np.empty((*mean.shape[:-1], 0), dtype=bool)
-    control, model_error = controlled_values(result), _mean_model_error(result, name, mean)
+    model_error = _mean_model_error(result, name, mean)
+    abscissa, abscissae = _abscissae(result, runs, done)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         for pass_number, steps in enumerate(passes):
-            columns = control[cell][steps], mean[cell][steps], error[cell][steps], model_error[cell][steps]
-            yield _Curve(number, pass_number, str(branches[steps[0]]), *columns, runs[cell][done[cell]][:, steps])
+            columns = abscissa[cell][steps], mean[cell][steps], error[cell][steps], model_error[cell][steps]
+            of_runs = (values[cell][done[cell]][:, steps] for values in (runs, abscissae))
+            yield _Curve(number, pass_number, str(branches[steps[0]]), *columns, *of_runs)
+
+
+def _abscissae(result: Labelled, runs: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Return the abscissa of each cell, [..., step], and of each of its ``runs``, [..., realization, step]."""
+    name = abscissa_of(result)
+    if name == control_of(result):
+        values = controlled_values(result)
+        return values, np.broadcast_to(values[..., None, :], runs.shape)
+    if name in result.variables:
+        values = result.variables[name].values
+        return mean_and_error(values, done)[0], values
+    return result.variables[f"{name}_mean"].values, runs
 
 
 def _mean_model_error(result: Labelled, name: str, mean: Floats) -> Floats:
@@ -152,17 +171,17 @@ def _draw_panel(
     labels: list[str],
     overlay: list[tuple[OverlayLine, dict[str, Any]]],
 ) -> None:
-    """Draw one variable over the controlled quantity; ``names`` are those of both."""
-    control, name = names
+    """Draw one variable over the abscissa; ``names`` are those of the abscissa and of the variable."""
+    abscissa, name = names
     units = LAW_VARIABLES[name].units
-    h_scale, h_prefix = _si_scale(np.concatenate([curve.control for curve in curves]))
+    h_scale, h_prefix = _si_scale(np.concatenate([curve.abscissa for curve in curves]))
     visible = _visible_values(name, curves)
     scale, prefix = (1.0, "") if units == "1" else _si_scale(visible, power=2 if units == "m2" else 1)
 
     def draw_means(axes: "Axes", linewidth: float) -> None:
         for curve in curves:
             style = _curve_style(curve, labels)
-            axes.plot(curve.control / h_scale, curve.mean / scale, lw=linewidth, **style)
+            axes.plot(curve.abscissa / h_scale, curve.mean / scale, lw=linewidth, **style)
         for line, style in overlay:
             axes.plot(line.separation / h_scale, line.values / scale, **style)
 
@@ -170,25 +189,25 @@ def _draw_panel(
         if np.isfinite(curve.model_error).any():
             off = curve.model_error * np.abs(curve.mean) / scale
             middle = curve.mean / scale
-            ax.fill_between(curve.control / h_scale, middle - off, middle + off, color="0.85", lw=0, zorder=0.5)
-        h, mean, error = curve.control / h_scale, curve.mean / scale, curve.error / scale
+            ax.fill_between(curve.abscissa / h_scale, middle - off, middle + off, color="0.85", lw=0, zorder=0.5)
+        h, mean, error = curve.abscissa / h_scale, curve.mean / scale, curve.error / scale
         colour = _curve_style(curve, labels)["color"]
         if len(labels) == 1 and curve.runs.size:
-            ax.plot(h, curve.runs.T / scale, color=colour, lw=0.3, alpha=0.25)
+            ax.plot(curve.abscissae.T / h_scale, curve.runs.T / scale, color=colour, lw=0.3, alpha=0.25)
         if name != "stiffness" or curve.branch == "loading":  # where contacts detach its variance is infinite
             ax.fill_between(h, mean - 2 * error, mean + 2 * error, color=colour, alpha=0.3, lw=0)
     draw_means(ax, 2.6 if len(labels) == 1 else 1.6)
     if name in ("force", "pressure", "stiffness"):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     if name in ("force", "pressure"):
-        h = np.concatenate([curve.control for curve in curves]) / h_scale
+        h = np.concatenate([curve.abscissa for curve in curves]) / h_scale
         _add_tension_inset(ax, h, np.concatenate([curve.mean for curve in curves]) / scale, draw_means)
     low, high = float(visible.min()) / scale, float(visible.max()) / scale
     if high > low:
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
     unit = units.replace(" m-1", "/m").replace("m2", "m²")
     ax.set_ylabel(f"{name.replace('_', ' ')}" + (f" [{prefix}{unit}]" if unit != "1" else ""))
-    ax.set_xlabel(f"{_CONTROL_NAMES[control]} [{h_prefix}{CONTROLS[control]}]")
+    ax.set_xlabel(f"{_ABSCISSA_NAMES[abscissa]} [{h_prefix}{STEP_COORDINATES[abscissa]}]")
 
 
 def _curve_style(curve: _Curve, labels: list[str]) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from roughmdr.variables import (
     LAW_VARIABLES,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
+    TRAVEL,
     Variable,
 )
 
@@ -49,7 +50,9 @@ def assemble(
     data, coordinates = _curves(plan, collected.values, variables, runs), plan.coordinates()
 
     if plan.unloads:
-        force = list(variables).index("force") if "force" in variables else None
+        # The mean over realisations at equal travel, each at a separation of its own, has no pull-off.
+        with_mean = "force" in variables and plan.control != TRAVEL.name
+        force = list(variables).index("force") if with_mean else None
         data |= pull_off_numbers(plan, methods, collected, force)
 
     def of_cells(name: str, values: list[Any]) -> Array:
@@ -101,8 +104,7 @@ def _curves(
     contacts may be at the point of detachment, since its variance is infinite.
     """
     # Behind a machine the stiffness of contacts is bounded below, by minus that of the machine.
-    fixed = plan.control == "separation"
-    at_detachment = np.array([cell.path.at_detachment() & fixed for cell in plan.cells])
+    at_detachment = np.array([cell.path.at_detachment() & cell.fixed_grips for cell in plan.cells])
     data: dict[str, Array] = {}
     for name in plan.variables:
         variable, number = LAW_VARIABLES[name], list(variables).index(name)

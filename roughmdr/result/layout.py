@@ -10,7 +10,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, CONTROLS, DONE, LAW_VARIABLES
+from roughmdr.variables import AUXILIARY_COORDINATES, DONE, LAW_VARIABLES, REMOTE, SEPARATION, STEP_COORDINATES, TRAVEL
 
 
 def stored_variables(result: Labelled) -> list[str]:
@@ -24,7 +24,15 @@ def stored_variables(result: Labelled) -> list[str]:
 
 def control_of(result: Labelled) -> str:
     """Return the quantity that the path of a result controls."""
-    return next(name for name in CONTROLS if name in result.coordinates)
+    return next(name for name in STEP_COORDINATES if name in result.coordinates)
+
+
+def abscissa_of(result: Labelled) -> str:
+    """Return what curves are drawn against: the controlled quantity, or what moves as the travel to a preload says."""
+    control = control_of(result)
+    if control != TRAVEL.name:
+        return control
+    return REMOTE.name if REMOTE.name in stored_variables(result) else SEPARATION.name
 
 
 def controlled_values(result: Labelled) -> Floats:

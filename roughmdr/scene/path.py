@@ -7,15 +7,19 @@ import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
 from roughmdr.errors import SceneError
+from roughmdr.loading.machine import Preload, travel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.separation import CLEAR, Separation, SeparationReader, Target
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
-from roughmdr.variables import CONTROLS
+from roughmdr.schema.units import DIMENSIONLESS
+from roughmdr.variables import CONTROLS, DEFAULT_STEPS, PRELOADS, TRAVEL
 
 _START = SeparationReader(clear=True, other=f', or "{CLEAR}"')
 _STOP = SeparationReader(other=', or a target such as { contact_fraction = 0.02 } or { pressure = "1 MPa" }')
 _FORCE, _PRESSURE = Quantity("N"), Quantity("Pa")
+_PER_AREA = ("pressure", "preload_pressure", "preload_contact_fraction")
+_STEPS = WholeNumber(2, 10_000_000)
 _Separation = Annotated[Separation, BeforeValidator(SeparationReader())]
 
 
@@ -27,7 +31,7 @@ class Range(Section):
         Annotated[Target, Tag("target")] | Annotated[Separation, BeforeValidator(_STOP), Tag("distance")],
         Discriminator(lambda value: "target" if isinstance(value, dict | Target) else "distance"),
     ]
-    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+    steps: Annotated[int, BeforeValidator(_STEPS)]
 
 
 class RemoteRange(Section):
@@ -35,7 +39,7 @@ class RemoteRange(Section):
 
     start: Annotated[Separation | None, BeforeValidator(_START)] = None
     stop: Annotated[Separation, BeforeValidator(SeparationReader())]
-    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+    steps: Annotated[int, BeforeValidator(_STEPS)]
 
 
 class ForceRange(Section):
@@ -43,7 +47,7 @@ class ForceRange(Section):
 
     start: Annotated[float, BeforeValidator(_FORCE)] = 0.0
     stop: Annotated[float, BeforeValidator(_FORCE)]
-    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+    steps: Annotated[int, BeforeValidator(_STEPS)]
 
 
 class PressureRange(Section):
@@ -51,7 +55,7 @@ class PressureRange(Section):
 
     start: Annotated[float, BeforeValidator(_PRESSURE)] = 0.0
     stop: Annotated[float, BeforeValidator(_PRESSURE)]
-    steps: Annotated[int, BeforeValidator(WholeNumber(2, 10_000_000))]
+    steps: Annotated[int, BeforeValidator(_STEPS)]
 
 
 _RangeOrList = Discriminator(
@@ -65,7 +69,8 @@ class FlatPath(Section):
     """[path]: a range or a list of separations, or of what a machine controls in place of them.
 
     A machine presses with a ``force`` or a ``pressure``, a dead load, or moves the far end of a spring of
-    ``machine_stiffness``, ``remote``. ``unload`` appends the steps in reverse, after ``hold`` more at the last.
+    ``machine_stiffness``, ``remote``. A preload is loaded to in ``steps`` steps, by the flat itself or through that
+    spring. ``unload`` appends the steps in reverse, after ``hold`` more at the last.
     """
 
     separation: (
@@ -99,26 +104,56 @@ class FlatPath(Section):
         | None
     ) = None
     machine_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0.0))] | None = None
+    preload: Annotated[float, BeforeValidator(Quantity("N", above=0.0))] | None = None
+    preload_pressure: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
+    preload_contact_fraction: (
+        Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))] | None
+    ) = None
+    steps: Annotated[int, BeforeValidator(_STEPS)] = DEFAULT_STEPS
     hold: Annotated[int, BeforeValidator(WholeNumber(0, 1_000_000))] = 0
     unload: StrictBool = False
 
     @model_validator(mode="after")
     def _one_control(self) -> "FlatPath":
-        given = [name for name in CONTROLS if getattr(self, name) is not None]
+        given = [name for name in (*CONTROLS, *PRELOADS) if getattr(self, name) is not None]
         if not given:
             raise mismatch("path.separation", "is missing")
         if len(given) > 1:
             raise mismatch(f"path.{given[1]}", f"does not go with path.{given[0]}: a path controls one of the two")
         if self.machine_stiffness is None and given == ["remote"]:
             raise mismatch("path.machine_stiffness", "is missing")
-        if self.machine_stiffness is not None and given != ["remote"]:
-            raise mismatch("path.machine_stiffness", "goes with path.remote only, the far end of the spring")
+        if self.machine_stiffness is not None and given != ["remote"] and given[0] not in PRELOADS:
+            raise mismatch("path.machine_stiffness", "goes with path.remote, the far end of the spring, or a preload")
+        if "steps" in self.model_fields_set and given[0] not in PRELOADS:
+            raise mismatch("path.steps", f"goes with a preload only; path.{given[0]} has its own")
         return self
+
+    @property
+    def to_preload(self) -> Preload | None:
+        """What loading goes on to; None where the path is given otherwise."""
+        return next(
+            (
+                Preload(quantity, getattr(self, key))
+                for key, (quantity, _) in PRELOADS.items()
+                if getattr(self, key) is not None
+            ),
+            None,
+        )
 
     @property
     def control(self) -> str:
         """The quantity that is controlled."""
-        return next(name for name in CONTROLS if getattr(self, name) is not None)
+        return next((name for name in CONTROLS if getattr(self, name) is not None), TRAVEL.name)
+
+    @property
+    def key(self) -> str:
+        """The key that the path is given by."""
+        return next(name for name in (*CONTROLS, *PRELOADS) if getattr(self, name) is not None)
+
+    @property
+    def area_key(self) -> str:
+        """The dotted key of what is per nominal area; empty where there is none."""
+        return f"path.{self.key}" if self.key in _PER_AREA else ""
 
     @property
     def _steps(self) -> Range | RemoteRange | ForceRange | PressureRange | list[Any]:
@@ -127,6 +162,8 @@ class FlatPath(Section):
 
     @property
     def _ends(self) -> list[Separation | Target | float | None]:
+        if self.to_preload:
+            return [0.0, 1.0]
         steps = self._steps
         return [*steps] if isinstance(steps, list) else [steps.start, steps.stop]
 
@@ -171,6 +208,8 @@ class FlatPath(Section):
         ``clear`` and ``reached`` [m] are the start and the stop of a range where it does not give them as separations.
         SceneError if the path is given in sigma and there is none, or if it is not finite.
         """
+        if self.to_preload:
+            return travel(self.steps)
         given, steps = self.given(sigma), self._steps
         if isinstance(steps, list):
             path = np.array(given, dtype=np.float64)

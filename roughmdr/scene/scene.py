@@ -102,8 +102,8 @@ class Scene(Section):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
             self._check_accuracy(self.accuracy)
-        if self.path.control == "pressure" and asperities.is_random and asperities.nominal_area is None:
-            raise mismatch("path.pressure", "needs a nominal area: asperities.patch")
+        if self.path.area_key and asperities.is_random and asperities.nominal_area is None:
+            raise mismatch(self.path.area_key, "needs a nominal area: asperities.patch")
         if estimator == "expected" and realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
         if not asperities.is_random:

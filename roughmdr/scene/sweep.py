@@ -15,7 +15,7 @@ from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CONTROLS
+from roughmdr.variables import CONTROLS, PRELOADS
 
 _SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
 _STOP = "path.separation.stop"
@@ -24,6 +24,7 @@ _PATH_KEYS = (
     f"{_STOP}.contact_fraction",
     f"{_STOP}.pressure",
     "path.machine_stiffness",
+    *(f"path.{preload}" for preload in PRELOADS),
 )
 _ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
 _NUM = WholeNumber(2, 100_000)

@@ -14,6 +14,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.schema.wording import short_repr
 
+_LEAST_STEPS = 2
+
 
 def check_number(name: str, value: float | str, dimension: str, *, zero: bool = False) -> float:
     """Return ``value`` in SI; OutOfRange unless it is finite and above 0 (or 0, where ``zero`` allows that)."""
@@ -28,6 +30,13 @@ def check_number(name: str, value: float | str, dimension: str, *, zero: bool = 
     if not (math.isfinite(number) and (number > 0.0 or (zero and number == 0.0))):
         raise OutOfRange(f"{name} is {number:g}{unit}; it must be {allowed}")
     return number
+
+
+def check_steps(value: object) -> int:
+    """Return a number of steps; OutOfRange unless it is a whole number of at least 2."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < _LEAST_STEPS:
+        raise OutOfRange(f"steps is {value!r}; it must be a whole number of at least {_LEAST_STEPS}")
+    return int(value)
 
 
 def check_poisson(name: str, value: float) -> float:

@@ -38,6 +38,10 @@ _KEYS = {
     "path.remote.stop": '"-2 sigma"',
     "path.remote.steps": "200",
     "path.machine_stiffness": '"1 kN/m"',
+    "path.preload": '"1 mN"',
+    "path.preload_pressure": '"1 MPa"',
+    "path.preload_contact_fraction": "0.02",
+    "path.steps": "200",
     **{f"{section}.{key}": value for section, keys in _SECTIONS.items() for key, value in keys.items()},
 }
 

@@ -19,7 +19,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
-from roughmdr.variables import AUXILIARY_COORDINATES, CONTROLS
+from roughmdr.variables import AUXILIARY_COORDINATES, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import netCDF4
@@ -40,7 +40,7 @@ def read_netcdf(path: Path) -> Labelled:
             text = attrs.pop("coordinates", "")
             named = set(text.split()) if isinstance(text, str) else set()
             coordinates |= named
-            if "separation" not in named and not named.isdisjoint(CONTROLS):  # a machine moves the flat
+            if "separation" not in named and not named.isdisjoint(STEP_COORDINATES):  # a machine moves the flat
                 coordinates.discard("separation")
             attrs.pop("_FillValue", None)
             arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)

@@ -11,7 +11,6 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
-    CONTROLS,
     CURVE_VARIABLES,
     DONE,
     FAILED,
@@ -19,6 +18,7 @@ from roughmdr.variables import (
     NOT_RUN,
     PULL_OFF_NUMBERS,
     RUN_DIAGNOSTICS,
+    STEP_COORDINATES,
 )
 
 _REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
@@ -46,8 +46,8 @@ def _missing(data: Labelled) -> Iterator[str]:
     )
     if missing := [name for names, present in required for name in names if name not in present]:
         yield f"it has no {', '.join(missing)}"
-    if not any(name in data.coordinates for name in CONTROLS):
-        yield f"it has none of {', '.join(CONTROLS)} as a coordinate"
+    if not any(name in data.coordinates for name in STEP_COORDINATES):
+        yield f"it has none of {', '.join(STEP_COORDINATES)} as a coordinate"
 
 
 def _attributes(data: Labelled) -> Iterator[str]:
@@ -90,7 +90,7 @@ def _arrays(data: Labelled) -> Iterator[str]:
         holder = data.coordinates if kind == "text" else data.variables
         if name in holder:
             yield from _mismatches(name, holder[name], dims, kind)
-    control = next(name for name in CONTROLS if name in data.coordinates)
+    control = next(name for name in STEP_COORDINATES if name in data.coordinates)
     values = data.coordinates[control]
     if [dim for dim in cells if dim in values.dims] != list(values.dims[:-1]):
         yield f"{control} has the dimensions {', '.join(values.dims)}; it must have swept keys and step"

@@ -50,7 +50,7 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
         scene.interaction_model,
         sections[id(section)],
         hashlib.sha256(cell.values.tobytes()).hexdigest(),
-        *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine))),
+        *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine), cell.machine.preload)),
         scene.seed,
         estimator,
         versions(),

@@ -1,0 +1,63 @@
+"""Where loading first reaches a value of a quantity, such as a contact fraction."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from roughmdr.errors import OutOfRange, TooMuchContact
+from roughmdr.numerics.arguments import Floats
+
+_POINTS = 16  # positions that the law is computed at together
+_MAX_DOUBLINGS = 60
+
+Law = Callable[[Floats], Floats]
+"""Falling positions [m] of the flat, or of the far end of its spring -> the quantity there, in loading from the start.
+"""
+
+
+class OutOfReach(OutOfRange):
+    """Loading has the value before it begins, or never comes to it."""
+
+
+def first_reached(law: Law, value: float, start: float, distance: float, rtol: float, name: str) -> float:
+    """Return the largest position [m] with a value, by search in ever longer and then ever shorter intervals.
+
+    ``distance`` [m] is how far down it is sought first, ``rtol`` the error over the distance from the start, ``name``
+    that of the quantity. OutOfReach where it is not found.
+    """
+    if law(np.array([start]))[0] >= value:
+        raise OutOfReach(f"is reached above the start, {start:.4g} m; start must be higher")
+    above, below, most = start, start - distance, 0.0
+    for _ in range(_MAX_DOUBLINGS):
+        h, values = _between(law, above, below)
+        if (values >= value).any():
+            break
+        most = max(most, float(values.max()))
+        above, below, distance = below, below - 2.0 * distance, 2.0 * distance
+    else:
+        raise OutOfReach(f"is out of reach: the largest {name} of these asperities is {most:.4g}")
+    while True:
+        first = int(np.argmax(values >= value))
+        above, below = float(h[first - 1]) if first else above, float(h[first])
+        resolution = max(rtol * (start - below), float(np.spacing(max(abs(above), abs(below)))))
+        if above - below <= resolution:
+            return below
+        h, values = _between(law, above, below)
+
+
+def _between(law: Law, above: float, below: float) -> tuple[Floats, Floats]:
+    """Return positions [m] from next to ``above`` to ``below``, and the law there."""
+    h = np.linspace(above, below, _POINTS + 1)[1:]
+    return h, _capped(law, h)
+
+
+def _capped(law: Law, positions: Floats) -> Floats:
+    """Return the law at falling positions [m]: inf where there would be more contact than nominal area."""
+    try:
+        return law(positions)
+    except TooMuchContact:
+        if positions.size == 1:
+            return np.array([np.inf])
+        half = positions.size // 2
+        first, rest = _capped(law, positions[:half]), np.full(positions.size - half, np.inf)
+        return np.concatenate([first, _capped(law, positions[half:]) if np.isfinite(first[-1]) else rest])
