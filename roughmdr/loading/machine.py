@@ -59,7 +59,7 @@ def spring(stiffness: float) -> Machine:
 
 
 class Preload(NamedTuple):
-    """What loading goes on to."""
+    """The quantity, and its value, that loading goes on to."""
 
     quantity: str
     """One of "force", "pressure" and "contact_fraction"."""

@@ -130,7 +130,7 @@ class FlatPath(Section):
 
     @property
     def to_preload(self) -> Preload | None:
-        """What loading goes on to; None where the path is given otherwise."""
+        """The quantity, with its value, that loading goes on to; None where the path is given otherwise."""
         return next(
             (
                 Preload(quantity, getattr(self, key))

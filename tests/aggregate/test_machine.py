@@ -242,7 +242,7 @@ def test_pressure_is_force_over_the_nominal_area() -> None:
     by_force = rm.load_separation(ensemble, force=np.array([1e3, 5e3]) * area, effective_modulus=1e7, work=0.05)
     np.testing.assert_array_equal(by_pressure.separation, by_force.separation)
     assert list(by_pressure.pressure.values) == [1e3, 5e3]
-    with pytest.raises(rm.SceneError, match="nominal_area is missing; a path of pressures needs it"):
+    with pytest.raises(rm.SceneError, match="nominal_area is missing; pressure needs it"):
         rm.load_separation(asperities(0.0, 1e-6), pressure=[1e3], effective_modulus=1e7)
 
 
@@ -252,7 +252,7 @@ def test_pressure_is_force_over_the_nominal_area() -> None:
         ({}, "got none; load_separation takes exactly one of separation, force, pressure, remote"),
         ({"force": [1.0], "remote": [0.0]}, "got force and remote"),
         ({"remote": [0.0]}, "machine_stiffness is missing; remote needs it"),
-        ({"force": [1.0], "machine_stiffness": 1.0}, "machine_stiffness goes with remote only"),
+        ({"force": [1.0], "machine_stiffness": 1.0}, "machine_stiffness goes with remote or a preload only"),
         ({"remote": [0.0], "machine_stiffness": 0.0}, "machine_stiffness is 0 N/m"),
         ({"force": []}, "force is empty"),
         ({"force": [math.nan]}, "force is nan; it must be finite"),
@@ -261,3 +261,79 @@ def test_pressure_is_force_over_the_nominal_area() -> None:
 def test_a_machine_that_is_not_one_is_refused(arguments, message) -> None:
     with pytest.raises(rm.RoughmdrError, match=message):
         rm.load_separation(asperities(0.0, 1.0), effective_modulus=1.0, **arguments)
+
+
+PRELOADS = {"preload": ("force", 2e-4), "preload_pressure": ("pressure", 3e3), "preload_contact_fraction": (None, 2e-3)}
+
+
+@pytest.mark.parametrize("name", PRELOADS)
+@pytest.mark.parametrize("stiffness", [None, 2e3, 20.0])
+@pytest.mark.parametrize("work", [0.0, 0.05])
+def test_a_preload_is_reached_first_at_the_turning_point_and_all_detach_after_it(name, stiffness, work) -> None:
+    ensemble, (control, value) = rm.generate(SECTION, seed=6), PRELOADS[name]
+    material = {"effective_modulus": 1e7, "work": work}
+    spring = {} if stiffness is None else {"machine_stiffness": stiffness}
+    found = rm.load_separation(
+        ensemble,
+        **{name: value},
+        **spring,
+        **material,
+        steps=30,
+        unload=True,
+        variables=("pressure", "contact_fraction", "contact_count"),
+    )
+    np.testing.assert_array_equal(found.travel, np.r_[np.linspace(0.0, 1.0, 30), np.linspace(0.0, 1.0, 30)[::-1]])
+    assert found.contact_count.values[[0, -1]].tolist() == [0.0, 0.0]
+    assert np.isfinite(found.pull_off_force)
+    reached = {"force": found.force, "pressure": found.pressure, None: found.contact_fraction}[control]
+    if control is not None:
+        assert float(reached[29]) == pytest.approx(value, rel=1e-12)
+        loaded = rm.load_separation(ensemble, **{control: [value]}, **material)
+        assert float(found.separation[29]) == pytest.approx(float(loaded.separation[0]), rel=1e-13)
+    else:  # it may be stepped over where a contact is made, never reached before
+        higher = float(found.separation[29]) + 1e-13
+        above = rm.load_separation(ensemble, separation=[higher], variables="contact_fraction", **material)
+        assert float(above.contact_fraction[0]) < value <= float(reached[29])
+        assert float(reached[29]) < 1.1 * value
+    if stiffness is not None:
+        np.testing.assert_allclose(
+            found.force, stiffness * (found.separation - found.remote), atol=1e-12 * float(found.force.max())
+        )
+
+
+def test_a_preload_without_a_spring_is_the_path_of_those_separations() -> None:
+    ensemble, material = rm.generate(SECTION, seed=7), {"effective_modulus": 1e7, "work": 0.05}
+    found = rm.load_separation(ensemble, preload="0.2 mN", steps=40, unload=True, **material)
+    same = rm.load_separation(ensemble, separation=found.separation.values, **material)
+    for name in ("force", "contact_area", "stiffness", "pull_off_force"):
+        np.testing.assert_array_equal(found[name], same[name])
+
+
+@pytest.mark.parametrize("model", ["pairwise", "mean_field"])
+def test_asperities_that_feel_each_other_are_loaded_to_the_same_preload(model) -> None:
+    ensemble = rm.generate({**SECTION, "placement": "random"}, seed=8)
+    material = {"effective_modulus": 1e7, "interaction": model}
+    found = rm.load_separation(ensemble, preload=2e-4, machine_stiffness=1e3, steps=12, **material)
+    assert float(found.force[-1]) == pytest.approx(2e-4, rel=1e-6)  # the error that pairs are solved to
+    loaded = rm.load_separation(ensemble, force=[2e-4], **material)
+    assert float(found.separation[-1]) == pytest.approx(float(loaded.separation[0]), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"preload": 1e-3, "force": [1.0]}, "got force and preload"),
+        ({"preload": -1.0}, "preload is -1 N; it must be a finite number above 0 N"),
+        ({"preload": 1e-3, "steps": 1}, "steps is 1; it must be a whole number of at least 2"),
+        ({"force": [1.0], "steps": 9}, "steps goes with a preload only; force holds its own"),
+        ({"preload_pressure": 1e3}, "nominal_area is missing; preload_pressure needs it"),
+    ],
+)
+def test_a_preload_that_is_none_is_refused(arguments, message) -> None:
+    with pytest.raises(rm.RoughmdrError, match=message):
+        rm.load_separation(asperities(0.0, 1.0), effective_modulus=1.0, **arguments)
+
+
+def test_more_contact_fraction_than_there_is_patch_is_refused() -> None:
+    with pytest.raises(rm.OutOfRange):
+        rm.load_separation(rm.generate(SECTION, seed=6), preload_contact_fraction=1.5, effective_modulus=1e7)

@@ -125,6 +125,11 @@ BASES: dict[str, dict[str, Any]] = {
             "unload": True,
         },
     },
+    "a preload": {**SCENE, "path": {"preload": "1 uN", "machine_stiffness": "1 kN/m", "steps": 9, "unload": True}},
+    **{
+        f"a preload by {quantity}": {**SCENE, "path": {f"preload_{quantity}": value, "steps": 9, "unload": True}}
+        for quantity, value in (("pressure", "1 Pa"), ("contact_fraction", 0.01))
+    },
 }
 MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
 NONSENSE: dict[str, object] = {
