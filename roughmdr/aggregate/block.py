@@ -72,6 +72,7 @@ class SumKernels(Kernels):
     loop: Callable[..., int]
     block_at: Callable[..., Block]
     """This and what follows: of a flat on a machine."""
+    far_groups: Callable[..., int]
     add_response: Callable[..., None]
     response: Callable[..., Any]
     stand: Callable[..., None]
@@ -84,6 +85,7 @@ class SumKernels(Kernels):
     next_below: Callable[..., float]
     root_between: Callable[..., Any]
     root_below: Callable[..., float]
+    passage: Callable[..., Any]
     rise: Callable[..., Any]
     sink: Callable[..., Any]
     record: Callable[..., None]

@@ -13,7 +13,7 @@ from roughmdr.numerics.arguments import Floats
 
 _LAST = 4.0  # roundings: a shorter step of Newton's method is the last
 _GRID = 2.0**-45  # of the distance to the highest place of contact: the last digit of a separation
-_DOUBTFUL = 2.0**-3  # of that: nearer to the middle of two such separations the demand there decides
+_DOUBTFUL = 2.0**-4  # of that: nearer to the middle of two such separations the demand there decides
 _NEGLIGIBLE = 2.0**-51  # of that distance: so far from its root the search may end
 _NEAR = 2.0**-25  # of that distance: so far from its root it may end if the bend leaves so little
 _MOST_BENT = 0.25  # change of the slope on the way to a root, over the slope, that its bend may tell

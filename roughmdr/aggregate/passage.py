@@ -19,6 +19,9 @@ from roughmdr.numerics.arguments import Floats
 
 _MAX_EVALUATIONS = 1_000_000  # on the way to one demand
 _GROWTH = 2.0  # of the distance to the highest place of contact, at most in a step
+_WIDE = 2.0  # times the way by the slope alone: as far as contacts are known to be far from any event
+_MAX_ROUNDS = 4
+_LOOKED_AT = 2.0**-25  # of the distance to the highest place of contact: there the polynomial has all digits
 _FIRST_STEP = 2.0**-10  # of the natural depth, where contacts have no stiffness yet
 
 
@@ -89,6 +92,38 @@ def sink(at: Stand, target: float, search: Search) -> Stand:
     return at
 
 
+def passage(at: Stand, target: float, falls: bool, search: Search) -> Stand:
+    """Return the first stand from here, in the sense of the leg, at which the demand is ``target``.
+
+    It is sought among the contacts near an event, all others being taken from looks before, and then looked at.
+    """
+    far = search.asperities.far
+    way = _WIDE * abs(target - at.demand) / at.slope if at.slope > 0.0 else 0.0
+    for _ in range(_MAX_ROUNDS if law.hardening and not at.parted else 0):
+        groups = law.far_groups(at.h, at.h - way if falls else at.h + way, falls, search.asperities.height, far)
+        if groups == 0:
+            break
+        far.number[1] = groups
+        found: Stand = law.sink(at, target, search) if falls else law.rise(at, target, search)
+        far.number[1] = 0
+        if not abs(found.h - at.h) <= way:
+            break
+        looked = law.stand_at(found.h, falls, search)
+        law.stand(search.asperities)
+        root, near = law.root_from(looked, target), _LOOKED_AT * abs(search.top - looked.h)
+        if not abs(root - looked.h) <= near or law.next_below(search, max(root, looked.h)) >= min(root, looked.h):
+            continue
+        far.number[1] = groups
+        there: Stand = law.stand_at(root, falls, search)
+        far.number[1] = 0
+        last = law.root_from(there, target)
+        if abs(last - root) <= _LOOKED_AT * near:
+            end: Stand = law.moved(there, last, target)
+            return end
+    reached: Stand = law.sink(at, target, search) if falls else law.rise(at, target, search)
+    return reached
+
+
 def root_below(at: Stand, target: float, touch: float, search: Search) -> float:
     """Return where Newton's method goes down, not much deeper than contacts are already; at most to the first touch."""
     root = law.root_from(at, target)
@@ -137,7 +172,7 @@ def follow(h: float, demand: Floats, falls: bool, search: Search, separation: Fl
         if at.h < math.inf:
             if jumps.limits.size:
                 at = law.through_jumps(at, target, falls, search, jumps, step)
-            at = law.sink(at, target, search) if falls else law.rise(at, target, search)
+            at = law.passage(at, target, falls, search)
         separation[step] = law.rounded(at, target, falls, search)
         if search.asperities.ready[0] < 0:
             separation[:] = math.nan

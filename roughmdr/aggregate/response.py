@@ -22,11 +22,12 @@ from roughmdr.aggregate.block import (
     Block,
     law,
 )
+from roughmdr.aggregate.far_contacts import GROUP, Far, far_response, nothing_known, slot_for
 from roughmdr.aggregate.loop import count_above
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.summation import BLOCK, accumulate, block_sum
+from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 
 
 class Response(NamedTuple):
@@ -50,17 +51,18 @@ class Asperities(NamedTuple):
     params: Any
     """Of all asperities, or one row that all have."""
     scales: Floats
-    """[block, row, asperity]"""
+    """[group, row, asperity]"""
     max_scales: Floats
-    """[block, row]"""
+    """[group, row]"""
     in_contact: Floats
-    """[block, asperity], where the flat stands."""
+    """[group, asperity], where the flat stands."""
     tried: Floats
-    """[block, asperity], where it was tried last."""
+    """[group, asperity], where it was tried last."""
     contacts: Floats
     scratch: Floats
     ready: NDArray[np.int64]
-    """How many blocks are prepared; -1 where a scale is not representable."""
+    """How many groups are prepared, -1 where a scale is not representable; and how many asperities were visited."""
+    far: Far
 
 
 class Memory(NamedTuple):
@@ -74,10 +76,18 @@ class Memory(NamedTuple):
 
 
 def keep(
-    height: Floats, columns: Columns, material: Material, adhesion_range: float, prepare: Callable[..., Floats]
+    height: Floats,
+    columns: Columns,
+    material: Material,
+    adhesion_range: float,
+    release: Floats,
+    prepare: Callable[..., Floats],
 ) -> Asperities:
-    """Return asperities of descending height [m], none of which is prepared; ``prepare`` as in ``Kernels``."""
-    blocks, two = (height.size + BLOCK - 1) // BLOCK, min(height.size, 2)
+    """Return asperities of descending height [m], none of which is prepared; ``prepare`` as in ``Kernels``.
+
+    ``release`` [m] is the separation above which each is out of contact.
+    """
+    groups, two = (height.size + GROUP - 1) // GROUP, min(height.size, 2)
     params = prepare(material, columns, 0, two, 0.0)
     size = height.size if params.shape[0] == two else 1
     return Asperities(
@@ -86,20 +96,21 @@ def keep(
         material,
         adhesion_range,
         np.empty((size, *params.shape[1:])),
-        np.empty((blocks, SCALES, BLOCK)),
-        np.empty((blocks, SCALES)),
-        np.zeros((blocks, BLOCK)),
-        np.zeros((blocks, BLOCK)),
-        np.empty((CONTACT_ROWS, BLOCK)),
+        np.empty((groups, SCALES, GROUP)),
+        np.empty((groups, SCALES)),
+        np.zeros((groups, GROUP)),
+        np.zeros((groups, GROUP)),
+        np.empty((CONTACT_ROWS, GROUP)),
         np.empty(BLOCK),
-        np.zeros(1, dtype=np.int64),
+        np.zeros(2, dtype=np.int64),
+        nothing_known(release),
     )
 
 
 def block_at(asperities: Asperities, number: int) -> Block:
-    """Return a block with its natural scales; ``asperities.ready`` is -1 where one is not representable."""
-    start = number * BLOCK
-    stop = min(start + BLOCK, asperities.height.size)
+    """Return a group with its natural scales; ``asperities.ready`` is -1 where one is not representable."""
+    start = number * GROUP
+    stop = min(start + GROUP, asperities.height.size)
     shared = asperities.params.shape[0] < asperities.height.size
     if number >= asperities.ready[0] and not (shared and number > 0):
         asperities.params[0 if shared else start : 1 if shared else stop] = law.prepare(
@@ -124,7 +135,8 @@ def block_at(asperities: Asperities, number: int) -> Block:
 def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> Response:
     """Return the answer with the flat at h, directly from where it stands; NaN where a scale is not representable.
 
-    ``falls`` says whether the flat goes down on this leg.
+    ``falls`` says whether the flat goes down on this leg. The first groups are taken from looks before if ``far`` says
+    so.
     """
     count_of_pairs = memory.bottom.size
     now, reach = Staircase(memory.first, memory.bottom_now, memory.top_now), asperities.adhesion_range
@@ -136,49 +148,67 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
     lowest = now.bottom[0]
     for j in range(1, count_of_pairs):
         lowest = min(lowest, now.bottom[j])
-    total, compensation = np.zeros(3), np.zeros(3)
-    for number in range(asperities.in_contact.shape[0]):
-        if asperities.height[number * BLOCK] < lowest:
+    total, compensation, far = np.zeros(3), np.zeros(3), asperities.far
+    begin, slot = far.number[1], -1
+    if begin > 0:
+        total[0], total[1] = far_response(h, far)
+        total[2] = total[1]
+    elif law.hardening:
+        slot = slot_for(h, far)
+    groups = asperities.in_contact.shape[0]
+    for number in range(begin, groups):
+        if slot >= 0:
+            far.force[slot, number] = total[0] + compensation[0]
+            far.stiffness[slot, number] = total[1] + compensation[1]
+        if asperities.height[number * GROUP] < lowest:
+            groups = number
             break
         block = law.block_at(asperities, number)
         if asperities.ready[0] < 0:
             return Response(math.nan, math.nan, math.nan)
-        block.in_contact[:] = block.in_contact_before
         deepest = block.max_scales[DEPTH_SCALE]
         count = count_above(block.z, law.lowest_in_contact(h, 0, count_of_pairs, now, deepest))
-        block.in_contact[count:] = 0.0
+        if law.adhesive:
+            block.in_contact[:] = block.in_contact_before
+            block.in_contact[count:] = 0.0
         if count == 0:
             continue
+        asperities.ready[1] += count
         law.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
         law.add_response(count, block, asperities.material.effective_modulus, total, compensation)
-    return Response(total[0] + compensation[0], total[1] + compensation[1], total[2] + compensation[2])
+    if slot >= 0:
+        far.force[slot, groups:] = total[0] + compensation[0]
+        far.stiffness[slot, groups:] = total[1] + compensation[1]
+    force, stiffness = total[0] + compensation[0], total[1] + compensation[1]
+    return Response(force, stiffness, total[2] + compensation[2] if law.adhesive else stiffness)
 
 
 def add_response(count: int, block: Block, modulus: float, total: Floats, compensation: Floats) -> None:
-    """Add the force, the stiffness and its bound of the first ``count`` asperities of a block.
+    """Add the force, the stiffness and its bound of the first ``count`` asperities of a group.
 
-    Where the stiffness of a contact grows with its indentation it bounds itself; else 2 E* a does, which only a punch
-    of that radius has.
+    Without adhesion the stiffness is its own bound. Where that of a contact grows with its indentation it bounds
+    itself; else 2 E* a does, which only a punch of that radius has.
     """
     terms, in_contact, contacts, params = block.scratch, block.in_contact, block.contacts, block.params
     size, load, rigidity = block.scales[RADIUS_SCALE], block.scales[FORCE_SCALE], block.scales[STIFFNESS_SCALE]
     stiffness = contacts[STIFFNESS]
     for i in range(count):
         terms[i] = load[i] * law.force_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
-    accumulate(total, compensation, 0, block_sum(terms, count))
+    accumulate(total, compensation, 0, sum_by_halves(terms, count, GROUP))
     for i in range(count):
         k = rigidity[i] * law.stiffness_at(contacts, params, i)
         terms[i] = k if not law.adhesive or in_contact[i] > 0.0 else 0.0
-        if law.hardening:
-            stiffness[i] = max(terms[i], 0.0)
-    accumulate(total, compensation, 1, block_sum(terms, count))
-    if law.hardening:
-        accumulate(total, compensation, 2, block_sum(stiffness, count))
-    else:
+    if law.adhesive and law.hardening:
+        for i in range(count):
+            stiffness[i] = terms[i] if terms[i] > 0.0 else 0.0
+    accumulate(total, compensation, 1, sum_by_halves(terms, count, GROUP))
+    if law.adhesive and law.hardening:
+        accumulate(total, compensation, 2, sum_by_halves(stiffness, count, GROUP))
+    elif law.adhesive:
         for i in range(count):
             k = 2.0 * modulus * (size[i] * law.radius_at(contacts, params, i))
-            terms[i] = k if not law.adhesive or in_contact[i] > 0.0 else 0.0
-        accumulate(total, compensation, 2, block_sum(terms, count))
+            terms[i] = k if in_contact[i] > 0.0 else 0.0
+        accumulate(total, compensation, 2, sum_by_halves(terms, count, GROUP))
 
 
 def stand(asperities: Asperities) -> None:

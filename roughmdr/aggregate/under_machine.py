@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate import machine_jumps, machine_stand, passage, response
+from roughmdr.aggregate import far_contacts, machine_jumps, machine_stand, passage, response
 from roughmdr.aggregate.block import SumKernels
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.loop import compiled_sum
@@ -20,6 +20,7 @@ from roughmdr.numerics.jit import specialise
 _BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
 _NONE = np.zeros(0)
 _PARTS = (
+    far_contacts.far_groups,
     response.block_at,
     response.add_response,
     response.response,
@@ -37,6 +38,7 @@ _PARTS = (
     passage.sink,
     passage.record,
     passage.arrive,
+    passage.passage,
     machine_stand.rounded,
     machine_jumps.peak_before,
     machine_jumps.through_jumps,
@@ -86,11 +88,12 @@ def separations_of(
     if not height.size:
         return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
     compiled, material = _compiled(kernels), Material(effective_modulus, adhesion.work, adhesion.strength)
-    asperities = response.keep(height, columns, material, adhesion.range, kernels.prepare)
     touches = detachments = _NONE
+    release = height
     if kernels.adhesive:
-        touches = np.sort(height + adhesion.range)
-        detachments = np.sort(height + detachment_depths(kernels, columns, effective_modulus, adhesion))
+        release = height + detachment_depths(kernels, columns, effective_modulus, adhesion)
+        touches, detachments = np.sort(height + adhesion.range), np.sort(release)
+    asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
     first_touch = float(height[0] + adhesion.range)
     top = max(float(detachments[-1]) if detachments.size else first_touch, first_touch)
     beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
@@ -105,6 +108,7 @@ def separations_of(
         events = detachments if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
         search = machine_stand.Search(machine, asperities, memory, events, first_touch, top, beside)
+        asperities.far.number[:] = 0
         filled = separation[leg.first : leg.first + leg.demand.size]
         room = _room(events.size + 1 if jumps and kernels.adhesive else 0)
         compiled.follow(h, leg.demand, not leg.rises, search, filled, room)

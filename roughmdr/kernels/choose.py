@@ -51,7 +51,7 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
 def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
     law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
-    law.adhesive, law.branched = adhesive, adhesive and shape.branched()
+    law.adhesive, law.branched, law.hardening = adhesive, adhesive and shape.branched(), not adhesive
     return law
 
 

@@ -15,16 +15,22 @@ BLOCK = 256
 
 
 @njit
-def block_sum(terms: Floats, count: int) -> float:
-    """Return the sum of the first ``count`` terms, by halves over the whole block; the terms are overwritten."""
-    for i in range(count, BLOCK):
+def sum_by_halves(terms: Floats, count: int, size: int) -> float:
+    """Return the sum of the first ``count`` of at most ``size`` terms, a power of 2; the terms are overwritten."""
+    for i in range(count, size):
         terms[i] = 0.0
-    half = BLOCK // 2
+    half = size // 2
     while half > 0:
         for i in range(half):
             terms[i] += terms[i + half]
         half //= 2
     return float(terms[0])
+
+
+@njit
+def block_sum(terms: Floats, count: int) -> float:
+    """Return the sum of the first ``count`` terms, by halves over the whole block; the terms are overwritten."""
+    return sum_by_halves(terms, count, BLOCK)
 
 
 @njit
