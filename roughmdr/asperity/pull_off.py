@@ -1,0 +1,96 @@
+"""Public function of one asperity: its pull-off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, Unpack
+
+import numpy as np
+
+from roughmdr.asperity.contact import Contact, Results
+from roughmdr.asperity.dataset import dataset_of
+from roughmdr.asperity.tabor import resolved, warnings_of
+from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
+from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
+from roughmdr.schema.material import effective_modulus_of
+from roughmdr.shapes import Shape
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_PULL_OFFS = {"force": "at the largest tension", "displacement": "at the point of detachment under fixed grips"}
+"""The two ends of a slow retraction, by its control."""
+
+
+def pull_off(
+    shape: Shape,
+    *,
+    work: float | str,
+    control: Literal["force", "displacement"] = "force",
+    **material: Unpack[AdhesiveMaterial],
+) -> xr.Dataset:
+    """Find the pull-off of one asperity: the largest tension that its contact bears.
+
+    With ``control="displacement"`` find the point of detachment under fixed grips, which is something else: the least
+    indentation at which there is a contact. The tension there is mostly less, since it has passed its largest.
+
+    Parameters
+    ----------
+    shape, work, **material
+        Profile, work of adhesion [J/m^2], and E*, adhesion, strength, range and error as in ``indent``.
+    control : {"force", "displacement"}, optional
+        Slow retraction under dead load, which ends at the pull-off force, or under fixed grips.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars: force [N], indentation [m], contact_radius [m] and, with "dugdale", cohesive_radius [m]; all 0 without
+        adhesion. Their long_name and the attribute ``control`` say which of the two points it is.
+
+    Raises
+    ------
+    OutOfRange, ShapeError, RoughmdrError
+        As ``indent``.
+
+    References
+    ----------
+    .. [1] K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301.
+    .. [2] D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> tip = rm.Paraboloid(radius=1e-6)
+    >>> off = rm.pull_off(tip, effective_modulus="1 GPa", work="50 mJ/m^2")
+    >>> f"{float(off.force):.4g}"  # -3/2 pi w R
+    '-2.356e-07'
+    >>> grips = rm.pull_off(tip, effective_modulus="1 GPa", work="50 mJ/m^2", control="displacement")
+    >>> f"{float(grips.force / off.force):.4g}"  # 5/9
+    '0.5556'
+    """
+    if control not in _PULL_OFFS:
+        raise RoughmdrError(f"control is {control!r}; it must be 'force' or 'displacement'")
+    wanted = Adhesion.from_arguments(work, material)
+    effective_modulus = effective_modulus_of(pull_off, material)
+    asked = resolved(shape, effective_modulus, wanted)
+    contact = Contact.of(shape, effective_modulus, asked)
+    names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if asked.model == "dugdale" else [])]
+    if not contact.law.adhesive:
+        return _at_pull_off({name: np.zeros(()) for name in names}, control, {})
+    with np.errstate(all="ignore"):
+        results = contact.pull_off(control)
+    radius = results["contact_radius"]
+    for name in names:
+        if not np.isfinite(results[name]).all() or (asked.model == "jkr" and (radius == 0.0).any()):
+            given = f"effective modulus {contact.effective_modulus:g} Pa, work {asked.work:g} J/m^2, {shape}"
+            raise OutOfRange(f"{name} at pull-off is not representable: {given}")
+    attrs = warn_limits(warnings_of(shape, radius, contact.effective_modulus, asked))
+    attrs |= {"adhesion": asked.model} if wanted.model == "auto" else {}
+    return _at_pull_off({name: results[name].reshape(()) for name in names}, control, attrs)
+
+
+def _at_pull_off(results: Results, control: str, attrs: dict[str, str]) -> xr.Dataset:
+    """Return scalars as a dataset that says which point they are of."""
+    dataset = dataset_of(results, None, {"control": control, **attrs})
+    for array in dataset.values():
+        array.attrs["long_name"] += f", {_PULL_OFFS[control]}"
+    return dataset
