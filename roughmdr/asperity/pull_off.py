@@ -8,6 +8,7 @@ import numpy as np
 
 from roughmdr.asperity.contact import Contact, Results
 from roughmdr.asperity.dataset import dataset_of
+from roughmdr.asperity.on_machine import OnMachine, check_machine_stiffness
 from roughmdr.asperity.tabor import resolved, warnings_of
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
@@ -17,34 +18,45 @@ from roughmdr.shapes import Shape
 if TYPE_CHECKING:
     import xarray as xr
 
-_PULL_OFFS = {"force": "at the largest tension", "displacement": "at the point of detachment under fixed grips"}
-"""The two ends of a slow retraction, by its control."""
+_PULL_OFFS = {
+    "force": "at the largest tension",
+    "displacement": "at the point of detachment under fixed grips",
+    "remote": "at the point of detachment on the spring",
+}
+"""The ends of a slow retraction, by its control."""
 
 
 def pull_off(
     shape: Shape,
     *,
     work: float | str,
-    control: Literal["force", "displacement"] = "force",
+    control: Literal["force", "displacement", "remote"] = "force",
+    machine_stiffness: float | str | None = None,
     **material: Unpack[AdhesiveMaterial],
 ) -> xr.Dataset:
     """Find the pull-off of one asperity: the largest tension that its contact bears.
 
     With ``control="displacement"`` find the point of detachment under fixed grips, which is something else: the least
-    indentation at which there is a contact. The tension there is mostly less, since it has passed its largest.
+    indentation at which there is a contact. The tension there is mostly less, since it has passed its largest. With
+    ``control="remote"`` find where a tip detaches that a spring in series, such as a cantilever, withdraws; a dead load
+    is the limit of a soft spring, and fixed grips of a stiff one.
 
     Parameters
     ----------
     shape, work, **material
         Profile, work of adhesion [J/m^2], and E*, adhesion, strength, range and error as in ``indent``.
-    control : {"force", "displacement"}, optional
-        Slow retraction under dead load, which ends at the pull-off force, or under fixed grips.
+    control : {"force", "displacement", "remote"}, optional
+        Slow retraction under dead load, which ends at the pull-off force, under fixed grips, or by the far end of a
+        spring.
+    machine_stiffness : float or str, optional
+        Of that spring [N/m]; it goes with control="remote".
 
     Returns
     -------
     xarray.Dataset
-        Scalars: force [N], indentation [m], contact_radius [m] and, with "dugdale", cohesive_radius [m]; all 0 without
-        adhesion. Their long_name and the attribute ``control`` say which of the two points it is.
+        Scalars: force [N], indentation [m], contact_radius [m] and, with "dugdale", cohesive_radius [m]; with "remote"
+        also remote [m], as in ``indent``. All are 0 without adhesion. Their long_name and the attribute ``control`` say
+        which of the points it is.
 
     Raises
     ------
@@ -66,18 +78,26 @@ def pull_off(
     >>> grips = rm.pull_off(tip, effective_modulus="1 GPa", work="50 mJ/m^2", control="displacement")
     >>> f"{float(grips.force / off.force):.4g}"  # 5/9
     '0.5556'
+    >>> lever = rm.pull_off(
+    ...     tip, effective_modulus="1 GPa", work="50 mJ/m^2", control="remote", machine_stiffness="40 N/m"
+    ... )
+    >>> f"{float(lever.force / off.force):.4g}"
+    '0.8'
     """
     if control not in _PULL_OFFS:
-        raise RoughmdrError(f"control is {control!r}; it must be 'force' or 'displacement'")
+        raise RoughmdrError(f"control is {control!r}; it must be 'force', 'displacement' or 'remote'")
+    stiffness = check_machine_stiffness(machine_stiffness, wanted=control == "remote")
     wanted = Adhesion.from_arguments(work, material)
     effective_modulus = effective_modulus_of(pull_off, material)
     asked = resolved(shape, effective_modulus, wanted)
     contact = Contact.of(shape, effective_modulus, asked)
-    names = ["force", "indentation", "contact_radius", *(["cohesive_radius"] if asked.model == "dugdale" else [])]
+    names = ["force", "indentation", "contact_radius"]
+    names += ["cohesive_radius"] * (asked.model == "dugdale") + ["remote"] * (control == "remote")
     if not contact.law.adhesive:
         return _at_pull_off({name: np.zeros(()) for name in names}, control, {})
     with np.errstate(all="ignore"):
-        results = contact.pull_off(control)
+        held = OnMachine.on_spring(contact, stiffness) if control == "remote" else None
+        results = contact.pull_off(control) if held is None else held.pull_off()
     radius = results["contact_radius"]
     for name in names:
         if not np.isfinite(results[name]).all() or (asked.model == "jkr" and (radius == 0.0).any()):
