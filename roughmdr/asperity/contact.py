@@ -174,6 +174,8 @@ class Contact(NamedTuple):
         """Return all quantities of the equilibrium at each state; zeros out of contact."""
         radius, force, stiffness = self.radius_force_stiffness(state)
         delta = self.indentation_of(state)
+        if self.law.adhesive:  # a rounding below detachment there would be no contact
+            delta = np.maximum(delta, -self.depth[0])
         return self._results(
             in_contact, state, indentation=delta, force=force, contact_radius=radius, stiffness=stiffness
         )

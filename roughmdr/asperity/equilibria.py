@@ -61,9 +61,8 @@ def equilibria(
     >>> states = rm.equilibria(tip, effective_modulus="1 GPa", work="50 mJ/m^2", indentation="-1 nm")
     >>> states.stable_displacement.values.tolist()
     [False, True]
-    >>> states = rm.equilibria(
-    ...     tip, effective_modulus="1 GPa", work="50 mJ/m^2", indentation="-1 nm", adhesion="dugdale", strength="100 MPa"
-    ... )
+    >>> attraction = {"work": "50 mJ/m^2", "adhesion": "dugdale", "strength": "100 MPa"}
+    >>> states = rm.equilibria(tip, effective_modulus="1 GPa", indentation="-1 nm", **attraction)
     >>> [f"{radius:.3g}" for radius in states.contact_radius.values]
     ['0', '6.49e-08']
     """
@@ -95,6 +94,8 @@ def _stable(contact: Contact, delta: float) -> Iterator[Equilibrium]:
     law = contact.law
     onset = -contact.depth[0] if law.adhesive else 0.0
     if delta < onset or (delta == 0.0 and not law.adhesive):
+        return
+    if law.cohesive and onset == contact.onset == delta:  # where attraction begins, without a jump
         return
     if not (law.branched and delta > onset):
         yield Equilibrium.from_results(contact.at_indentation(np.array([delta])), stable=True)

@@ -32,8 +32,9 @@ class Equilibrium(NamedTuple):
     @classmethod
     def from_results(cls, results: Results, *, stable: bool) -> "Equilibrium":
         """Return the equilibrium of results of size one."""
-        names = ("contact_radius", "cohesive_radius", "force", "stiffness")
-        return cls(*(float(results[name][0]) if name in results else 0.0 for name in names), stable)
+        cohesive_radius = float(results["cohesive_radius"][0]) if "cohesive_radius" in results else 0.0
+        radius, force, stiffness = (float(results[name][0]) for name in ("contact_radius", "force", "stiffness"))
+        return cls(radius, cohesive_radius, force, stiffness, stable)
 
 
 def unstable(contact: Contact, delta: float) -> Iterator[Equilibrium]:
