@@ -31,7 +31,7 @@ class Jkr:
     modulus: float
     work: float
     size: float
-    largest: float = 30.0
+    largest: float = 3000.0
 
     @property
     def grid(self) -> Floats:
@@ -41,7 +41,7 @@ class Jkr:
     @property
     def outer(self) -> Floats:
         """Its outer points."""
-        return np.geomspace(3.0, self.largest, 4001)[1:]
+        return np.geomspace(3.0, self.largest, 10001)[1:]
 
     def g_and_reduced_load(self, a: Floats) -> tuple[Floats, Floats]:
         """Return g [m] and a g - G [m2]."""

@@ -117,7 +117,8 @@ class OnMachine(NamedTuple):
         smallest = max(_SMALLEST, 2.0**-53 * abs(part.foot))
         low = np.full(values.shape, smallest)
         high = _bracket(excess, low, values, part.top - part.foot)
-        at_foot, at_top = excess(low, values) >= 0.0, excess(high, values) <= 0.0
+        at_foot = (values <= part.low) | (excess(low, values) >= 0.0)
+        at_top = excess(high, values) <= 0.0
         solved = ~(at_foot | at_top)
         while (wide := solved & (high > 2.0 * low)).any():
             middle = np.sqrt(low[wide]) * np.sqrt(high[wide])
