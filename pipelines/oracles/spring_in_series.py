@@ -57,7 +57,7 @@ class Jkr:
 
 @dataclass(frozen=True)
 class JkrPowerLaw(Jkr):
-    """Of g = coefficient x^n."""
+    """The curve of g = coefficient x^n."""
 
     n: float = 2.0
     coefficient: float = 1.0
@@ -70,7 +70,7 @@ class JkrPowerLaw(Jkr):
 
 @dataclass(frozen=True)
 class JkrTruncatedCone(Jkr):
-    """Of a cone of a slope with a flat of the radius ``size``."""
+    """The curve of a cone of a slope with a flat of the radius ``size``."""
 
     slope: float = 0.1
 
@@ -83,7 +83,7 @@ class JkrTruncatedCone(Jkr):
 
 @dataclass(frozen=True)
 class JkrRoundedCone(Jkr):
-    """Of a cone of a slope with a tip that is rounded to the radius ``size``."""
+    """The curve of a cone of a slope with a tip that is rounded to the radius ``size``."""
 
     slope: float = 0.1
 
@@ -99,7 +99,7 @@ class JkrRoundedCone(Jkr):
 
 @dataclass(frozen=True)
 class JkrPunch(Jkr):
-    """Of a flat punch of the radius ``size``: from 1 on it is in contact, and pressed by dl a unit."""
+    """The curve of a flat punch of the radius ``size``: from 1 on it is in contact, and pressed by dl a unit."""
 
     def at(self, p: Floats) -> State:
         """Return the states at points of the curve."""

@@ -64,7 +64,7 @@ def equilibria(
     >>> attraction = {"work": "50 mJ/m^2", "adhesion": "dugdale", "strength": "100 MPa"}
     >>> states = rm.equilibria(tip, effective_modulus="1 GPa", indentation="-1 nm", **attraction)
     >>> [f"{radius:.3g}" for radius in states.contact_radius.values]
-    ['0', '6.49e-08']
+    ['0', '5.48e-08']
     """
     import xarray as xr
 

@@ -82,7 +82,7 @@ def pull_off(
     ...     tip, effective_modulus="1 GPa", work="50 mJ/m^2", control="remote", machine_stiffness="40 N/m"
     ... )
     >>> f"{float(lever.force / off.force):.4g}"
-    '0.8'
+    '0.9622'
     """
     if control not in _PULL_OFFS:
         raise RoughmdrError(f"control is {control!r}; it must be 'force', 'displacement' or 'remote'")

@@ -74,9 +74,9 @@ def pressure(
     >>> [f"{value:.4g}" for value in p.values]
     ['3.183e+07', '2.917e+07', '0']
     >>> attraction = {"work": "50 mJ/m^2", "adhesion": "dugdale", "strength": "100 MPa"}
-    >>> p = rm.pressure(tip, r=["0 nm", "55 nm"], contact_radius="50 nm", effective_modulus="1 GPa", **attraction)
+    >>> p = rm.pressure(tip, r=["0 nm", "52 nm"], contact_radius="50 nm", effective_modulus="1 GPa", **attraction)
     >>> [f"{value:.4g}" for value in p.values]
-    ['1.08e+06', '-1e+08']
+    ['8.488e+06', '-1e+08']
     """
     asked = Adhesion.from_arguments(work, material)
     modulus = effective_modulus_of(pressure, material)
