@@ -20,6 +20,11 @@ from oracles.spring_in_series import (
 )
 
 import roughmdr as rm
+from roughmdr.asperity.approach import branches_of
+from roughmdr.asperity.contact import Contact
+from roughmdr.asperity.stable_parts import stable_parts
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.machine import spring
 from roughmdr.shapes import Shape
 
 E, WORK = 3e6, 0.04
@@ -179,6 +184,20 @@ def test_where_the_stiffness_has_two_extremes_a_branch_has_two_parts_on_a_spring
     assert (back.contact_radius[:2] > 100.0 * found.contact_radius[:2]).all()
 
 
+@pytest.mark.parametrize("beyond", [1e-6, 1e-4, 1e-2])
+def test_a_part_is_found_however_short_it_is(beyond: float) -> None:
+    shape, curve = twins()["two parts"]
+    contact = Contact.of(shape, E, Adhesion(WORK))
+    u = 1.9 + math.sqrt(0.61) * np.array([-1.0, 1.0])
+    peak, trough = -2.0 * E * curve.size * u**10 * (u - 3.0) / (u - 1.0)
+
+    def parts(stiffness: float) -> int:
+        return len(stable_parts(contact, spring(stiffness), branches_of(contact)[0]))
+
+    assert [parts(peak * (1.0 + sign * beyond)) for sign in (-1.0, 1.0)] == [1, 2]
+    assert [parts(trough * (1.0 + sign * beyond)) for sign in (-1.0, 1.0)] == [2, 1]
+
+
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_what_goes_out_comes_back(name: str) -> None:
     shape, curve = twins()[name]
@@ -307,22 +326,23 @@ def test_jkr_has_no_contact_before_first_touch(name: str) -> None:
     assert (approach(shape, curve, remote=0.0, machine_stiffness=k).contact_radius > 0.0).all()
 
 
-def test_a_truncated_cone_is_on_its_inner_branch_first() -> None:
-    shape, curve = rm.TruncatedCone(SLOPE, B), JkrTruncatedCone(E, _flat_work(4.4), B, slope=SLOPE)
+@pytest.mark.parametrize("name", ["two branches", "outer fold", "rounded"])
+def test_an_approach_skips_an_inner_branch_that_ends_before_first_touch(name: str) -> None:
+    """On the first stable root from a = 0 up, by a look at all radii."""
+    shape, curve = twins()[name]
     numbers = numbers_of(curve)
     state = curve.at(curve.grid)
-    beyond = curve.grid >= 1.0
-    delta, force, a = state.delta[beyond], state.force[beyond], state.a[beyond]
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(delta)))) + 1
-    assert turns.size == 2
-    top, foot = delta[turns]
-    assert foot < 0.0
-    onset = np.array([0.0, 0.5 * top, 0.99 * top, 1.01 * top, 3.0 * top]) if top > 0.0 else np.array([0.0, 1e-8])
-    found = rm.indent(shape, approach=True, indentation=onset, **numbers)
-    for i, wanted in enumerate(onset):
-        first = int(np.argmax(delta >= wanted))
-        assert float(found.contact_radius[i]) == pytest.approx(a[first], rel=2e-3)
-        assert float(found.force[i]) == pytest.approx(force[first], rel=5e-3)
+    rises = np.diff(state.delta) > 0.0
+    depth = float(rm.pull_off(shape, control="displacement", **numbers).indentation)
+    indentations = -depth * np.array([-0.5, -1e-9, 0.0, 0.3, 2.0])
+    found = rm.indent(shape, approach=True, indentation=indentations, **numbers)
+    assert (found.force[:2] == 0.0).all()
+    assert (found.contact_radius[:2] == 0.0).all()
+    assert (rm.indent(shape, indentation=indentations[:2], **numbers).contact_radius > 0.0).all()
+    for i, wanted in list(enumerate(indentations))[2:]:
+        first = int(np.argmax(rises & (state.delta[1:] >= wanted)))
+        assert float(found.contact_radius[i]) == pytest.approx(state.a[first], rel=2e-3)
+        assert float(found.force[i]) == pytest.approx(state.force[first], abs=5e-3 * np.abs(state.force[:20000]).max())
 
 
 @pytest.mark.parametrize("name", TWINS_DUGDALE)
