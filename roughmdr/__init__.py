@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from roughmdr import spectrum, theory
     from roughmdr.aggregate import load_separation
     from roughmdr.asperity.equilibria import equilibria
-    from roughmdr.asperity.indent import indent, pull_off, tabor
+    from roughmdr.asperity.indent import indent
+    from roughmdr.asperity.pull_off import pull_off
+    from roughmdr.asperity.tabor import tabor
     from roughmdr.ensemble import generate
     from roughmdr.errors import (
         FailedRuns,
@@ -46,7 +48,9 @@ if TYPE_CHECKING:
 _ROOMS = {
     "aggregate": ("load_separation",),
     "asperity.equilibria": ("equilibria",),
-    "asperity.indent": ("indent", "pull_off", "tabor"),
+    "asperity.indent": ("indent",),
+    "asperity.pull_off": ("pull_off",),
+    "asperity.tabor": ("tabor",),
     "ensemble": ("generate",),
     "errors": (
         "FailedRuns",

@@ -95,6 +95,7 @@ ASPERITY = _declare(
     ("contact_area", "m2", "area of the contact"),
     ("cohesive_radius", "m", "radius up to which the surfaces attract each other"),
     ("stiffness", "N m-1", "slope dP/d(delta) of the branch"),
+    ("remote", "m", "far end of the spring, past where the slack spring brings the tip to first touch"),
 )
 """Variables of a single asperity."""
 

@@ -18,7 +18,7 @@ from roughmdr.shapes import ProfileShape, Shape
 
 Results = dict[str, Floats]
 
-_FIXED_GRIPS, _DEAD_LOAD = 0.0, 1.0
+FIXED_GRIPS, DEAD_LOAD = 0.0, 1.0
 
 
 class Contact(NamedTuple):
@@ -34,6 +34,11 @@ class Contact(NamedTuple):
     force: float
     stiffness: float
 
+    @property
+    def onset(self) -> float:
+        """The indentation [m] from which on the surfaces touch, or attract each other, as they approach."""
+        return -self.adhesion.range
+
     @classmethod
     def of(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
         """Return the contact of a shape; ShapeError unless it is one, OutOfRange if a float cannot hold its scales."""
@@ -42,7 +47,7 @@ class Contact(NamedTuple):
         width, rise, params = shape.nondimensional()
         law = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
-            params = _prepared(law, shape, effective_modulus, adhesion, _FIXED_GRIPS)
+            params = prepared(law, shape, effective_modulus, adhesion, FIXED_GRIPS)
             if (shape.pinned or shape.limit < adhesion.range) and adhesion.cohesive and params[COUNT] == 0.0:
                 reason = (
                     f"is so long that a contact of {shape} is lost in its roundings"
@@ -63,7 +68,7 @@ class Contact(NamedTuple):
         """
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
-            params = _prepared(self.law, self.shape, self.effective_modulus, self.adhesion, _DEAD_LOAD)
+            params = prepared(self.law, self.shape, self.effective_modulus, self.adhesion, DEAD_LOAD)
             force, radius = self.law.force_scales(self.effective_modulus, self.adhesion.work, width, rise, params)
         self._check(force=force[0], contact_radius=radius)
         return self._exact(force, params), radius, params
@@ -107,8 +112,8 @@ class Contact(NamedTuple):
         state = apply(law.state, np.where(in_contact, self.reduced(delta, self.depth), 1.0), self.params)
         one_step_above = self.reduced(np.nextafter(detachment, math.inf) * np.ones(1), self.depth)
         beside_fold = np.where(delta == detachment, apply(law.state, one_step_above, self.params), state)
-        radius, force, _ = self._radius_force_stiffness(state)
-        stiffness = self._radius_force_stiffness(beside_fold)[2]
+        radius, force, _ = self.radius_force_stiffness(state)
+        stiffness = self.radius_force_stiffness(beside_fold)[2]
         return self._results(in_contact, state, force=force, contact_radius=radius, stiffness=stiffness)
 
     def at_force(self, force: Floats) -> Results:
@@ -121,10 +126,10 @@ class Contact(NamedTuple):
         in_contact = (force >= lowest) if law.adhesive else (force > 0.0)
         distance = np.where(in_contact, self.reduced(force, scale), 1.0)
         state = apply(law.state_of_force, distance, params)
-        radius, _, stiffness = self._radius_force_stiffness(state)
+        radius, _, stiffness = self.radius_force_stiffness(state)
         if law.radius_of_force is not None:
             radius = scale_radius * apply(law.radius_of_force, distance, params)
-        delta = self._indentation(state)
+        delta = self.indentation_of(state)
         results = self._results(in_contact, state, indentation=delta, contact_radius=radius, stiffness=stiffness)
         return {**results, "force": force}
 
@@ -154,16 +159,26 @@ class Contact(NamedTuple):
         if law.adhesive and not law.iterative:  # other folds lie between the floats
             above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             beside_fold = np.where(state == 0.0, above, state)
-        force, stiffness = self._radius_force_stiffness(state)[1], self._radius_force_stiffness(beside_fold)[2]
-        delta = self._indentation(state)
+        force, stiffness = self.radius_force_stiffness(state)[1], self.radius_force_stiffness(beside_fold)[2]
+        delta = self.indentation_of(state)
         return self._results(in_contact, state, indentation=delta, force=force, stiffness=stiffness)
 
-    def _radius_force_stiffness(self, state: Floats) -> tuple[Floats, Floats, Floats]:
+    def radius_force_stiffness(self, state: Floats) -> tuple[Floats, Floats, Floats]:
         """Return contact radius [m], force [N] and stiffness [N/m] of each state."""
         law, params = self.law, self.params
         with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
             parts = apply_all(law.radius_force_stiffness, state, params)
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
+
+    def at_states(self, in_contact: NDArray[np.bool_], state: Floats) -> Results:
+        """Return all quantities of the equilibrium at each state; zeros out of contact."""
+        radius, force, stiffness = self.radius_force_stiffness(state)
+        delta = self.indentation_of(state)
+        if self.law.adhesive:  # a rounding below detachment there would be no contact
+            delta = np.maximum(delta, -self.depth[0])
+        return self._results(
+            in_contact, state, indentation=delta, force=force, contact_radius=radius, stiffness=stiffness
+        )
 
     def _results(self, in_contact: NDArray[np.bool_], state: Floats, **results: Floats) -> Results:
         """Return results, with the cohesive radius [m] where adhesion has a range; zeros out of contact."""
@@ -171,13 +186,14 @@ class Contact(NamedTuple):
             results["cohesive_radius"] = self.radius * apply(self.law.cohesive_radius, state, self.params)
         return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
 
-    def _indentation(self, state: Floats) -> Floats:
+    def indentation_of(self, state: Floats) -> Floats:
         """Return the indentation [m] of each state."""
         distance = apply(self.law.reduced_control, state, self.params)
         return self.depth[0] * (distance - 1.0) - self.depth[1] if self.law.adhesive else self.depth[0] * distance
 
 
-def _prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
+def prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
+    """Return the params of one contact under a control."""
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control), 0)

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.fields.half_space import HalfSpace
 from roughmdr.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STEEP
+from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values
-from roughmdr.schema.material import MaterialArguments, effective_modulus_of
+from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
@@ -29,23 +30,24 @@ def pressure(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[MaterialArguments],
+    **material: Unpack[AdhesiveMaterial],
 ) -> xr.DataArray:
     """Compute the normal pressure on the surface, compression positive; 0 outside the contact.
 
     p = (E*/pi) ∫_r^a g'(x)/sqrt(x^2 - r^2) dx - E* dl(a)/(pi sqrt(a^2 - r^2)), for a flat punch
-    (E*/pi) delta/sqrt(b^2 - r^2).
+    (E*/pi) delta/sqrt(b^2 - r^2). With adhesion="dugdale", in place of the term of dl,
+    -(2/pi) strength atan(sqrt((c^2 - a^2)/(a^2 - r^2))), and p = -strength from a to the cohesive radius c.
 
     Parameters
     ----------
     shape, **material
-        The profile, and E* as in ``indent``.
+        The profile, and E*, adhesion, strength, range and error as in ``indent``.
     r : array_like, shape () or (n,)
         Distances from the axis [m], at least 0.
     contact_radius, indentation : float or str, optional
         One of them [m]: the equilibrium with that radius, or the contact as on retraction; p is 0 out of contact.
     work : float or str, optional
-        Work of adhesion [J/m^2], with JKR; 0 for none.
+        Work of adhesion [J/m^2]; 0 for none.
 
     Returns
     -------
@@ -55,8 +57,8 @@ def pressure(
     Raises
     ------
     OutOfRange
-        Where an argument is out of its range, or p is infinite: at the edge of the contact with adhesion and of a flat
-        punch, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
+        Where an argument is out of its range, or p is infinite: at the edge of the contact with JKR and of a flat punch
+        that is pressed, at a corner within the contact, and at the tip where the profile is sharp, f'(0+) > 0.
     ShapeError, RoughmdrError
         As ``indent``.
 
@@ -71,15 +73,22 @@ def pressure(
     >>> p = rm.pressure(tip, r=["0 nm", "20 nm", "60 nm"], contact_radius="50 nm", effective_modulus="1 GPa")
     >>> [f"{value:.4g}" for value in p.values]
     ['3.183e+07', '2.917e+07', '0']
+    >>> attraction = {"work": "50 mJ/m^2", "adhesion": "dugdale", "strength": "100 MPa"}
+    >>> p = rm.pressure(tip, r=["0 nm", "52 nm"], contact_radius="50 nm", effective_modulus="1 GPa", **attraction)
+    >>> [f"{value:.4g}" for value in p.values]
+    ['8.488e+06', '-1e+08']
     """
+    asked = Adhesion.from_arguments(work, material)
     modulus = effective_modulus_of(pressure, material)
-    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
+    state = HalfSpace.of(shape, modulus, asked, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("r", at)
     p, inside = np.zeros_like(at), at < state.radius
     with np.errstate(all="ignore"):
         p[inside] = modulus / math.pi * state.total(PRESSURE, at[inside])
+    if state.zone is not None:
+        p[~inside & (at < state.reach)] = -state.zone.strength
     return _array("pressure", p, values, warn_limits(state.warnings))
 
 
@@ -90,11 +99,12 @@ def surface_displacement(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[MaterialArguments],
+    **material: Unpack[AdhesiveMaterial],
 ) -> xr.DataArray:
     """Compute the normal displacement of the surface, positive into the half-space.
 
     Inside the contact u = delta - f(r), outside (2/pi) ∫_0^a (delta - g(x))/sqrt(r^2 - x^2) dx, far away P/(pi E* r).
+    With adhesion="dugdale" outside less (4/pi) (strength/E*) ∫_a^min(r,c) sqrt((c^2 - x^2)/(r^2 - x^2)) dx.
 
     Parameters
     ----------
@@ -123,13 +133,14 @@ def surface_displacement(
     >>> [f"{value:.4g}" for value in u.values]
     ['2e-09', '3.797e-11']
     """
+    asked = Adhesion.from_arguments(work, material)
     modulus = effective_modulus_of(surface_displacement, material)
-    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
+    state = HalfSpace.of(shape, modulus, asked, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("r", check_values("r", r, "m"))
     at = np.atleast_1d(values)
     u = np.zeros_like(at)
-    if state.radius > 0.0:
-        inside = at <= state.radius
+    if state.reach > 0.0:
+        inside = (at <= state.radius) & (state.radius > 0.0)
         with np.errstate(all="ignore"):
             u[inside] = state.indentation - shape.f(at[inside])
             u[~inside] = 2.0 / math.pi * state.total(DISPLACEMENT, at[~inside])
@@ -143,7 +154,7 @@ def axis_stress(
     contact_radius: float | str | None = None,
     indentation: float | str | None = None,
     work: float | str = 0.0,
-    **material: Unpack[MaterialArguments],
+    **material: Unpack[AdhesiveMaterial],
 ) -> xr.Dataset:
     """Compute the stress on the axis below the contact, tension positive.
 
@@ -157,6 +168,7 @@ def axis_stress(
         Depths [m], at least 0; 0 is refused where the pressure is infinite at r = 0.
     **material
         poisson [1] of the half-space in any case; with it effective_modulus [Pa], or modulus [Pa] as in ``indent``.
+        Of adhesion "jkr" only.
 
     Returns
     -------
@@ -182,13 +194,16 @@ def axis_stress(
     >>> f"{float(stress.largest_shear_depth):.3g}"  # 0.48 of the contact radius
     '2.4e-08'
     """
+    asked = Adhesion.from_arguments(work, material)
+    if asked.model != "jkr":
+        raise RoughmdrError(f"adhesion is {asked.model!r}; axis_stress takes adhesion='jkr' only")
     if material.get("poisson") is None:
         raise RoughmdrError("axis_stress needs the poisson of the half-space, with effective_modulus as with modulus")
     poisson = check_poisson("poisson", material["poisson"])
     if material.get("effective_modulus") is not None and material.get("modulus") is None:
         del material["poisson"]
     modulus = effective_modulus_of(axis_stress, material)
-    state = HalfSpace.of(shape, modulus, work, contact_radius=contact_radius, indentation=indentation)
+    state = HalfSpace.of(shape, modulus, asked, contact_radius=contact_radius, indentation=indentation)
     values = check_radii("z", check_values("z", z, "m"))
     at = np.atleast_1d(values)
     state.refuse_singular("z", at, only=0.0)

@@ -7,8 +7,10 @@ import numpy as np
 
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact
+from roughmdr.asperity.tabor import resolved
 from roughmdr.errors import OutOfRange
 from roughmdr.fields.integrals import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN, field_kernel
+from roughmdr.fields.zone import Zone
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
@@ -35,23 +37,27 @@ class HalfSpace(NamedTuple):
     width: float
     rise: float
     params: Any  # those of the shape, with room for what its profile precomputes
+    zone: Zone | None = None  # around the contact, where adhesion has a range
 
     @classmethod
-    def of(cls, shape: Shape, modulus: float, work: float | str, **controls: float | str | None) -> "HalfSpace":
+    def of(cls, shape: Shape, modulus: float, asked: Adhesion, **controls: float | str | None) -> "HalfSpace":
         """Return the state under the one of two controls that is given; errors as ``indent``."""
         control, raw = exactly_one("a field", **controls)
         value = check_scalar(control, raw, "m")
-        adhesion, values = Adhesion.checked("jkr", work, None), np.array([value])
+        adhesion, values = resolved(shape, modulus, asked), np.array([value])
         contact = Contact.of(shape, modulus, adhesion)
         with np.errstate(all="ignore"):
             if control == "contact_radius":
-                radius, depth = values, contact.at_radius(values)["indentation"]
+                radius, depth, in_contact = values, contact.at_radius(values)["indentation"], values > 0.0
                 t = apply(contact.law.state_of_radius, radius, contact.radius, contact.params)
             else:
-                radius, depth = contact.at_indentation(values)["contact_radius"], values
-                distance = np.where(radius > 0.0, contact.reduced(values, contact.depth), 1.0)
+                found, depth = contact.at_indentation(values), values
+                radius = found["contact_radius"]
+                in_contact = found.get("cohesive_radius", radius) > 0.0
+                distance = np.where(in_contact, contact.reduced(values, contact.depth), 1.0)
                 t = apply(contact.law.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
+            zone = Zone.of(contact, float(t[0])) if adhesion.cohesive and (a > 0.0 or in_contact[0]) else None
         if not (math.isfinite(a) and math.isfinite(delta)):
             raise OutOfRange(f"the contact at {control} = {value:g} m is not representable")
         width, rise, params = shape.nondimensional()
@@ -61,7 +67,14 @@ class HalfSpace(NamedTuple):
             profile.precompute(params)
         stretch = delta if shape.pinned else -release_stretch(a, modulus, adhesion.work)
         state = float(t[0]) if shape.uses_profile else a / width
+        if zone is not None and zone.extent > 0.0:
+            return cls(shape, profile, delta, a, zone.stretch, zone.t, width, rise, params, zone)
         return cls(shape, profile, delta, a, stretch, state, width, rise, params)
+
+    @property
+    def reach(self) -> float:
+        """The radius [m] within which there is a pressure."""
+        return self.radius if self.zone is None else self.zone.outer
 
     def slope(self, r: float) -> float:
         """Return the slope f' at r over width, in units of rise over width."""
@@ -85,7 +98,7 @@ class HalfSpace(NamedTuple):
                 before, after = self.slope(math.nextafter(edge, 0.0)), self.slope(math.nextafter(edge, math.inf))
                 if after - before > _ROUNDING * after and self.t > profile.t_of_radius(edge, 1.0, self.params):
                     infinite[edge * self.width] = "a corner of the profile"
-        if self.stretch != 0.0:
+        if self.stretch != 0.0 and self.zone is None:
             infinite[self.radius] = "the edge of the contact"
         return infinite
 
@@ -100,14 +113,20 @@ class HalfSpace(NamedTuple):
     def total(self, kind: int, at: Floats) -> Floats:
         """Return the integral of a weight with d(g - delta) to the edge of the contact, the jump there included."""
         body = np.zeros_like(at)
-        if self.profile is not None:
+        if self.profile is not None and self.radius > 0.0:
             body = apply(field_kernel(type(self.shape)), at, kind, self.radius, self.t, self.width, self.params)
         if np.isnan(body).any():
             raise OutOfRange(
                 f"the field at {at[np.isnan(body)][0]:g} m of a contact with the radius {self.radius:g} m needs "
                 f"more digits than a float has: {self.shape}"
             )
-        return np.asarray(self.rise * body / self.width ** _POWER[kind] + self.stretch * self._edge(kind, at))
+        total = self.rise * body / self.width ** _POWER[kind]
+        if self.zone is not None and kind == PRESSURE:
+            return np.asarray(total + self.zone.pressure_share(at))
+        total = total + self.stretch * self._edge(kind, at)
+        if self.zone is not None and kind == DISPLACEMENT:
+            total = total + self.zone.displacement_share(at)
+        return np.asarray(total)
 
     def _edge(self, kind: int, at: Floats) -> Floats:
         """Return the weight at the edge of the contact."""
