@@ -9,8 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from roughmdr.aggregate.law import LoadSeparation
-from roughmdr.aggregate.under_machine import Jump
-from roughmdr.loading.machine import Machine
+from roughmdr.loading.machine import Jump, Machine
 from roughmdr.numerics.arguments import Floats
 
 

@@ -10,14 +10,15 @@ from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.machine_loss import machine_loss
 from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.under_machine import Jump, separations_of
+from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
-from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.placed import check_placed
+from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading import smooth_passage
-from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
+from roughmdr.loading.machine import FIXED_GRIPS, Jump, MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 
@@ -53,6 +54,10 @@ def simulate(
 
     if isinstance(path, LoadingPath):
         return along(path, names)
+    if interaction is not None:
+        check_placed(ensemble, interaction)
+        if reason := reason_against_adhesion(interaction, adhesion):
+            raise SceneError(f"interaction {reason}")
     clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
 
     def under(path: MachinePath, names: list[str]) -> LoadSeparation:
@@ -62,7 +67,7 @@ def simulate(
         separation = np.where(flown, clear, separation)
         law = along(_way(separation, path), [name for name in names if name not in OF_MACHINE])
         variables = {**law.variables, "separation": np.where(flown, np.nan, separation), "remote": path.demand}
-        if jumps:
+        if jumps and lossy:
             lost = machine_loss(path.machine, jumps, separation, clear, lambda h, names: along(_way(h, path), names))
             variables |= {name: variables[name] + lost for name in _LOSSES.intersection(names)}
         return law._replace(variables=variables).only(names)
@@ -96,13 +101,19 @@ def _separations(
     columns = ensemble.nondimensional()
     validity = jkr_validity(ensemble.shape, ensemble.spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
-    if interaction is None or not ensemble.height.size:
+    alone = interaction is None or not ensemble.height.size
+    if alone or adhesion.work > 0.0:
         kernels = choose(ensemble.shape, adhesion, columns.params)
-        return separations_of(
+        found = separations_of(
             kernels, ensemble.height, columns, effective_modulus, adhesion, path.machine, path.demand, jumps=jumps
         )
-    if adhesion.work > 0.0:
-        raise SceneError("path: a machine does not go with adhesion and interaction together")
+        if alone or interaction is None:
+            return found
+        from roughmdr.interaction.jkr.machine import separations_of as of_coupled
+
+        lowest = min(float(found[0].min()), float(ensemble.height[0]))  # as far as independent ones let the flat come
+        material = effective_modulus, adhesion.work
+        return of_coupled(ensemble, path.machine, path.demand, material, interaction, lowest)
 
     def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
         found = compute(

@@ -1,7 +1,6 @@
 """The separations of a flat that hangs on a machine, from what the machine demands at each step."""
 
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from roughmdr.aggregate.loop import compiled_sum
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels, Material
-from roughmdr.loading.machine import Machine, legs_of
+from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import specialise
@@ -44,18 +43,6 @@ _PARTS = (
     machine_jumps.through_jumps,
     passage.follow,
 )
-
-
-class Jump(NamedTuple):
-    """A jump of the flat, at one demand of the machine."""
-
-    step: int
-    """The step that comes after it."""
-    demand: float
-    before: float
-    """The separation [m] that it begins from."""
-    after: float
-    """The separation [m] that it ends at; inf where a dead load pulls the flat off."""
 
 
 @cache

@@ -141,6 +141,18 @@ def attributes_of(control: str) -> dict[str, str]:
     return (COORDINATES.get(control) or CURVE_VARIABLES[control]).attrs
 
 
+class Jump(NamedTuple):
+    """A jump of the flat, at one demand of the machine."""
+
+    step: int
+    """The step that comes after it."""
+    demand: float
+    before: float
+    """The separation [m] that it begins from."""
+    after: float
+    """The separation [m] that it ends at; inf where a dead load pulls the flat off."""
+
+
 class Leg(NamedTuple):
     """Steps of a path in which the machine moves one way."""
 

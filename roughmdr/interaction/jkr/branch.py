@@ -163,10 +163,12 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
                 return here._replace(leads=None), fold
             root = Bracket((at, slope), (float(new.t[number]), after))
             if end := _fold(problem, Place(new, own, place), root, drive, number, turning):
-                return end, fold
+                if end.along <= 1.0:
+                    return end, fold
+                if there := _at_end(problem, here, end, drive):
+                    return there, None
         elif place >= 1.0:
-            guess = between(problem, here, Place(new, factors, place), 1.0, drive)
-            if there := _stable(problem, here, newton(problem, guess, drive, factors)[0], 1.0):
+            if there := _at_end(problem, here, Place(new, factors, place), drive):
                 return there, None
         elif place > along:
             there = Place(new, own, place)
@@ -177,6 +179,12 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     if here.leads is None:
         raise NoEquilibriumError
     return here._replace(leads=None), None
+
+
+def _at_end(problem: Problem, here: Place, beyond: Place, drive: Drive) -> Place | None:
+    """Return the end of the path, between two places; None where it is not found."""
+    guess = between(problem, here, beyond, 1.0, drive)
+    return _stable(problem, here, newton(problem, guess, drive, here.factors)[0], 1.0)
 
 
 def _lead_step(problem: Problem, fast: Fast, t: float, slope: float) -> float:
