@@ -193,8 +193,15 @@ class _Flat:
         """Return the state of the largest demand between two, of which the slope falls."""
         if not low.separation < high.separation:
             return high
-        rising, falling = self._slope(low), self._slope(high)
-        if falling >= 0.0 or rising <= 0.0:
+        rising = self._slope(low)
+
+        def slope_at(state: State) -> float:
+            """Return the slope; next to a fold, where none is found, a negative one."""
+            found = self._slope(state)
+            return found if math.isfinite(found) else -abs(rising)
+
+        falling = slope_at(high)
+        if falling >= 0.0 or not rising > 0.0:
             return high if falling >= 0.0 else low
         # The slope falls like the inverse root of the distance to a fold: it is sought in that root.
         end = high.separation + _BESIDE * self._natural
@@ -204,7 +211,7 @@ class _Flat:
         for _ in range(_MAX_ROUNDS):
             at = root.next
             best = self._followed.to(low, end - at * at)[0]
-            value = self._slope(best) * at
+            value = slope_at(best) * at
             root.narrow(at, value)
             if value == 0.0 or root.width * at <= 0.25 * _BESIDE * self._natural:
                 break

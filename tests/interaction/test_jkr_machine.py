@@ -1,0 +1,178 @@
+"""Adhesive asperities that feel each other, on a machine: by hand where it can be done, first passages elsewhere."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+import xarray as xr
+from scenes import ASPERITIES, scene
+
+import roughmdr as rm
+
+UNITS = [(1.0, 1.0, 1.0 / (2.0 * math.pi)), (2e-5, 3e6, 0.05), (20e-9, 70e9, 0.08)]
+"""R [m], E* [Pa], w [J/m2]."""
+
+
+def scales(radius: float, modulus: float, work: float) -> tuple[float, float, float]:
+    """a0 and d0 [m], and 2 E* a0 d0 [N]."""
+    a0 = float(np.cbrt(2.0 * math.pi * work * radius**2 / modulus))
+    return a0, a0**2 / radius, 2.0 * modulus * a0 * (a0**2 / radius)
+
+
+def placed(radius: float, at: list[tuple[float, float]], height: list[float], side: float) -> xr.Dataset:
+    """Paraboloids at positions and heights [m] on a patch of a side [m]."""
+    x, y = np.array(at, dtype=float).T
+    columns = {"height": height, "radius": np.full(len(height), radius), "x": x, "y": y}
+    arrays = {name: ("asperity", np.asarray(values, dtype=float)) for name, values in columns.items()}
+    return xr.Dataset(arrays, attrs={"shape": "paraboloid", "patch": side, "nominal_area": side**2})
+
+
+def fold(compliance: float) -> tuple[float, float]:
+    """Position [d0] and load [2 E* a0 d0] at which one contact lets go that gives way by this much [d0] for a load."""
+    with mp.workdps(30):
+        c = mp.mpf(compliance)
+        t = mp.findroot(lambda t: 4 * t**3 - 1 + c * (4 * t**5 - 3 * t**2), (0.62, 0.95), solver="anderson")
+        return float(t - t**4 - c * (2 * t**6 / 3 - t**3)), float(2 * t**6 / 3 - t**3)
+
+
+@pytest.mark.parametrize(("radius", "modulus", "work"), UNITS)
+@pytest.mark.parametrize("kappa", [0.03, 1.0, 40.0])
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_equal_contacts_on_a_spring_let_go_where_the_reduced_problem_folds(radius, modulus, work, kappa, count) -> None:
+    """Contacts that all feel g times their load give way by g + count/kappa together."""
+    a0, d0, load = scales(radius, modulus, work)
+    distance, stiffness = 5.0, 2.0 * modulus * a0 * kappa
+    corners = [(0.0, 0.0), (distance, 0.0), (0.5 * distance, 0.5 * math.sqrt(3.0) * distance)][:count]
+    data = placed(radius, [(a0 * x, a0 * y) for x, y in corners], [0.0] * count, 40.0 * a0)
+    far, force = fold((count - 1) * 2.0 / (math.pi * distance) + count / kappa)
+    remote = d0 * np.array([0.0, far * (1.0 - 1e-8), far * (1.0 + 1e-8)])
+    found = rm.load_separation(
+        data,
+        remote=remote,
+        machine_stiffness=stiffness,
+        effective_modulus=modulus,
+        work=work,
+        interaction={"model": "pairwise", "boundary": "free", "order": 1},
+    )
+    assert found.contact_count.values.tolist() == [count, count, 0.0]
+    assert float(found.force[1]) == pytest.approx(count * force * load, rel=1e-3)  # as the root of the distance
+    rtol = np.array([1e-11, 1e-8, 1e-11])  # next to the fold the load follows the separation steeply
+    assert (
+        abs(found.force - stiffness * (found.separation - found.remote)) <= rtol * count * (load + stiffness * d0)
+    ).all()
+    assert float(found.separation[2]) == remote[2]
+
+
+@pytest.mark.parametrize(("radius", "modulus", "work"), UNITS)
+def test_one_contact_under_a_dead_load_holds_up_to_its_pull_off_force(radius, modulus, work) -> None:
+    a0, d0, _ = scales(radius, modulus, work)
+    data, force = placed(radius, [(0.0, 0.0)], [0.3 * d0], 20.0 * a0), 1.5 * math.pi * work * radius
+    found = rm.load_separation(
+        data,
+        force=[0.0, -force * (1.0 - 1e-9), -force * (1.0 + 1e-9), 0.0],
+        effective_modulus=modulus,
+        work=work,
+        interaction={"model": "pairwise", "boundary": "free"},
+    )
+    assert found.contact_count.values.tolist() == [1.0, 1.0, 0.0, 1.0]
+    assert np.isnan(found.separation.values).tolist() == [False, False, True, False]
+    assert float(found.separation[3]) == pytest.approx(float(found.separation[0]), rel=1e-10)
+
+
+def test_a_cycle_loses_what_its_two_jumps_lose() -> None:
+    radius, modulus, work = UNITS[1]
+    a0, d0, load = scales(radius, modulus, work)
+    found = rm.load_separation(
+        placed(radius, [(0.0, 0.0)], [0.0], 20.0 * a0),
+        remote=d0 * np.linspace(1.0, -1.0, 5),
+        machine_stiffness=2.0 * modulus * a0,
+        effective_modulus=modulus,
+        work=work,
+        unload=True,
+        interaction={"model": "pairwise", "boundary": "free"},
+        variables=("dissipated_energy", "machine_dissipated_energy"),
+    )
+    total, of_machine = (
+        float(found[name][-1]) / (load * d0) for name in ("dissipated_energy", "machine_dissipated_energy")
+    )
+    assert total == pytest.approx(0.240488279597161, rel=1e-9)
+    assert total - of_machine == pytest.approx(0.15 + 0.1 * 4.0 ** (-4.0 / 3.0), rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_ensembles_stand_where_the_demand_is_met_first(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    radius, modulus, work = UNITS[seed % 3]
+    a0, d0, load = scales(radius, modulus, work)
+    count, side, dead = int(rng.integers(2, 7)), 18.0 * a0, seed % 2 == 0
+    cells = rng.permutation(9)[:count]
+    at = [(6.0 * a0 * (cell % 3 + 0.3 * rng.random()), 6.0 * a0 * (cell // 3 + 0.3 * rng.random())) for cell in cells]
+    data = placed(radius, at, sorted(rng.normal(0.0, 0.4 * d0, count), reverse=True), side)
+    material = {
+        "effective_modulus": modulus,
+        "work": work,
+        "interaction": {"model": "pairwise", "order": 1 + seed // 3, "boundary": ["periodic", "free"][seed % 2]},
+    }
+    if dead:
+        turns, machine = load * np.array([0.0, 0.8 * count, -0.2, 0.5 * count, -0.45 * count]), {}
+    else:
+        machine = {"machine_stiffness": 2.0 * modulus * a0 * float(10.0 ** rng.uniform(-1.0, 1.0))}
+        way = load * count / machine["machine_stiffness"]
+        turns = np.array([2.0 * d0, -1.5 * d0 - 0.8 * way, 0.5 * d0, -d0, 3.0 * d0 + way])
+    steps = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in pairwise(turns)] + [turns[-1:]])
+    found = rm.load_separation(data, **{"force" if dead else "remote": steps}, **machine, **material)
+    h, asked = found.separation.values, -steps if dead else steps
+    scale = np.ptp(asked)
+    assert float(found.contact_count[-1]) == 0.0
+    for step in range(1, h.size):
+        if not (np.isfinite(h[step]) and np.isfinite(h[step - 1])) or h[step] == h[step - 1]:
+            continue
+        way = np.linspace(h[step - 1], h[step], 12)[1:]
+        before = np.where(np.isfinite(h[:step]), h[:step], 10.0 * d0)
+        force = rm.load_separation(data, separation=np.append(before, way), **material).force.values[step:]
+        met = -force if dead else way - force / machine["machine_stiffness"]
+        if float(found.contact_count[step]) > 0.0:
+            assert met[-1] == pytest.approx(asked[step], abs=1e-10 * scale)
+        rising = asked[step] > asked[step - 1]
+        assert (met[:-1] <= asked[step] + 1e-9 * scale if rising else met[:-1] >= asked[step] - 1e-9 * scale).all()
+
+
+def test_more_steps_on_a_leg_move_nothing() -> None:
+    radius, modulus, work = UNITS[1]
+    a0, d0, load = scales(radius, modulus, work)
+    data = placed(radius, [(0.0, 0.0), (5.0 * a0, a0), (a0, 6.0 * a0)], [0.2 * d0, 0.0, -0.1 * d0], 20.0 * a0)
+    material = {"effective_modulus": modulus, "work": work, "interaction": "pairwise"}
+    many = np.concatenate([np.linspace(0.0, 2.0 * load, 13), np.linspace(2.0 * load, -0.8 * load, 13)[1:]])
+    few = rm.load_separation(data, force=many[::4], **material).separation.values
+    all_of_them = rm.load_separation(data, force=many, **material).separation.values
+    np.testing.assert_allclose(few, all_of_them[::4], rtol=0.0, atol=1e-10 * d0)
+
+
+def test_a_scene_presses_to_a_preload_and_pulls_until_all_contacts_are_lost(tmp_path: Path) -> None:
+    asked = scene(
+        asperities={**ASPERITIES, "count": 12, "placement": "random"},
+        path={"preload": "2 uN", "machine_stiffness": "50 N/m", "steps": 6, "unload": True},
+        interaction={"model": "pairwise"},
+    )
+    result = rm.run(asked, out=tmp_path / "pulled.nc")
+    assert (result.contact_count.isel(step=-1) == 0.0).all()
+    np.testing.assert_allclose(result.force.isel(step=5), 2e-6, rtol=1e-9)
+    assert np.isfinite(result.pull_off_force).all()
+
+
+def test_adhesion_with_a_range_is_refused() -> None:
+    radius, modulus, work = UNITS[1]
+    data = placed(radius, [(0.0, 0.0)], [0.0], 1e-3)
+    with pytest.raises(rm.SceneError, match="'pairwise' goes with adhesion 'jkr' only, not 'dugdale'"):
+        rm.load_separation(
+            data,
+            force=[1e-6],
+            effective_modulus=modulus,
+            work=work,
+            adhesion="dugdale",
+            strength=1e6,
+            interaction="pairwise",
+        )
