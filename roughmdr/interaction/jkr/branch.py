@@ -27,6 +27,7 @@ _ROUGH = 1e-8  # error of states on the way, over the natural depth
 _KINK = 1e-9  # of a state, across which the slope before a fold jumps
 _FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
 _SLOPE_RTOL = 1e-5
+_AT_FOLD = 1e-6  # of the path: so near before a fold the stable state may not be found
 _SIGN_RTOL = 1e-2
 
 
@@ -163,10 +164,10 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
                 return here._replace(leads=None), fold
             root = Bracket((at, slope), (float(new.t[number]), after))
             if end := _fold(problem, Place(new, own, place), root, drive, number, turning):
-                if end.along <= 1.0:
-                    return end, fold
-                if there := _at_end(problem, here, end, drive):
+                if end.along > 1.0 and (there := _at_end(problem, here, end, drive, fold=True)):
                     return there, None
+                if end.along <= 1.0 + _AT_FOLD:
+                    return end, fold
         elif place >= 1.0:
             if there := _at_end(problem, here, Place(new, factors, place), drive):
                 return there, None
@@ -181,9 +182,10 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     return here._replace(leads=None), None
 
 
-def _at_end(problem: Problem, here: Place, beyond: Place, drive: Drive) -> Place | None:
-    """Return the end of the path, between two places; None where it is not found."""
-    guess = between(problem, here, beyond, 1.0, drive)
+def _at_end(problem: Problem, here: Place, beyond: Place, drive: Drive, *, fold: bool = False) -> Place | None:
+    """Return the end of the path, between two places, the second of which may be a fold; None where it is not found."""
+    part = (1.0 - here.along) / (beyond.along - here.along)
+    guess = between(problem, here, beyond, 1.0, drive, 1.0 - math.sqrt(1.0 - part) if fold else part)
     return _stable(problem, here, newton(problem, guess, drive, here.factors)[0], 1.0)
 
 
@@ -195,10 +197,12 @@ def _lead_step(problem: Problem, fast: Fast, t: float, slope: float) -> float:
     return _FLAT_STEP if problem.kernels.flat and t < _NEAR_FLAT else _LEAD_STEP
 
 
-def between(problem: Problem, here: Place, there: Place, along: float, drive: Drive) -> State:
-    """Return the guess at a place between two others or near them."""
+def between(
+    problem: Problem, here: Place, there: Place, along: float, drive: Drive, part: float | None = None
+) -> State:
+    """Return the guess at a place between two others or near them, a ``part`` of the way, else in proportion."""
     state, new, change = here.state, there.state, along - here.along
-    part = change / (there.along - here.along)
+    part = change / (there.along - here.along) if part is None else part
     t, load = state.t + part * (new.t - state.t), state.load + part * (new.load - state.load)
     separation, outer = state.separation + drive.separation * change, state.outer + drive.outer * change
     return evaluate(problem, state.inside, t, load, separation, outer)
