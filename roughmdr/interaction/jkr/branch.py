@@ -163,11 +163,9 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
             if slope <= 0.0:
                 return here._replace(leads=None), fold
             root = Bracket((at, slope), (float(new.t[number]), after))
-            if end := _fold(problem, Place(new, own, place), root, drive, number, turning):
-                if end.along > 1.0 and (there := _at_end(problem, here, end, drive, fold=True)):
-                    return there, None
-                if end.along <= 1.0 + _AT_FOLD:
-                    return end, fold
+            end = _fold(problem, Place(new, own, place), root, drive, number, turning)
+            if end and (found := _to_fold(problem, here, end, drive, fold)):
+                return found
         elif place >= 1.0:
             if there := _at_end(problem, here, Place(new, factors, place), drive):
                 return there, None
@@ -180,6 +178,13 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     if here.leads is None:
         raise NoEquilibriumError
     return here._replace(leads=None), None
+
+
+def _to_fold(problem: Problem, here: Place, end: Place, drive: Drive, fold: Fold) -> tuple[Place, Fold | None] | None:
+    """Return the fold at ``end`` or, if the path ends before it, the end of the path; None where that is not found."""
+    if end.along > 1.0 and (there := _at_end(problem, here, end, drive, fold=True)):
+        return there, None
+    return (end, fold) if end.along <= 1.0 + _AT_FOLD else None
 
 
 def _at_end(problem: Problem, here: Place, beyond: Place, drive: Drive, *, fold: bool = False) -> Place | None:
