@@ -26,7 +26,9 @@ _BESIDE = 1e-11  # of it: on either side of an avalanche
 _FURTHER = 4.0  # times that, where an avalanche comes on the other side
 _RTOL = 1e-13  # of it: a shorter step of Newton's method is the last
 _MAX_ROUNDS, _MAX_STATES = 60, 1_000_000
-_LOWER = 2.0  # times as far below the highest summit, where the flat comes lower than was foreseen
+_PARTS = (1.0, 0.1, 0.01, 1e-3, 1e-4)  # of such a step, where no state is found
+_SETTLED = 1e-12  # of the natural depth: error of the lowest separation
+_LOWER, _MAX_FAILURES = 2.0, 3  # times as far below the highest summit, where no equilibrium is found; and how often
 
 
 def separations_of(
@@ -39,29 +41,38 @@ def separations_of(
 ) -> tuple[Floats, list[Jump]]:
     """Return the separation [m] at each demand of a machine, inf where it has pulled the flat off, and its jumps.
 
-    ``material`` is E* [Pa] and w [J/m2]; ``lowest`` [m] is about the lowest separation. OutOfRange where no equilibrium
-    is found, or the contact of an asperity is not representable.
+    ``material`` is E* [Pa] and w [J/m2]; ``lowest`` [m] is about the lowest separation. How pairs that overlap are
+    taken depends on that, so that it is sought with them. OutOfRange where no equilibrium is found, or the contact of
+    an asperity is not representable.
     """
-    top = float(ensemble.height.max())
-    while True:
-        followed = Followed(ensemble, *material, interaction, lowest)
+    top, failures = float(ensemble.height.max()), 0
+    followed = Followed(ensemble, *material, interaction, lowest)
+    for _ in range(_MAX_ROUNDS):
+        pairs, natural = followed.problem.pairs, float(followed.problem.natural.max()) * followed.placed.length
         try:
-            return _Flat(followed, machine, material[0], lowest).follow(demand)
-        except _TooLow:
-            lowest = top - _LOWER * max(top - lowest, float(followed.problem.natural.max()) * followed.placed.length)
+            separation, jumps = _Flat(followed, machine, material[0]).follow(demand)
+            found = min(float(separation.min()), top)
         except NoEquilibriumError:
-            raise OutOfRange("path: the contacts have no equilibrium on the way of this machine") from None
-
-
-class _TooLow(Exception):  # noqa: N818 - control flow within this module
-    """The flat comes lower than asperities were taken for."""
+            failures += 1
+            if failures > _MAX_FAILURES:
+                break
+            lowest = top - _LOWER * max(top - lowest, natural)
+            followed = Followed(ensemble, *material, interaction, lowest)
+            continue
+        followed = Followed(ensemble, *material, interaction, found)
+        now = followed.problem.pairs
+        same = np.array_equal(pairs.members, now.members) and np.array_equal(pairs.share, now.share)
+        if same or abs(found - lowest) <= _SETTLED * natural:
+            return separation, jumps
+        lowest = found
+    raise OutOfRange("path: the contacts have no equilibrium on the way of this machine")
 
 
 class _Flat:
     """A flat on its machine."""
 
-    def __init__(self, followed: Followed, machine: Machine, modulus: float, lowest: float) -> None:
-        self._followed, self._machine, self._lowest = followed, machine, lowest / followed.placed.length
+    def __init__(self, followed: Followed, machine: Machine, modulus: float) -> None:
+        self._followed, self._machine = followed, machine
         self._length = followed.placed.length
         self._unit = math.pi * modulus * self._length**2
         self._natural = float(followed.problem.natural.max())
@@ -119,7 +130,13 @@ class _Flat:
 
     def _smooth(self, state: State, h: float) -> tuple[State, float | None]:
         """Return the state at h, or just before the first avalanche on the way, and the place of that."""
-        new, found, _ = self._followed.to(state, h)
+        for part in _PARTS:
+            try:
+                new, found, _ = self._followed.to(state, state.separation + part * (h - state.separation))
+                break
+            except NoEquilibriumError:  # beyond what is looked for there may be none
+                if part == _PARTS[-1]:
+                    raise
         if not found:
             return new, None
         event, side = found[0].separation, math.copysign(_BESIDE * self._natural, h - state.separation)
@@ -146,8 +163,6 @@ class _Flat:
             here = self._demand(state)
             if here <= target:
                 return state
-            if state.separation < self._lowest:
-                raise _TooLow
             end, event = self._smooth(state, state.separation - _STEP * self._natural)
             there = self._demand(end)
             if there <= target:
