@@ -22,7 +22,7 @@ _APART = 2.0**-6  # of the range of the looks: nearer to one before, a look take
 
 
 class Far(NamedTuple):
-    """What the last looks at all contacts have shown."""
+    """The sums that the last looks at all contacts have given."""
 
     separation: Floats
     """Of each look [m]."""
