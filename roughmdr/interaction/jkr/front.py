@@ -1,0 +1,179 @@
+"""The asperities that adhesive contacts are made of, in units of the patch, and the way of the flat over them."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.errors import OutOfRange
+from roughmdr.interaction import close
+from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.green import below_all
+from roughmdr.interaction.jkr import coincident
+from roughmdr.interaction.jkr.branch import NoEquilibriumError
+from roughmdr.interaction.jkr.choose import jkr_kernels
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, evaluate
+from roughmdr.interaction.jkr.events import Event, advance
+from roughmdr.interaction.jkr.interface import JkrKernels
+from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.lone import Surface
+from roughmdr.interaction.placed_asperities import Placed
+from roughmdr.numerics.arguments import Floats
+
+_GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
+_MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
+_CLEAR = 0.1  # of the margin that asperities outside the window must keep
+_MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
+_LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
+
+
+class Piece(NamedTuple):
+    """A part of the way of the flat on which no contact is made or lost, with the avalanche at its end."""
+
+    problem: Problem
+    """The asperities near contact."""
+    kept: NDArray[np.int64]
+    """Their numbers among all."""
+    begin: State
+    end: State
+    event: Event | None
+    """That which ends it; None at the end of the way."""
+    avalanche: Avalanche | None
+    rest: State
+    """The state after the avalanche; the end where there is none."""
+
+
+class Front:
+    """The highest asperities of an ensemble, under a flat that comes as close as ``lowest``."""
+
+    def __init__(self, placed: Placed, effective_modulus: float, work: float, lowest: float) -> None:
+        self.placed, self._kernels = placed, jkr_kernels(placed.law)
+        self._work = work / effective_modulus / placed.length
+        if not (self._work > 0.0 and math.isfinite(self._work)):
+            raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
+        self._asperities = placed.asperities(placed.height.size)
+        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self._work)
+        self.bring_down(lowest)
+
+    @property
+    def top(self) -> float:
+        """The height of the highest asperity."""
+        return float(self.placed.height.max(initial=-math.inf))
+
+    def bring_down(self, lowest: float) -> None:
+        """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
+        self._lowest = lowest
+        reach = lowest - float(self._natural.max(initial=0.0))
+        self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
+
+    def _take(self, count: int) -> None:
+        """Have the highest asperities."""
+        placed, kernels, interaction = self.placed, self._kernels, self.placed.interaction
+        count, self.next_height = min(count, placed.height.size), -math.inf
+        if count < placed.height.size:
+            self.next_height = float(placed.height[count])
+        at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
+        x, y = np.ascontiguousarray(at.T)
+        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
+        depth = np.maximum(few.height - self._lowest, 0.0)
+        bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
+        self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
+        coincident.take_out(self.pairs, coupling.matrices)
+        self.problem = Problem(
+            kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count]
+        )
+        self.kept = np.arange(0)
+        self.window = self.problem.part(self.kept)
+
+    def _extend(self, state: State) -> State:
+        """Return the state with more asperities, none of which is in contact."""
+        self._take(math.ceil(_GROWTH * state.t.size) + 1)
+        more = self.problem.natural.size - state.t.size
+        inside = np.append(state.inside, np.zeros(more, np.bool_))
+        t, load = (np.append(each, np.zeros(more)) for each in (state.t, state.load))
+        new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
+        return new._replace(factors=state.factors)
+
+    def parted(self, separation: float) -> State:
+        """Return the asperities without contact."""
+        count = self.problem.natural.size
+        nothing = np.zeros(count)
+        return evaluate(self.problem, np.zeros(count, np.bool_), nothing, nothing, separation, none(self.problem))
+
+    def whole(self, kept: NDArray[np.int64], part: State) -> State:
+        """Return the state of all asperities, of which some are near contact."""
+        inside, t, load = (np.zeros(self.problem.natural.size, kind) for kind in (np.bool_, np.float64, np.float64))
+        inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
+        new = evaluate(self.problem, inside, t, load, part.separation, none(self.problem))
+        return new._replace(factors=part.factors)
+
+    def go(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state at a separation, and the way to it.
+
+        NoEquilibriumError where no equilibrium is found.
+        """
+        new, pieces = self._advance(state, h)
+        while not self._complete(new):
+            state = self._extend(state)
+            new, pieces = self._advance(state, h)
+        return new, pieces
+
+    def _advance(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state at a separation, and the way to it; only asperities near contact are looked at meanwhile."""
+        margin = _MARGIN * float(self.problem.natural.max(initial=0.0))
+        while True:
+            near = state.gap + max(state.separation - h, 0.0) > -margin
+            self._look_at(np.flatnonzero(near | state.inside))
+            few, kept, pieces = self.window, self.kept, list[Piece]()
+            part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, none(few))
+            part, event = part._replace(factors=state.factors), None
+            while not pieces or event is not None:
+                end, event = advance(few, part, Drive(h - part.separation, none(few)))
+                rest, one = (end, None) if event is None else avalanche(few, end, event)
+                bare = [each._replace(factors=None) for each in (part, end, rest)]  # a long way has many, each large
+                pieces.append(Piece(few, kept, bare[0], bare[1], event, one, bare[2]))
+                part = rest
+                if len(pieces) > _MOST_AVALANCHES * (kept.size + 1) + 1:
+                    raise NoEquilibriumError
+            new = self.whole(kept, part)
+            beyond = new.gap.copy()
+            beyond[kept] = -math.inf
+            if not (beyond > -_CLEAR * margin).any():
+                return new, pieces
+            margin *= 4.0
+
+    def _look_at(self, needed: NDArray[np.int64]) -> None:
+        """Have the asperities that are needed, and not many more, in the window."""
+        held = np.isin(needed, self.kept).all()
+        if not held or self.kept.size > _LARGEST_WINDOW * needed.size + _SMALL_WINDOW:
+            self.kept, self.window = needed, self.problem.part(needed)
+
+    def _complete(self, state: State) -> bool:
+        """Return whether no asperity that was left out can touch."""
+        if not state.inside.any():
+            return True
+        return not self.next_height - state.separation > min(below_all(state.potential), 0.0)
+
+
+def _lone_scales(kernels: JkrKernels, asperities: Asperities, work: float) -> tuple[Floats, Floats]:
+    """Return the stretch at the edge of each contact as it is made alone, and its radius."""
+    made = np.array([_radius(kernels, asperities, i, 0.0, work) for i in range(asperities.height.size)])
+    if not ((made > 0.0) & np.isfinite(made)).all():
+        raise OutOfRange("the contact of an asperity under adhesion is not representable")
+    return np.sqrt(2.0 * math.pi * work * made), made
+
+
+def _radius(kernels: JkrKernels, asperities: Asperities, i: int, depth: float, work: float) -> float:
+    """Return the radius of a contact alone as it is made at an indentation."""
+    size = float(asperities.size[i])
+    if kernels.pinned:
+        return size
+    t = kernels.next_state(0.0, True, Surface(depth), work, i, asperities)
+    return size * kernels.terms(t, kernels.params_of(asperities.params, i))[0]
+
+
+def none(problem: Problem) -> Floats:
+    """Return an outer field of none."""
+    return np.zeros((5, problem.natural.size))
