@@ -19,6 +19,7 @@ from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
+from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
@@ -30,14 +31,14 @@ from roughmdr.shapes import SHAPES
 
 def compute(
     ensemble: Ensemble,
-    path: LoadingPath,
+    path: LoadingPath | MachinePath,
     *,
     effective_modulus: float,
     adhesion: Adhesion,
     variables: Iterable[str],
     interaction: Interaction | None = None,
 ) -> LoadSeparation:
-    """Return the law of ``ensemble`` along a path; E* [Pa].
+    """Return the law of ``ensemble`` along a path; E* [Pa]. That of a machine is for adhesion with "pairwise" only.
 
     SceneError where a variable needs a nominal area and there is none, or where the ensemble lacks positions or the
     patch that the interaction needs, OutOfRange where the contact of an asperity is
@@ -54,6 +55,7 @@ def compute(
             from roughmdr.aggregate.coupled import law_of_coupled
 
             return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
+    assert isinstance(path, LoadingPath)
     columns, spread = ensemble.nondimensional(), ensemble.spread
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)

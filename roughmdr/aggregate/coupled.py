@@ -7,12 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
+from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
@@ -20,7 +22,7 @@ from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, couplin
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
-    from roughmdr.interaction.jkr.path import Adhering
+    from roughmdr.interaction.jkr.account import Adhering
     from roughmdr.interaction.solve import Coupled
     from roughmdr.interaction.totals import Step
 
@@ -54,15 +56,22 @@ class CoupledTotals(NamedTuple):
 
 def law_of_coupled(
     ensemble: Ensemble,
-    path: LoadingPath,
+    path: LoadingPath | MachinePath,
     effective_modulus: float,
     adhesion: Adhesion,
     interaction: Interaction,
     names: list[str],
 ) -> LoadSeparation:
-    """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
+    """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had.
+
+    Under a machine, on which they adhere, it has the separation too: NaN where a dead load has pulled the flat off.
+    """
     work, spread = adhesion.work, ensemble.spread
-    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
+    if isinstance(path, LoadingPath):
+        separation = path.separation
+        found = sum_coupled(ensemble, separation, effective_modulus, interaction, names, work)
+    else:
+        found, separation = _on_machine(ensemble, path, effective_modulus, adhesion, interaction, names)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
     validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
@@ -75,9 +84,13 @@ def law_of_coupled(
         coupling_error=found.error,
     )
     model = "jkr" if work > 0.0 else "none"
+    of_totals = [name for name in names if name != "separation"]
     result = LoadSeparation.of(
-        found.total, names, path.separation, givens, assumptions, found.visits, validity.tabor, model
+        found.total, of_totals, separation, givens, assumptions, found.visits, validity.tabor, model
     )
+    if "separation" in names:
+        shown = np.where(np.isinf(separation), np.nan, separation)
+        result = result._replace(variables=result.variables | {"separation": shown})
     if found.avalanches is not None:
         result = result._replace(
             pull_off=found.pull_off,
@@ -105,12 +118,7 @@ def sum_coupled(
         from roughmdr.interaction.jkr import path
 
         adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names))
-        found = _found(ensemble, separation, interaction, adhering, adhesive=True)
-        return found._replace(
-            warnings=(adhering.crowded,) if adhering.crowded else (),
-            pull_off=adhering.pull_off,
-            avalanches=tuple(each.size for each in adhering.avalanches),
-        )
+        return _adhering(ensemble, separation, interaction, adhering)
     from roughmdr.interaction.solve import solve_path
 
     if asked := [name for name in names if name in UNAVAILABLE]:
@@ -120,6 +128,33 @@ def sum_coupled(
     if found.marked and interaction.beyond == "boundary_elements":
         return _on_grid(found, ensemble, separation, effective_modulus, names)
     return found
+
+
+def _on_machine(
+    ensemble: Ensemble,
+    path: MachinePath,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    interaction: Interaction,
+    names: list[str],
+) -> tuple[CoupledTotals, Floats]:
+    """Return the totals of adhesive asperities on a machine, and the separations [m]; inf where the flat is pulled off.
+    """
+    from roughmdr.interaction.jkr.path import solve_on_machine
+
+    clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
+    found = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, set(names), clear)
+    return _adhering(ensemble, found.separation, interaction, found), found.separation
+
+
+def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, along: "Adhering") -> CoupledTotals:
+    """Return the totals of adhesive contacts along a path."""
+    found = _found(ensemble, separation, interaction, along, adhesive=True)
+    return found._replace(
+        warnings=(along.crowded,) if along.crowded else (),
+        pull_off=along.pull_off,
+        avalanches=tuple(each.size for each in along.avalanches),
+    )
 
 
 def _found(
@@ -157,6 +192,7 @@ def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, ND
         (totals.ERROR, [step.error for step in steps]),
         (totals.ENERGY, [step.energy for step in steps]),
         (totals.DISSIPATED, [step.dissipated for step in steps]),
+        (totals.MACHINE, [step.by_machine for step in steps]),
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])

@@ -11,7 +11,6 @@ from roughmdr.aggregate.machine_loss import machine_loss
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import Jump, separations_of
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -35,7 +34,7 @@ def simulate(
     That is NaN where a dead load has pulled the flat off. Errors as ``compute``.
     """
     names = list(variables)
-    if isinstance(path, LoadingPath):
+    if isinstance(path, LoadingPath) or (interaction is not None and adhesion.work > 0.0):
         return compute(
             ensemble,
             path,
@@ -86,8 +85,6 @@ def _separations(
         return separations_of(
             kernels, ensemble.height, columns, effective_modulus, adhesion, path.machine, path.demand, jumps=jumps
         )
-    if adhesion.work > 0.0:
-        raise SceneError("path: a machine does not go with adhesion and interaction together")
 
     def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
         found = compute(

@@ -60,10 +60,11 @@ class Account:
             self.dissipated += dissipated * self.energy_unit
             self._avalanches.append(Avalanche(separation * self._length, size, dissipated * self.energy_unit))
 
-    def lose(self) -> None:
-        """Add a step without an equilibrium."""
-        self._steps.append(Step(error=math.inf))
-        self._separation.append(math.nan)
+    def lose_rest(self, total: int) -> None:
+        """Add steps without an equilibrium, up to a number of them."""
+        rest = total - len(self._steps)
+        self._steps += [Step(error=math.inf)] * rest
+        self._separation += [math.nan] * rest
 
     def stand(self, state: State, separation: float, *, rises: bool) -> None:
         """Add a step at a separation [m], to which the flat has risen or come down."""

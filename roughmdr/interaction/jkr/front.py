@@ -62,10 +62,15 @@ class Front:
         """The height of the highest asperity."""
         return float(self.placed.height.max(initial=-math.inf))
 
+    @property
+    def depth(self) -> float:
+        """The largest natural depth."""
+        return float(self._natural.max(initial=0.0))
+
     def bring_down(self, lowest: float) -> None:
         """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
         self._lowest = lowest
-        reach = lowest - float(self._natural.max(initial=0.0))
+        reach = lowest - self.depth
         self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
 
     def _take(self, count: int) -> None:

@@ -1,0 +1,161 @@
+"""Adhesive contacts that feel each other, under a flat on a machine (``loading.machine``).
+
+On each leg the flat is followed under fixed grips, piece by piece between the events at which contacts are made or lost,
+to the first separation at which its demand has passed that of the machine.
+"""
+
+import math
+from typing import NamedTuple
+
+from roughmdr.interaction.jkr.account import Account
+from roughmdr.interaction.jkr.branch import NoEquilibriumError
+from roughmdr.interaction.jkr.equilibrium import State, energy
+from roughmdr.interaction.jkr.front import Front, Piece
+from roughmdr.interaction.jkr.section import Climb, Met, Section
+from roughmdr.loading.machine import DEAD_LOAD, Leg, Machine
+
+_LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural depth or its depth below first touch
+_OVERSHOOT = 1.2  # over the way to where the demand would be passed
+_MAX_WAYS = 100_000
+
+
+class _Stop(NamedTuple):
+    """A state at which the demand is passed, or has its peak."""
+
+    state: State
+    beyond: State | None
+    """At a peak the state after it, from where the demand has to grow again."""
+    dissipated: float
+    """By avalanches up to the state [J]."""
+
+
+class Hanging:
+    """The flat on a machine, in units of the patch."""
+
+    def __init__(self, front: Front, account: Account, machine: Machine, clear: float, *, lossy: bool) -> None:
+        self._front, self._account, self._machine, self._lossy = front, account, machine, lossy
+        self._clear = clear
+        self._state, self._flown = front.parted(front.top), True
+        self._slope = 0.0
+        self.lowest = math.inf
+        """The least separation so far."""
+
+    def follow(self, leg: Leg) -> None:
+        """Follow a leg, and account for its steps."""
+        climb, last = Climb(self._machine, 1.0 if leg.rises else -1.0), math.nan
+        for demand in leg.demand.tolist():
+            if demand != last:
+                self._go(climb, climb.sign * demand)
+            last = demand
+            self.lowest = min(self.lowest, self._state.separation)
+            separation = math.inf if self._flown else self._state.separation * self._front.placed.length
+            self._account.stand(self._state, separation, rises=leg.rises)
+
+    def _go(self, climb: Climb, level: float) -> None:
+        """Go to where the demand is first ``level``."""
+        dead_load, rises = self._machine.is_dead_load, climb.sign > 0.0
+        if self._state.inside.any():
+            if climb.value(self._state) >= level:
+                return
+        elif rises or (-level > 0.0 if dead_load else -level > self._front.top):
+            self._hold(climb, level)
+            return
+        else:
+            self._state, self._flown = self._front.parted(self._front.top), False
+        self._climb(climb, level)
+
+    def _hold(self, climb: Climb, level: float) -> None:
+        """Hold the flat without contacts where the machine has it."""
+        if not self._machine.is_dead_load:
+            self._state, self._flown = self._front.parted(climb.sign * level), False
+        elif level > 0.0 or climb.sign < 0.0:
+            self._state, self._flown = self._front.parted(max(self._clear, self._state.separation)), True
+
+    def _climb(self, climb: Climb, level: float) -> None:
+        """Go from contact, or from first touch, to where the demand is first ``level``."""
+        while True:
+            stop = self._walk(climb, self._state, level, peaks=self._lossy)
+            self._state = stop.state
+            if stop.beyond is None:
+                return
+            peak = climb.value(stop.state)
+            end = self._walk(climb, stop.beyond, peak, peaks=False)
+            self._account.machine_dissipated += self._loss(stop, end, climb.sign * peak)
+            self._state = end.state
+            if peak >= level:
+                return
+            if climb.sign > 0.0 and not self._state.inside.any():
+                self._hold(climb, level)
+                return
+
+    def _loss(self, begin: _Stop, end: _Stop, demand: float) -> float:
+        """Return the energy [J] that the machine loses in a jump at a demand."""
+        problem = self._front.problem
+        energies = [
+            energy(problem, each.state) + math.pi * float(self._machine.energy(each.state.separation, demand))  # type: ignore[arg-type]
+            for each in (begin, end)
+        ]
+        return (energies[0] - energies[1]) * self._account.energy_unit - (end.dissipated - begin.dissipated)
+
+    def _walk(self, climb: Climb, state: State, level: float, *, peaks: bool) -> _Stop:
+        """Go from a state with a lower demand to where that is ``level``, or to a peak of it if they are asked for."""
+        for _ in range(_MAX_WAYS):
+            if climb.sign > 0.0 and not state.inside.any():
+                self._state = state
+                self._hold(climb, level)
+                return self._stop(self._state)
+            begin = state
+            far = state.separation + climb.sign * self._way(climb, state, level)
+            state, pieces = self._front.go(state, far)
+            for piece in pieces:
+                if stop := self._on_piece(climb, piece, level, peaks=peaks):
+                    return stop
+                if climb.sign > 0.0 and not piece.rest.inside.any():
+                    state = self._front.parted(piece.rest.separation)
+                    break
+            if not any(piece.event for piece in pieces):
+                change = climb.value(state) - climb.value(begin)
+                self._slope = change / abs(state.separation - begin.separation)
+        raise NoEquilibriumError
+
+    def _way(self, climb: Climb, state: State, level: float) -> float:
+        """Return how far to go next."""
+        depth = self._front.depth
+        longest = _LONGEST * max(depth, self._front.top - state.separation)
+        if not (self._slope > 0.0 and state.inside.any()):
+            return longest
+        to_level = _OVERSHOOT * (level - climb.value(state)) / self._slope
+        return min(max(to_level, _SHORTEST * depth), longest)
+
+    def _on_piece(self, climb: Climb, piece: Piece, level: float, *, peaks: bool) -> _Stop | None:
+        """Return where the demand is passed on a piece or by the avalanche at its end, or its peak; None if neither."""
+        met: Met | None = None
+        if piece.begin.inside.any():
+            met = Section(piece, climb).meet(level, peaks=peaks)
+        if met is not None and met.passed:
+            self._slope = met.slope
+            self._account.pass_over(piece._replace(end=met.state, event=None, avalanche=None, rest=met.state))
+            return self._stop(self._front.whole(piece.kept, met.state))
+        before = self._account.dissipated
+        self._account.pass_over(piece)
+        end, rest = climb.value(piece.end), climb.value(piece.rest)
+        peak = met.state if met is not None else piece.end if peaks and rest < end else None
+        if piece.event is not None:
+            self._slope = 0.0
+        if peak is not None:
+            kept, whole = piece.kept, self._front.whole
+            return _Stop(whole(kept, peak), whole(kept, piece.rest), before)
+        if piece.event is not None and piece.rest.inside.any() and rest >= level:
+            return self._stop(self._front.whole(piece.kept, piece.rest))
+        return None
+
+    def _stop(self, state: State) -> _Stop:
+        return _Stop(state, None, self._account.dissipated)
+
+
+def in_patch(machine: Machine, modulus: float, length: float) -> tuple[Machine, float]:
+    """Return a machine in units of the patch, and the unit of its demand in SI."""
+    force = math.pi * modulus * length * length
+    if machine.is_dead_load:
+        return DEAD_LOAD, force
+    return Machine(1.0, machine.compliance * force / length), length
