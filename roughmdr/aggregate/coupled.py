@@ -138,9 +138,8 @@ def _on_machine(
     interaction: Interaction,
     names: list[str],
 ) -> tuple[CoupledTotals, Floats]:
-    """Return the totals of adhesive asperities on a machine, and the separations [m]; inf where the flat is pulled off.
-    """
-    from roughmdr.interaction.jkr.path import solve_on_machine
+    """Return the totals of adhesive asperities on a machine, and the separations [m]; inf of a flat pulled off."""
+    from roughmdr.interaction.jkr.machine_path import solve_on_machine
 
     clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
     found = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, set(names), clear)

@@ -10,8 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone
 from roughmdr.interaction.jkr.account import Account, Adhering
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone
 from roughmdr.interaction.jkr.path import solve_path
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction

@@ -85,9 +85,9 @@ class Account:
 
     def _totals(self, state: State) -> Step:
         problem, length = self._front.problem, self._length
-        lost = {"dissipated": self.dissipated + self.machine_dissipated, "by_machine": self.machine_dissipated}
+        lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
         if not state.inside.any():
-            return Step(**lost)
+            return Step(dissipated=lost[0], by_machine=lost[1])
         on = np.flatnonzero(state.inside)
         radius, load = state.contacts.radius[on], state.load[on]
         unit = math.pi * self._modulus * length * length
@@ -109,7 +109,7 @@ class Account:
             Overlap(int(overlapping.sum()), share),
             int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
-            **lost,
+            *lost,
         )
 
     def _pull_off(self) -> PullOff:

@@ -69,7 +69,7 @@ class Front:
 
     def bring_down(self, lowest: float) -> None:
         """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
-        self._lowest = lowest
+        self.lowest = lowest
         reach = lowest - self.depth
         self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
 
@@ -82,13 +82,11 @@ class Front:
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
         x, y = np.ascontiguousarray(at.T)
         coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
-        depth = np.maximum(few.height - self._lowest, 0.0)
+        depth = np.maximum(few.height - self.lowest, 0.0)
         bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
         self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
         coincident.take_out(self.pairs, coupling.matrices)
-        self.problem = Problem(
-            kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count]
-        )
+        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count])
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
@@ -109,7 +107,8 @@ class Front:
 
     def whole(self, kept: NDArray[np.int64], part: State) -> State:
         """Return the state of all asperities, of which some are near contact."""
-        inside, t, load = (np.zeros(self.problem.natural.size, kind) for kind in (np.bool_, np.float64, np.float64))
+        count = self.problem.natural.size
+        inside, t, load = np.zeros(count, np.bool_), np.zeros(count), np.zeros(count)
         inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
         new = evaluate(self.problem, inside, t, load, part.separation, none(self.problem))
         return new._replace(factors=part.factors)

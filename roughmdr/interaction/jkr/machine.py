@@ -1,7 +1,7 @@
 """Adhesive contacts that feel each other, under a flat on a machine (``loading.machine``).
 
-On each leg the flat is followed under fixed grips, piece by piece between the events at which contacts are made or lost,
-to the first separation at which its demand has passed that of the machine.
+On each leg the flat is followed under fixed grips, piece by piece between the events at which contacts are made or
+lost, to the first separation at which its demand has passed that of the machine.
 """
 
 import math
@@ -12,10 +12,11 @@ from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import State, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.section import Climb, Met, Section
-from roughmdr.loading.machine import DEAD_LOAD, Leg, Machine
+from roughmdr.loading.machine import Leg, Machine
 
 _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural depth or its depth below first touch
 _OVERSHOOT = 1.2  # over the way to where the demand would be passed
+_SHORTER, _MAX_SHORTER = 0.1, 4
 _MAX_WAYS = 100_000
 
 
@@ -92,7 +93,7 @@ class Hanging:
         """Return the energy [J] that the machine loses in a jump at a demand."""
         problem = self._front.problem
         energies = [
-            energy(problem, each.state) + math.pi * float(self._machine.energy(each.state.separation, demand))  # type: ignore[arg-type]
+            energy(problem, each.state) + math.pi * self._machine.energy(each.state.separation, demand)
             for each in (begin, end)
         ]
         return (energies[0] - energies[1]) * self._account.energy_unit - (end.dissipated - begin.dissipated)
@@ -105,8 +106,7 @@ class Hanging:
                 self._hold(climb, level)
                 return self._stop(self._state)
             begin = state
-            far = state.separation + climb.sign * self._way(climb, state, level)
-            state, pieces = self._front.go(state, far)
+            state, pieces = self._advanced(climb, state, self._way(climb, state, level))
             for piece in pieces:
                 if stop := self._on_piece(climb, piece, level, peaks=peaks):
                     return stop
@@ -117,6 +117,15 @@ class Hanging:
                 change = climb.value(state) - climb.value(begin)
                 self._slope = change / abs(state.separation - begin.separation)
         raise NoEquilibriumError
+
+    def _advanced(self, climb: Climb, state: State, way: float) -> tuple[State, list[Piece]]:
+        """Go so far, or less where there is no equilibrium further on."""
+        for _ in range(_MAX_SHORTER):
+            try:
+                return self._front.go(state, state.separation + climb.sign * way)
+            except NoEquilibriumError:
+                way *= _SHORTER
+        return self._front.go(state, state.separation + climb.sign * way)
 
     def _way(self, climb: Climb, state: State, level: float) -> float:
         """Return how far to go next."""
@@ -151,11 +160,3 @@ class Hanging:
 
     def _stop(self, state: State) -> _Stop:
         return _Stop(state, None, self._account.dissipated)
-
-
-def in_patch(machine: Machine, modulus: float, length: float) -> tuple[Machine, float]:
-    """Return a machine in units of the patch, and the unit of its demand in SI."""
-    force = math.pi * modulus * length * length
-    if machine.is_dead_load:
-        return DEAD_LOAD, force
-    return Machine(1.0, machine.compliance * force / length), length

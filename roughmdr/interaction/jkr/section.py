@@ -1,8 +1,8 @@
 """A smooth piece of the way of the flat, and where on it the demand of a machine is passed or turns back.
 
-Along the way the demand changes by w + c k (``loading.machine``), where k goes to minus infinity at a fold. Near one the
-contacts change with the root of the distance to it, so places on a piece are numbers u from 0 to 1, of which its length
-is even in u, or in 1 - (1 - u)^2 where it ends in a fold.
+Along the way the demand changes by w + c k (``loading.machine``), where k goes to minus infinity at a fold. Near one
+the contacts change with the root of the distance to it, so places on a piece are numbers u from 0 to 1: the way to one
+is proportional to u, or to 1 - (1 - u)^2 where the piece ends in a fold.
 """
 
 import math
@@ -128,7 +128,7 @@ class Section:
         found = slope(self._few, state, self._factors)
         if math.isnan(found):
             found = slope(self._few, state, Factors(self._few, state))
-        return float(self._climb.machine.slope(-found))
+        return self._climb.machine.slope(-found)
 
     def _at(self, place: float) -> State:
         """Return the contacts at a place, from those at the places on both sides."""
