@@ -44,16 +44,11 @@ def compute(
     not representable, or where the contacts have more area than the patch.
     """
     names = list(variables)
-    if ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
-        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
-    if interaction is not None:
-        check_placed(ensemble, interaction)
-        if reason := reason_against_adhesion(interaction, adhesion):
-            raise SceneError(f"interaction {reason}")
-        if interaction.model == "pairwise":
-            from roughmdr.aggregate.coupled import law_of_coupled
+    check_asked(ensemble, names, adhesion, interaction)
+    if interaction is not None and interaction.model == "pairwise":
+        from roughmdr.aggregate.coupled import law_of_coupled
 
-            return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
+        return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
     columns, spread = ensemble.nondimensional(), ensemble.spread
     validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
@@ -91,6 +86,16 @@ def compute(
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
     return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
+
+
+def check_asked(ensemble: Ensemble, names: list[str], adhesion: Adhesion, interaction: Interaction | None) -> None:
+    """Raise SceneError where an ensemble lacks what variables or the interaction need, or adhesion is against it."""
+    if ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
+        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
+    if interaction is not None:
+        check_placed(ensemble, interaction)
+        if reason := reason_against_adhesion(interaction, adhesion):
+            raise SceneError(f"interaction {reason}")
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:

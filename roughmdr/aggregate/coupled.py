@@ -13,6 +13,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
@@ -20,7 +21,7 @@ from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, couplin
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
-    from roughmdr.interaction.jkr.path import Adhering
+    from roughmdr.interaction.jkr.account import Adhering
     from roughmdr.interaction.solve import Coupled
     from roughmdr.interaction.totals import Step
 
@@ -61,8 +62,41 @@ def law_of_coupled(
     names: list[str],
 ) -> LoadSeparation:
     """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
+    separation = path.separation
+    found = sum_coupled(ensemble, separation, effective_modulus, interaction, names, adhesion.work)
+    return _law(ensemble, found, separation, effective_modulus, adhesion, names)
+
+
+def law_on_machine(
+    ensemble: Ensemble,
+    path: MachinePath,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    interaction: Interaction,
+    names: list[str],
+    clear: float,
+) -> tuple[LoadSeparation, Floats]:
+    """Return the law of adhesive asperities that feel each other in pairs, on a machine, and the separations [m].
+
+    Those are inf where a dead load has pulled the flat off; it is then held at ``clear`` [m], or higher.
+    """
+    from roughmdr.interaction.jkr.machine_path import solve_on_machine
+
+    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, set(names), clear)
+    found = _adhering(ensemble, along.separation, interaction, along)
+    return _law(ensemble, found, along.separation, effective_modulus, adhesion, names), along.separation
+
+
+def _law(
+    ensemble: Ensemble,
+    found: CoupledTotals,
+    separation: Floats,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    names: list[str],
+) -> LoadSeparation:
+    """Return the law with these totals at separations [m]."""
     work, spread = adhesion.work, ensemble.spread
-    found = sum_coupled(ensemble, path.separation, effective_modulus, interaction, names, work)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
     validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
@@ -75,9 +109,7 @@ def law_of_coupled(
         coupling_error=found.error,
     )
     model = "jkr" if work > 0.0 else "none"
-    result = LoadSeparation.of(
-        found.total, names, path.separation, givens, assumptions, found.visits, validity.tabor, model
-    )
+    result = LoadSeparation.of(found.total, names, separation, givens, assumptions, found.visits, validity.tabor, model)
     if found.avalanches is not None:
         result = result._replace(
             pull_off=found.pull_off,
@@ -105,12 +137,7 @@ def sum_coupled(
         from roughmdr.interaction.jkr import path
 
         adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names))
-        found = _found(ensemble, separation, interaction, adhering, adhesive=True)
-        return found._replace(
-            warnings=(adhering.crowded,) if adhering.crowded else (),
-            pull_off=adhering.pull_off,
-            avalanches=tuple(each.size for each in adhering.avalanches),
-        )
+        return _adhering(ensemble, separation, interaction, adhering)
     from roughmdr.interaction.solve import solve_path
 
     if asked := [name for name in names if name in UNAVAILABLE]:
@@ -120,6 +147,16 @@ def sum_coupled(
     if found.marked and interaction.beyond == "boundary_elements":
         return _on_grid(found, ensemble, separation, effective_modulus, names)
     return found
+
+
+def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, along: "Adhering") -> CoupledTotals:
+    """Return the totals of adhesive contacts along a path."""
+    found = _found(ensemble, separation, interaction, along, adhesive=True)
+    return found._replace(
+        warnings=(along.crowded,) if along.crowded else (),
+        pull_off=along.pull_off,
+        avalanches=tuple(each.size for each in along.avalanches),
+    )
 
 
 def _found(
@@ -157,6 +194,7 @@ def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, ND
         (totals.ERROR, [step.error for step in steps]),
         (totals.ENERGY, [step.energy for step in steps]),
         (totals.DISSIPATED, [step.dissipated for step in steps]),
+        (totals.MACHINE, [step.by_machine for step in steps]),
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])

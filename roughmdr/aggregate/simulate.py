@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from roughmdr.aggregate.compute import compute
+from roughmdr.aggregate.compute import check_asked, compute
 from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.machine_loss import machine_loss
@@ -12,9 +12,8 @@ from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import OutOfRange, SceneError
-from roughmdr.interaction.placed import check_placed
-from roughmdr.interaction.settings import Interaction, reason_against_adhesion
+from roughmdr.errors import OutOfRange
+from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading import smooth_passage
@@ -54,23 +53,27 @@ def simulate(
 
     if isinstance(path, LoadingPath):
         return along(path, names)
-    if interaction is not None:
-        check_placed(ensemble, interaction)
-        if reason := reason_against_adhesion(interaction, adhesion):
-            raise SceneError(f"interaction {reason}")
+    check_asked(ensemble, [name for name in names if name not in OF_MACHINE], adhesion, interaction)
     clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
 
     def under(path: MachinePath, names: list[str]) -> LoadSeparation:
+        of_contacts = [name for name in names if name not in OF_MACHINE]
+        if interaction is not None and adhesion.work > 0.0 and path.machine != FIXED_GRIPS:
+            from roughmdr.aggregate.coupled import law_on_machine
+
+            law, separation = law_on_machine(
+                ensemble, path, effective_modulus, adhesion, interaction, of_contacts, clear
+            )
+            return _with_place(law, separation, path).only(names)
         lossy = not _LOSSES.isdisjoint(names)
         separation, jumps = _separations(ensemble, path, effective_modulus, adhesion, interaction, jumps=lossy)
-        flown = np.isinf(separation)
-        separation = np.where(flown, clear, separation)
-        law = along(_way(separation, path), [name for name in names if name not in OF_MACHINE])
-        variables = {**law.variables, "separation": np.where(flown, np.nan, separation), "remote": path.demand}
+        way = np.where(np.isinf(separation), clear, separation)
+        law = _with_place(along(_way(way, path), of_contacts), separation, path)
         if jumps and lossy:
-            lost = machine_loss(path.machine, jumps, separation, clear, lambda h, names: along(_way(h, path), names))
-            variables |= {name: variables[name] + lost for name in _LOSSES.intersection(names)}
-        return law._replace(variables=variables).only(names)
+            lost = machine_loss(path.machine, jumps, way, clear, lambda h, names: along(_way(h, path), names))
+            variables = {name: law.variables[name] + lost for name in _LOSSES.intersection(names)}
+            law = law._replace(variables=law.variables | variables)
+        return law.only(names)
 
     if path.preload is not None:
         if not ensemble.height.size:
@@ -79,6 +82,12 @@ def simulate(
         coupled = interaction is not None and interaction.model == "pairwise"
         path = to_preload(path, Specimen(under, clear, depth, ensemble.nominal_area, coupled))
     return under(path, names)
+
+
+def _with_place(law: LoadSeparation, separation: Floats, path: MachinePath) -> LoadSeparation:
+    """Return the law with the separation at each step, inf where there is none, and the position of the machine."""
+    place = {"separation": np.where(np.isinf(separation), np.nan, separation), "remote": path.demand}
+    return law._replace(variables=law.variables | place)
 
 
 def _way(separation: Floats, path: MachinePath) -> LoadingPath:
@@ -95,25 +104,20 @@ def _separations(
     *,
     jumps: bool,
 ) -> tuple[Floats, list[Jump]]:
-    """Return the separation at each step of a machine, and its jumps; inf where a dead load has pulled the flat off."""
+    """Return the separation at each step of a machine, and its jumps; inf where a dead load has pulled the flat off.
+
+    Asperities that feel each other must not adhere.
+    """
     if path.machine == FIXED_GRIPS:
         return path.demand, []
     columns = ensemble.nondimensional()
     validity = jkr_validity(ensemble.shape, ensemble.spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
-    alone = interaction is None or not ensemble.height.size
-    if alone or adhesion.work > 0.0:
+    if interaction is None or not ensemble.height.size:
         kernels = choose(ensemble.shape, adhesion, columns.params)
-        found = separations_of(
+        return separations_of(
             kernels, ensemble.height, columns, effective_modulus, adhesion, path.machine, path.demand, jumps=jumps
         )
-        if alone or interaction is None:
-            return found
-        from roughmdr.interaction.jkr.machine import separations_of as of_coupled
-
-        lowest = min(float(found[0].min()), float(ensemble.height[0]))  # as far as independent ones let the flat come
-        material = effective_modulus, adhesion.work
-        return of_coupled(ensemble, path.machine, path.demand, material, interaction, lowest)
 
     def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
         found = compute(

@@ -27,3 +27,5 @@ class Step(NamedTuple):
     energy: float = 0.0
     dissipated: float = 0.0
     """By all jumps up to here."""
+    by_machine: float = 0.0
+    """The part of it that a machine loses."""

@@ -10,7 +10,7 @@ monotone leg the flat stands at the first separation, in the sense of the leg, a
 the machine.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from roughmdr.loading.path import labelled_branches
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, REMOTE, SEPARATION, TRAVEL
+
+Number = TypeVar("Number", float, Floats)
 
 
 class Machine(NamedTuple):
@@ -38,11 +40,11 @@ class Machine(NamedTuple):
         """Return the position of the far end [m], or minus the load [N], at which the flat is in equilibrium."""
         return self.weight * separation - self.compliance * force
 
-    def slope(self, stiffness: Floats) -> Floats:
+    def slope(self, stiffness: Number) -> Number:
         """Return by how much the demand grows with the separation; ``stiffness`` is that of the contacts [N/m]."""
         return self.weight + self.compliance * stiffness
 
-    def energy(self, separation: Floats, demand: Floats) -> Floats:
+    def energy(self, separation: Number, demand: Number) -> Number:
         """Return the energy of the machine [J]: k_m (h - X)^2/2 of the spring, L h of the dead load."""
         if self.is_dead_load:
             return -demand * separation

@@ -10,10 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction.jkr import path
+from roughmdr.interaction.jkr.account import Account, Adhering
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone
-from roughmdr.interaction.jkr.followed import Followed
-from roughmdr.interaction.jkr.path import Adhering, solve_path
+from roughmdr.interaction.jkr.path import solve_path
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction
 
@@ -154,15 +153,15 @@ def test_a_lone_contact_on_a_patch_goes_to_the_lone_one_as_the_patch_grows() -> 
 def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tuple[Problem, State]]:
     """Return the problem and the state at each separation [d0] where there are contacts."""
     states = []
-    totals = path._totals
+    totals = Account._totals
 
-    def noting(followed: Followed, state: State, *rest: object) -> object:
+    def noting(self: Account, state: State) -> object:
         if state.inside.any():
-            states.append((followed.problem, state))
-        return totals(followed, state, *rest)  # type: ignore[arg-type]
+            states.append((self._front.problem, state))
+        return totals(self, state)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(path, "_totals", noting)
+        patch.setattr(Account, "_totals", noting)
         found = follow(ensemble, units, h, order=order)
     assert all(math.isfinite(step.error) for step in found.steps)
     assert all(each.dissipated > 0.0 for each in found.avalanches)

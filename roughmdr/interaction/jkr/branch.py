@@ -109,7 +109,7 @@ def _at_corner(state: State) -> Fold | None:
 
 def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | None:
     """Return the place of a state that is stable and near the one before; None where it is not."""
-    if not _near(here.state, new):
+    if not is_near(here.state, new):
         return None
     factors = Factors(problem, new)
     return None if factors.unstable or not _yields(problem, new, factors) else Place(new, factors, along)
@@ -125,7 +125,7 @@ def _yields(problem: Problem, state: State, factors: Factors) -> bool:
     return bool(tangent.solve(edge, np.zeros_like(edge), factors, _SIGN_RTOL).radius[least] > 0.0)
 
 
-def _near(state: State, new: State) -> bool:
+def is_near(state: State, new: State) -> bool:
     """Return whether a state is an equilibrium near another one."""
     with np.errstate(all="ignore"):
         ratio = np.abs(np.log(new.t / state.t))
@@ -151,7 +151,7 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     while size > _LEAST_LEAD_STEP:
         guess, place = _to(problem, here, lead, at * (1.0 + sign * size), drive)
         new, place = newton(problem, guess, drive, factors, place, lead, _ROUGH)
-        size, near = 0.5 * size, _near(state, new)
+        size, near = 0.5 * size, is_near(state, new)
         own = Factors(problem, new) if near else factors
         after = turning(new, own) if near else None
         if after is None:

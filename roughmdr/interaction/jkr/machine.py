@@ -1,249 +1,171 @@
-"""The separations of a flat on a machine that is pressed against adhesive contacts which feel each other.
+"""Adhesive contacts that feel each other, under a flat on a machine (``loading.machine``).
 
-On each leg the stable path under fixed grips is followed, from one avalanche to the next, to the first separation at
-which the demand w h - c F (``loading.machine``) has passed that of the machine. Between two avalanches the demand is
-smooth: on the way down it falls, on the way up it may have a peak, where the stiffness of the contacts is minus that of
-the machine. Where it turns back, the flat jumps to where it passes again.
+On each leg the flat is followed under fixed grips, piece by piece between the events at which contacts are made or
+lost, to the first separation at which its demand has passed that of the machine.
 """
 
 import math
+from typing import NamedTuple
 
-import numpy as np
-
-from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import OutOfRange
-from roughmdr.interaction.jkr.bracket import Bracket
+from roughmdr.interaction.jkr.account import Account
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import State, alone
-from roughmdr.interaction.jkr.followed import Followed
-from roughmdr.interaction.jkr.tension import slope
-from roughmdr.interaction.settings import Interaction
-from roughmdr.loading.machine import Jump, Leg, Machine, legs_of
-from roughmdr.numerics.arguments import Floats
+from roughmdr.interaction.jkr.equilibrium import State, energy
+from roughmdr.interaction.jkr.front import Front, Piece
+from roughmdr.interaction.jkr.section import Climb, Met, Section
+from roughmdr.loading.machine import Leg, Machine
 
-_STEP = 0.5  # of the natural depth, at most from one state to the next
-_BESIDE = 1e-11  # of it: on either side of an avalanche
-_FURTHER = 4.0  # times that, where an avalanche comes on the other side
-_RTOL = 1e-13  # of it: a shorter step of Newton's method is the last
-_MAX_ROUNDS, _MAX_STATES = 60, 1_000_000
-_PARTS = (1.0, 0.1, 0.01, 1e-3, 1e-4)  # of such a step, where no state is found
-_SETTLED = 1e-12  # of the natural depth: error of the lowest separation
-_LOWER, _MAX_FAILURES = 2.0, 3  # times as far below the highest summit, where no equilibrium is found; and how often
+_LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural depth or its depth below first touch
+_OVERSHOOT = 1.2  # over the way to where the demand would be passed
+_SHORTER, _MAX_SHORTER = 0.1, 4
+_MAX_WAYS = 100_000
 
 
-def separations_of(
-    ensemble: Ensemble,
-    machine: Machine,
-    demand: Floats,
-    material: tuple[float, float],
-    interaction: Interaction,
-    lowest: float,
-) -> tuple[Floats, list[Jump]]:
-    """Return the separation [m] at each demand of a machine, inf where it has pulled the flat off, and its jumps.
+class _Stop(NamedTuple):
+    """A state at which the demand is passed, or has its peak."""
 
-    ``material`` is E* [Pa] and w [J/m2]; ``lowest`` [m] is about the lowest separation. How pairs that overlap are
-    taken depends on that, so that it is sought with them. OutOfRange where no equilibrium is found, or the contact of
-    an asperity is not representable.
-    """
-    top, failures = float(ensemble.height.max()), 0
-    followed = Followed(ensemble, *material, interaction, lowest)
-    for _ in range(_MAX_ROUNDS):
-        pairs, natural = followed.problem.pairs, float(followed.problem.natural.max()) * followed.placed.length
-        try:
-            separation, jumps = _Flat(followed, machine, material[0]).follow(demand)
-            found = min(float(separation.min()), top)
-        except NoEquilibriumError:
-            failures += 1
-            if failures > _MAX_FAILURES:
-                break
-            lowest = top - _LOWER * max(top - lowest, natural)
-            followed = Followed(ensemble, *material, interaction, lowest)
-            continue
-        followed = Followed(ensemble, *material, interaction, found)
-        now = followed.problem.pairs
-        same = np.array_equal(pairs.members, now.members) and np.array_equal(pairs.share, now.share)
-        if same or abs(found - lowest) <= _SETTLED * natural:
-            return separation, jumps
-        lowest = found
-    raise OutOfRange("path: the contacts have no equilibrium on the way of this machine")
+    state: State
+    beyond: State | None
+    """At a peak the state after it, from where the demand has to grow again."""
+    dissipated: float
+    """By avalanches up to the state [J]."""
 
 
-class _Flat:
-    """A flat on its machine."""
+class Hanging:
+    """The flat on a machine, which is in units of the patch, that of its demand being ``unit`` [m] or [N]."""
 
-    def __init__(self, followed: Followed, machine: Machine, modulus: float) -> None:
-        self._followed, self._machine = followed, machine
-        self._length = followed.placed.length
-        self._unit = math.pi * modulus * self._length**2
-        self._natural = float(followed.problem.natural.max())
+    def __init__(
+        self, front: Front, account: Account, machine: Machine, unit: float, clear: float, *, lossy: bool
+    ) -> None:
+        self._front, self._account, self._machine, self._unit, self._lossy = front, account, machine, unit, lossy
+        self._clear = clear
+        self._state, self._flown = front.parted(front.top), True
+        self._slope = 0.0
+        self.lowest = math.inf
+        """The least separation so far."""
 
-    def follow(self, demand: Floats) -> tuple[Floats, list[Jump]]:
-        """Return the separation [m] at each demand, and the jumps."""
-        separation, jumps = np.empty(demand.size), list[Jump]()
-        state: State | None = None  # none where the flat is far away
-        for leg in legs_of(demand):
-            for number, target in enumerate(leg.demand.tolist()):
-                step = leg.first + number
-                state = self._next(state, leg, target, step, jumps)
-                separation[step] = self._place(state, target)
-        return separation, jumps
+    def follow(self, leg: Leg) -> None:
+        """Follow a leg, with its demand in SI, and account for its steps."""
+        climb, last = Climb(self._machine, 1.0 if leg.rises else -1.0), math.nan
+        for demand in leg.demand.tolist():
+            if demand != last:
+                self._go(climb, climb.sign * demand / self._unit)
+            last = demand
+            self.lowest = min(self.lowest, self._state.separation)
+            self._account.stand(self._state, self._place(demand), rises=leg.rises)
 
-    def _place(self, state: State | None, target: float) -> float:
-        """Return the separation [m] of the flat; without contacts that of the far end, or inf under a dead load."""
-        if state is None:
-            return math.inf if self._machine.is_dead_load else target
-        return state.separation * self._length
+    def _place(self, demand: float) -> float:
+        """Return the separation [m] of the flat at a demand; without contacts that of the far end of the spring."""
+        if self._flown:
+            return math.inf
+        if not self._machine.is_dead_load and not self._state.inside.any():
+            return demand
+        return self._state.separation * self._front.placed.length
 
-    def _next(self, state: State | None, leg: Leg, target: float, step: int, jumps: list[Jump]) -> State | None:
-        """Return the state at a demand; none where there is no contact."""
-        if state is None:
-            state = self._arrival(leg, target, step, jumps)
-            if state is None:
-                return None
-        return self._rise(state, target, step, jumps) if leg.rises else self._sink(state, target, step, jumps)
+    def _go(self, climb: Climb, level: float) -> None:
+        """Go to where the demand is first ``level``."""
+        dead_load, rises = self._machine.is_dead_load, climb.sign > 0.0
+        if self._state.inside.any():
+            if climb.value(self._state) >= level:
+                return
+        elif rises or (-level > 0.0 if dead_load else -level > self._front.top):
+            self._hold(climb, level)
+            return
+        else:
+            self._state, self._flown = self._front.parted(self._front.top), False
+        self._climb(climb, level)
 
-    def _arrival(self, leg: Leg, target: float, step: int, jumps: list[Jump]) -> State | None:
-        """Return the state just above first touch, if the machine brings the flat there; below it, if that pulls."""
-        state = self._followed.begin(-math.inf)
-        touch = float(self._followed.problem.asperities.height.max())
-        state, _, _ = self._followed.to(state, touch + _BESIDE * self._natural)
-        away = target > 0.0 if self._machine.is_dead_load else target > touch * self._length
-        if away or leg.rises:
-            return None
-        if self._demand(state) <= target:
-            pulled = self._beyond(touch, state, -1.0)
-            if self._demand(pulled) > target:
-                after = self._sink(pulled, target, step, None)
-                self._note(jumps, step, target, state, after)
-                return after
-        return state
+    def _hold(self, climb: Climb, level: float) -> None:
+        """Hold the flat without contacts where the machine has it."""
+        if not self._machine.is_dead_load:
+            self._state, self._flown = self._front.parted(climb.sign * level), False
+        elif level > 0.0 or climb.sign < 0.0:
+            self._state, self._flown = self._front.parted(max(self._clear, self._state.separation)), True
 
-    def _demand(self, state: State) -> float:
-        """Return the demand of the machine [m] or [N]."""
-        force = self._unit * math.fsum(state.load.tolist())
-        return self._machine.weight * state.separation * self._length - self._machine.compliance * force
+    def _climb(self, climb: Climb, level: float) -> None:
+        """Go from contact, or from first touch, to where the demand is first ``level``."""
+        while True:
+            stop = self._walk(climb, self._state, level, peaks=self._lossy)
+            self._state = stop.state
+            if stop.beyond is None:
+                return
+            peak = climb.value(stop.state)
+            end = self._walk(climb, stop.beyond, peak, peaks=False)
+            self._account.machine_dissipated += self._loss(stop, end, climb.sign * peak)
+            self._state = end.state
+            if peak >= level:
+                return
+            if climb.sign > 0.0 and not self._state.inside.any():
+                self._hold(climb, level)
+                return
 
-    def _slope(self, state: State) -> float:
-        """Return by how much it grows with the separation."""
-        stiffness = -slope(*alone(self._followed.problem, state)) * self._unit / self._length
-        return (self._machine.weight + self._machine.compliance * stiffness) * self._length
+    def _loss(self, begin: _Stop, end: _Stop, demand: float) -> float:
+        """Return the energy [J] that the machine loses in a jump at a demand."""
+        problem = self._front.problem
+        energies = [
+            energy(problem, each.state) + math.pi * self._machine.energy(each.state.separation, demand)
+            for each in (begin, end)
+        ]
+        return (energies[0] - energies[1]) * self._account.energy_unit - (end.dissipated - begin.dissipated)
 
-    def _smooth(self, state: State, h: float) -> tuple[State, float | None]:
-        """Return the state at h, or just before the first avalanche on the way, and the place of that."""
-        for part in _PARTS:
-            try:
-                new, found, _ = self._followed.to(state, state.separation + part * (h - state.separation))
-                break
-            except NoEquilibriumError:  # beyond what is looked for there may be none
-                if part == _PARTS[-1]:
-                    raise
-        if not found:
-            return new, None
-        event, side = found[0].separation, math.copysign(_BESIDE * self._natural, h - state.separation)
-        while (event - side - state.separation) * side > 0.0:
-            before, found, _ = self._followed.to(state, event - side)
-            if not found:
-                return before, event
-            side *= _FURTHER  # a fold is met a little earlier on a shorter way
-        return state, event
-
-    def _beyond(self, event: float, end: State, side: float) -> State:
-        """Return the state just after an avalanche that comes after ``end``, upwards where ``side`` is 1, else -1."""
-        way = side * _BESIDE * self._natural
-        for _ in range(_MAX_ROUNDS):
-            beyond, found, _ = self._followed.to(end, event + way)
-            if found:
-                return beyond
-            way *= _FURTHER
-        raise NoEquilibriumError
-
-    def _sink(self, state: State, target: float, step: int, jumps: list[Jump] | None) -> State:
-        """Return the first state further down at which the demand is ``target``."""
-        for _ in range(_MAX_STATES):
-            here = self._demand(state)
-            if here <= target:
-                return state
-            end, event = self._smooth(state, state.separation - _STEP * self._natural)
-            there = self._demand(end)
-            if there <= target:
-                return self._root(end, state, target)
-            state = end
-            if event is not None:
-                state = self._beyond(event, end, -1.0)
-                if self._demand(state) > there:
-                    after = self._sink(state, there, step, None)
-                    self._note(jumps, step, there, end, after)
-                    state = after
-        raise NoEquilibriumError
-
-    def _rise(self, state: State, target: float, step: int, jumps: list[Jump] | None) -> State | None:
-        """Return the first state further up at which the demand is ``target``; none where there is no contact."""
-        for _ in range(_MAX_STATES):
-            if not state.inside.any():
-                return None
-            if self._demand(state) >= target:
-                return state
-            end, event = self._smooth(state, state.separation + _STEP * self._natural)
-            peak = self._peak(state, end)
-            top = self._demand(peak)
-            if top >= target:
-                return self._root(state, peak, target)
-            beyond = end if event is None else self._beyond(event, end, 1.0)
-            if self._demand(beyond) >= top:
-                state = beyond
-                continue
-            after = self._rise(beyond, top, step, None)
-            self._note(jumps, step, top, peak, after)
-            if after is None:
-                return None
-            state = after
-        raise NoEquilibriumError
-
-    def _note(self, jumps: list[Jump] | None, step: int, demand: float, before: State, after: State | None) -> None:
-        """Record a jump, but for those within another."""
-        if jumps is not None:
-            jumps.append(Jump(step, demand, before.separation * self._length, self._place(after, demand)))
-
-    def _peak(self, low: State, high: State) -> State:
-        """Return the state of the largest demand between two, of which the slope falls."""
-        if not low.separation < high.separation:
-            return high
-        rising = self._slope(low)
-
-        def slope_at(state: State) -> float:
-            """Return the slope; next to a fold, where none is found, a negative one."""
-            found = self._slope(state)
-            return found if math.isfinite(found) else -abs(rising)
-
-        falling = slope_at(high)
-        if falling >= 0.0 or not rising > 0.0:
-            return high if falling >= 0.0 else low
-        # The slope falls like the inverse root of the distance to a fold: it is sought in that root.
-        end = high.separation + _BESIDE * self._natural
-        width = math.sqrt(end - low.separation), math.sqrt(end - high.separation)
-        root = Bracket((width[0], rising * width[0]), (width[1], falling * width[1]))
-        best = low
-        for _ in range(_MAX_ROUNDS):
-            at = root.next
-            best = self._followed.to(low, end - at * at)[0]
-            value = slope_at(best) * at
-            root.narrow(at, value)
-            if value == 0.0 or root.width * at <= 0.25 * _BESIDE * self._natural:
-                break
-        return best
-
-    def _root(self, low: State, high: State, target: float) -> State:
-        """Return the state with a demand, from the lower of two states on; the demand rises between them."""
-        at, left, right = low, low.separation, high.separation
-        for _ in range(_MAX_ROUNDS):
-            rise = self._slope(at)
-            h = at.separation + (target - self._demand(at)) / rise if rise > 0.0 else math.nan
-            if abs(h - at.separation) <= max(_RTOL * self._natural, 2.0 * float(np.spacing(abs(at.separation)))):
-                break
-            if not left < h < right:
-                h = 0.5 * (left + right)
-                if not left < h < right:
+    def _walk(self, climb: Climb, state: State, level: float, *, peaks: bool) -> _Stop:
+        """Go from a state with a lower demand to where that is ``level``, or to a peak of it if they are asked for."""
+        for _ in range(_MAX_WAYS):
+            if climb.sign > 0.0 and not state.inside.any():
+                self._state = state
+                self._hold(climb, level)
+                return self._stop(self._state)
+            begin = state
+            state, pieces = self._advanced(climb, state, self._way(climb, state, level))
+            for piece in pieces:
+                if stop := self._on_piece(climb, piece, level, peaks=peaks):
+                    return stop
+                if climb.sign > 0.0 and not piece.rest.inside.any():
+                    state = self._front.parted(piece.rest.separation)
                     break
-            at = self._followed.to(at, h)[0]
-            left, right = (h, right) if self._demand(at) <= target else (left, h)
-        return at
+            if not any(piece.event for piece in pieces):
+                change = climb.value(state) - climb.value(begin)
+                self._slope = change / abs(state.separation - begin.separation)
+        raise NoEquilibriumError
+
+    def _advanced(self, climb: Climb, state: State, way: float) -> tuple[State, list[Piece]]:
+        """Go so far, or less where there is no equilibrium further on."""
+        for _ in range(_MAX_SHORTER):
+            try:
+                return self._front.go(state, state.separation + climb.sign * way)
+            except NoEquilibriumError:
+                way *= _SHORTER
+        return self._front.go(state, state.separation + climb.sign * way)
+
+    def _way(self, climb: Climb, state: State, level: float) -> float:
+        """Return how far to go next."""
+        depth = self._front.depth
+        longest = _LONGEST * max(depth, self._front.top - state.separation)
+        if not (self._slope > 0.0 and state.inside.any()):
+            return longest
+        to_level = _OVERSHOOT * (level - climb.value(state)) / self._slope
+        return min(max(to_level, _SHORTEST * depth), longest)
+
+    def _on_piece(self, climb: Climb, piece: Piece, level: float, *, peaks: bool) -> _Stop | None:
+        """Return where the demand is passed on a piece or by the avalanche at its end, or its peak; None if neither."""
+        met: Met | None = None
+        if piece.begin.inside.any():
+            met = Section(piece, climb).meet(level, peaks=peaks)
+        if met is not None and met.passed:
+            self._slope = met.slope
+            self._account.pass_over(piece._replace(end=met.state, event=None, avalanche=None, rest=met.state))
+            return self._stop(self._front.whole(piece.kept, met.state))
+        before = self._account.dissipated
+        self._account.pass_over(piece)
+        end, rest = climb.value(piece.end), climb.value(piece.rest)
+        peak = met.state if met is not None else piece.end if peaks and rest < end else None
+        if piece.event is not None:
+            self._slope = 0.0
+        if peak is not None:
+            kept, whole = piece.kept, self._front.whole
+            return _Stop(whole(kept, peak), whole(kept, piece.rest), before)
+        if piece.event is not None and piece.rest.inside.any() and rest >= level:
+            return self._stop(self._front.whole(piece.kept, piece.rest))
+        return None
+
+    def _stop(self, state: State) -> _Stop:
+        return _Stop(state, None, self._account.dissipated)

@@ -1,12 +1,13 @@
-"""The highest asperities of an ensemble, adhering and feeling each other, followed as the flat moves."""
+"""The asperities that adhesive contacts are made of, in units of the patch, and the way of the flat over them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
+from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
@@ -14,15 +15,12 @@ from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.choose import jkr_kernels
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, evaluate
-from roughmdr.interaction.jkr.events import advance
+from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
 from roughmdr.interaction.jkr.lone import Surface
-from roughmdr.interaction.jkr.tension import Tension, largest_between
 from roughmdr.interaction.placed_asperities import Placed
-from roughmdr.interaction.settings import Interaction
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import format_quantity
 
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
@@ -31,25 +29,49 @@ _MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: 
 _LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
 
 
-class Followed:
-    """Those asperities, in units of the patch; ``lowest`` [m] is the lowest separation that the flat comes to.
+class Piece(NamedTuple):
+    """A part of the way of the flat on which no contact is made or lost, with the avalanche at its end."""
 
-    OutOfRange where a scale is not representable.
-    """
+    problem: Problem
+    """The asperities near contact."""
+    kept: NDArray[np.int64]
+    """Their numbers among all."""
+    begin: State
+    end: State
+    event: Event | None
+    """That which ends it; None at the end of the way."""
+    avalanche: Avalanche | None
+    rest: State
+    """The state after the avalanche; the end where there is none."""
 
-    def __init__(
-        self, ensemble: Ensemble, effective_modulus: float, work: float, interaction: Interaction, lowest: float
-    ) -> None:
-        self.placed = placed = Placed(ensemble, effective_modulus, interaction)
-        self._kernels = jkr_kernels(placed.law)
+
+class Front:
+    """The highest asperities of an ensemble, under a flat that comes as close as ``lowest``."""
+
+    def __init__(self, placed: Placed, effective_modulus: float, work: float, lowest: float) -> None:
+        self.placed, self._kernels = placed, jkr_kernels(placed.law)
         self._work = work / effective_modulus / placed.length
         if not (self._work > 0.0 and math.isfinite(self._work)):
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
-        self._natural, self._made = _lone_scales(self._kernels, self._asperities, self._work)
-        self._lowest = lowest / placed.length
-        reach = self._lowest - float(self._natural.max(initial=0.0))
-        self._take(int(np.searchsorted(-placed.height, -reach, side="right")))
+        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self._work)
+        self.bring_down(lowest)
+
+    @property
+    def top(self) -> float:
+        """The height of the highest asperity."""
+        return float(self.placed.height.max(initial=-math.inf))
+
+    @property
+    def depth(self) -> float:
+        """The largest natural depth."""
+        return float(self._natural.max(initial=0.0))
+
+    def bring_down(self, lowest: float) -> None:
+        """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
+        self.lowest = lowest
+        reach = lowest - self.depth
+        self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
 
     def _take(self, count: int) -> None:
         """Have the highest asperities."""
@@ -60,11 +82,11 @@ class Followed:
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
         x, y = np.ascontiguousarray(at.T)
         coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
-        depth = np.maximum(few.height - self._lowest, 0.0)
+        depth = np.maximum(few.height - self.lowest, 0.0)
         bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
-        pairs = coincident.find(at, bound, placed.sides)
-        coincident.take_out(pairs, coupling.matrices)
-        self.problem = Problem(kernels, few, coupling, pairs, interaction.order, self._work, self._natural[:count])
+        self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
+        coincident.take_out(self.pairs, coupling.matrices)
+        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count])
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
@@ -77,61 +99,53 @@ class Followed:
         new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
         return new._replace(factors=state.factors)
 
-    def begin(self, separation: float) -> State:
-        """Return the state out of contact, at a separation [m] or just above first touch."""
-        heights = self.problem.asperities.height
-        first = max(separation / self.placed.length, float(heights.max(initial=-math.inf)) + 1e-9)
-        nothing, none_inside = np.zeros(heights.size), np.zeros(heights.size, np.bool_)
-        return evaluate(self.problem, none_inside, nothing, nothing.copy(), first, none(self.problem))
+    def parted(self, separation: float) -> State:
+        """Return the asperities without contact."""
+        count = self.problem.natural.size
+        nothing = np.zeros(count)
+        return evaluate(self.problem, np.zeros(count, np.bool_), nothing, nothing, separation, none(self.problem))
 
-    def to(
-        self, state: State, h: float, tension: Tension | None = None
-    ) -> tuple[State, list[Avalanche], Tension | None]:
-        """Return the state at a separation, the avalanches before it, and the largest tension if one is given.
+    def whole(self, kept: NDArray[np.int64], part: State) -> State:
+        """Return the state of all asperities, of which some are near contact."""
+        count = self.problem.natural.size
+        inside, t, load = np.zeros(count, np.bool_), np.zeros(count), np.zeros(count)
+        inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
+        new = evaluate(self.problem, inside, t, load, part.separation, none(self.problem))
+        return new._replace(factors=part.factors)
 
-        NoEquilibriumError where there is none.
+    def go(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state at a separation, and the way to it.
+
+        NoEquilibriumError where no equilibrium is found.
         """
-        new, found, largest = self._advance(state, h, tension)
+        new, pieces = self._advance(state, h)
         while not self._complete(new):
             state = self._extend(state)
-            new, found, largest = self._advance(state, h, tension)
-        return new, found, largest
+            new, pieces = self._advance(state, h)
+        return new, pieces
 
-    def _advance(
-        self, state: State, h: float, tension: Tension | None
-    ) -> tuple[State, list[Avalanche], Tension | None]:
-        """Return the state at a separation, the avalanches before it, and the largest tension if one is given.
-
-        Only asperities near contact are looked at meanwhile.
-        """
-        problem, begun = self.problem, tension
-        margin = _MARGIN * float(problem.natural.max(initial=0.0))
+    def _advance(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state at a separation, and the way to it; only asperities near contact are looked at meanwhile."""
+        margin = _MARGIN * float(self.problem.natural.max(initial=0.0))
         while True:
             near = state.gap + max(state.separation - h, 0.0) > -margin
             self._look_at(np.flatnonzero(near | state.inside))
-            few, kept = self.window, self.kept
+            few, kept, pieces = self.window, self.kept, list[Piece]()
             part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, none(few))
-            part = part._replace(factors=state.factors)
-            found, tension = list[Avalanche](), begun
-            while True:
-                before = part
-                part, event = advance(few, part, Drive(h - part.separation, none(few)))
-                if tension is not None and part.separation > before.separation:
-                    ends = event is not None and event.kind == "fold"
-                    tension = largest_between(few, before, part, tension, fold=ends)
-                if event is None:
-                    break
-                part, one = avalanche(few, part, event)
-                found.append(one)
-                if len(found) > _MOST_AVALANCHES * (kept.size + 1):
+            part, event = part._replace(factors=state.factors), None
+            while not pieces or event is not None:
+                end, event = advance(few, part, Drive(h - part.separation, none(few)))
+                rest, one = (end, None) if event is None else avalanche(few, end, event)
+                bare = [each._replace(factors=None) for each in (part, end, rest)]  # a long way has many, each large
+                pieces.append(Piece(few, kept, bare[0], bare[1], event, one, bare[2]))
+                part = rest
+                if len(pieces) > _MOST_AVALANCHES * (kept.size + 1) + 1:
                     raise NoEquilibriumError
-            inside, t, load = np.zeros_like(state.inside), np.zeros_like(state.t), np.zeros_like(state.load)
-            inside[kept], t[kept], load[kept] = part.inside, part.t, part.load
-            new = evaluate(problem, inside, t, load, part.separation, none(problem))._replace(factors=part.factors)
+            new = self.whole(kept, part)
             beyond = new.gap.copy()
             beyond[kept] = -math.inf
             if not (beyond > -_CLEAR * margin).any():
-                return new, found, tension
+                return new, pieces
             margin *= 4.0
 
     def _look_at(self, needed: NDArray[np.int64]) -> None:
@@ -145,20 +159,6 @@ class Followed:
         if not state.inside.any():
             return True
         return not self.next_height - state.separation > min(below_all(state.potential), 0.0)
-
-    def crowding(self) -> str:
-        """Return the warning about contacts that overlap as soon as they are made."""
-        pairs, made = self.problem.pairs, self._made[: self.problem.natural.size]
-        overlapping = pairs.apart[:, 2] < made[pairs.members].sum(axis=1)
-        if not overlapping.any():
-            return ""
-        length, count = self.placed.length, int(np.count_nonzero(overlapping))
-        radius, apart = (format_quantity(length * float(np.median(each)), "m") for each in
-                         (made[pairs.members[overlapping]], pairs.apart[overlapping, 2]))  # fmt: skip
-        return (
-            f"contacts overlap as soon as they are made ({count} pairs): jump-on radius {radius}, distance {apart} in "
-            "the median; how contacts merge is not in their coupling"
-        )
 
 
 def _lone_scales(kernels: JkrKernels, asperities: Asperities, work: float) -> tuple[Floats, Floats]:

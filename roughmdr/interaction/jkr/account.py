@@ -1,0 +1,139 @@
+"""The totals of adhesive contacts along a path, in SI: those at each step, the avalanches and the largest tension."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.interaction import close
+from roughmdr.interaction.jkr.equilibrium import State, alone, energy
+from roughmdr.interaction.jkr.front import Front, Piece
+from roughmdr.interaction.jkr.jumps import Avalanche
+from roughmdr.interaction.jkr.lone import MOST_SLIDE
+from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
+from roughmdr.interaction.totals import Overlap, Step
+from roughmdr.loading.pull_off import PullOff
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import format_quantity
+
+_SOLVER_ERROR = 1e-11  # of all loads
+
+
+class Adhering(NamedTuple):
+    """Adhesive contacts along a path."""
+
+    steps: list[Step]
+    separation: Floats
+    """[m] at each step; inf where a dead load has pulled the flat off, NaN where there is no equilibrium."""
+    radius: Floats
+    """The contact radius [m] of each asperity where the flat is closest."""
+    visits: int
+    avalanches: list[Avalanche]
+    """In SI."""
+    pull_off: PullOff
+    crowded: str
+    """A warning where contacts overlap as soon as they are made; empty where they do not."""
+
+
+class Account:
+    """The totals of the contacts of a front so far; E* [Pa], of ``total`` asperities with those that are buried."""
+
+    def __init__(self, front: Front, modulus: float, total: int, names: set[str], *, rises: bool) -> None:
+        self._front, self._modulus, self._names = front, modulus, names
+        self._length = front.placed.length
+        self.energy_unit = modulus * self._length**3
+        """Of energies in units of the patch [J]."""
+        self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
+        self._radius, self._closest = np.zeros(total), math.inf
+        self._tension = Tension() if rises else None
+        self.dissipated = self.machine_dissipated = 0.0
+        """By the avalanches, and by the jumps of the machine beside them [J]."""
+        self._parted = False
+
+    def pass_over(self, piece: Piece) -> None:
+        """Add a piece of the way: its avalanche, and its tension where the flat rises."""
+        if self._tension is not None and piece.end.separation > piece.begin.separation:
+            fold = piece.event is not None and piece.event.kind == "fold"
+            self._tension = largest_between(piece.problem, piece.begin, piece.end, self._tension, fold=fold)
+        if piece.avalanche is not None:
+            separation, size, dissipated = piece.avalanche
+            self.dissipated += dissipated * self.energy_unit
+            self._avalanches.append(Avalanche(separation * self._length, size, dissipated * self.energy_unit))
+
+    def lose_rest(self, total: int) -> None:
+        """Add steps without an equilibrium, up to a number of them."""
+        rest = total - len(self._steps)
+        self._steps += [Step(error=math.inf)] * rest
+        self._separation += [math.nan] * rest
+
+    def stand(self, state: State, separation: float, *, rises: bool) -> None:
+        """Add a step at a separation [m], to which the flat has risen or come down."""
+        self._steps.append(self._totals(state))
+        self._separation.append(separation)
+        self._parted |= rises and not state.inside.any()
+        if state.separation < self._closest:
+            self._closest = state.separation
+            kept = self._front.placed.kept[: state.t.size]
+            self._radius[kept] = np.where(state.inside, state.contacts.radius, 0.0) * self._length
+
+    def result(self) -> Adhering:
+        """Return all of it."""
+        separation, visits = np.array(self._separation), self._front.problem.natural.size * len(self._steps)
+        return Adhering(
+            self._steps, separation, self._radius, visits, self._avalanches, self._pull_off(), self._crowding()
+        )
+
+    def _totals(self, state: State) -> Step:
+        problem, length = self._front.problem, self._length
+        lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
+        if not state.inside.any():
+            return Step(dissipated=lost[0], by_machine=lost[1])
+        on = np.flatnonzero(state.inside)
+        radius, load = state.contacts.radius[on], state.load[on]
+        unit = math.pi * self._modulus * length * length
+        stiffness = 0.0
+        if "stiffness" in self._names:
+            stiffness = -slope(*alone(problem, state))
+        overlapping = np.zeros(state.t.size, np.bool_)
+        close.mark_overlaps(problem.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
+        sizes = math.fsum(np.abs(load).tolist())
+        share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
+        tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
+        return Step(
+            unit * math.fsum(load.tolist()),
+            length * math.fsum(radius.tolist()),
+            math.pi * length * length * math.fsum((radius * radius).tolist()),
+            unit / length * stiffness,
+            on.size,
+            unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
+            Overlap(int(overlapping.sum()), share),
+            int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
+            self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
+            *lost,
+        )
+
+    def _pull_off(self) -> PullOff:
+        """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
+        length, tension = self._length, self._tension
+        if tension is None or not self._parted:
+            return PullOff()
+        if tension.force == 0.0:
+            return PullOff(0.0)
+        area = math.pi * length * length * tension.radius_squares
+        force = math.pi * self._modulus * length * length * tension.force
+        return PullOff(force, length * tension.separation, float(tension.contacts), area)
+
+    def _crowding(self) -> str:
+        """Return the warning about contacts that overlap as soon as they are made."""
+        pairs = self._front.problem.pairs
+        made = self._front.made[: self._front.problem.natural.size]
+        overlapping = pairs.apart[:, 2] < made[pairs.members].sum(axis=1)
+        if not overlapping.any():
+            return ""
+        length, count = self._length, int(np.count_nonzero(overlapping))
+        radius, apart = (format_quantity(length * float(np.median(each)), "m") for each in
+                         (made[pairs.members[overlapping]], pairs.apart[overlapping, 2]))  # fmt: skip
+        return (
+            f"contacts overlap as soon as they are made ({count} pairs): jump-on radius {radius}, distance {apart} in "
+            "the median; how contacts merge is not in their coupling"
+        )
