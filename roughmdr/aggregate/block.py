@@ -72,28 +72,8 @@ class SumKernels(Kernels):
     loop: Callable[..., int]
     block_at: Callable[..., Block]
     """This and what follows: of a flat on a machine."""
-    far_groups: Callable[..., int]
     add_response: Callable[..., None]
     response: Callable[..., Any]
-    stand: Callable[..., None]
-    stand_at: Callable[..., Any]
-    bent: Callable[..., Any]
-    root_from: Callable[..., float]
-    is_last: Callable[..., bool]
-    moved: Callable[..., Any]
-    past_next: Callable[..., float]
-    next_below: Callable[..., float]
-    root_between: Callable[..., Any]
-    root_below: Callable[..., float]
-    passage: Callable[..., Any]
-    rise: Callable[..., Any]
-    sink: Callable[..., Any]
-    record: Callable[..., None]
-    arrive: Callable[..., Any]
-    peak_before: Callable[..., Any]
-    through_jumps: Callable[..., Any]
-    rounded: Callable[..., float]
-    follow: Callable[..., None]
 
 
 law = SumKernels("law")

@@ -59,8 +59,9 @@ def slot_for(h: float, far: Far) -> int:
         count -= 1
         for i in range(count):
             far.separation[i] = far.separation[i + 1]
-            far.force[i, :] = far.force[i + 1]
-            far.stiffness[i, :] = far.stiffness[i + 1]
+            for group in range(far.force.shape[1]):
+                far.force[i, group] = far.force[i + 1, group]
+                far.stiffness[i, group] = far.stiffness[i + 1, group]
     far.separation[count] = h
     far.number[0] = count + 1
     return int(count)
@@ -88,6 +89,7 @@ def far_response(h: float, far: Far) -> tuple[float, float]:
     return value, -slope
 
 
+@njit
 def far_groups(at: float, to: float, falls: bool, height: Floats, far: Far) -> int:
     """Return how many of the highest groups stay far from any event from ``at`` [m] to ``to`` [m]."""
     count = far.number[0]

@@ -1,15 +1,16 @@
 """The flat on a machine at one separation: what it demands there, and where it would demand something else."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.block import law
 from roughmdr.aggregate.response import Asperities, Memory, Response
 from roughmdr.loading.machine import Machine
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _LAST = 4.0  # roundings: a shorter step of Newton's method is the last
 _GRID = 2.0**-45  # of the distance to the highest place of contact: the last digit of a separation
@@ -41,6 +42,10 @@ class Stand(NamedTuple):
 class Search(NamedTuple):
     """A leg on which passages are sought."""
 
+    look: Callable[[float, bool, Asperities, Memory], Response]
+    """The ``response`` of these asperities, compiled."""
+    falls: bool
+    """Whether the flat comes down."""
     machine: Machine
     asperities: Asperities
     memory: Memory
@@ -67,9 +72,10 @@ class Jumps(NamedTuple):
     """The demand of the machine at each."""
 
 
-def stand_at(h: float, falls: bool, search: Search) -> Stand:
+@njit
+def stand_at(h: float, search: Search) -> Stand:
     """Try the flat at h."""
-    answer: Response = law.response(h, falls, search.asperities, search.memory)
+    answer: Response = search.look(h, search.falls, search.asperities, search.memory)
     w, c = search.machine
     parted = answer.bound == 0.0 and answer.stiffness == 0.0 and answer.force == 0.0
     return Stand(
@@ -77,6 +83,7 @@ def stand_at(h: float, falls: bool, search: Search) -> Stand:
     )
 
 
+@njit
 def bent(at: Stand, before: Stand) -> Stand:
     """Return a stand with the bend of the demand, of which nothing jumps between it and one before."""
     way = at.h - before.h
@@ -87,6 +94,7 @@ def bent(at: Stand, before: Stand) -> Stand:
     return Stand(at.h, at.demand, at.slope, at.bound, at.parted, bend, twist)
 
 
+@njit
 def root_from(at: Stand, target: float) -> float:
     """Return where the demand is ``target`` by its slope and, if that is known, its bend; NaN where it falls."""
     if not at.slope > 0.0:
@@ -96,9 +104,10 @@ def root_from(at: Stand, target: float) -> float:
     return at.h + (way * (1.0 - turn) if abs(turn) < _MOST_BENT else way)
 
 
-def is_last(at: Stand, root: float, search: Search) -> bool:
+@njit
+def is_last(at: Stand, root: float, top: float) -> bool:
     """Return whether a root is so near that the demand need not be looked at there."""
-    way, distance = abs(root - at.h), abs(search.top - root)
+    way, distance = abs(root - at.h), abs(top - root)
     if way <= _LAST * np.spacing(max(abs(at.h), abs(root))):
         return True
     turn = at.bend / at.slope * way
@@ -106,25 +115,42 @@ def is_last(at: Stand, root: float, search: Search) -> bool:
     return bool(way <= _NEAR * distance and off <= _NEGLIGIBLE * distance)
 
 
+@njit
 def moved(at: Stand, root: float, target: float) -> Stand:
     """Return the stand at a root that is so near that nothing is computed there."""
     slope = at.slope + at.bend * (root - at.h) if not math.isnan(at.bend) else at.slope
     return Stand(root, target, slope, at.bound, at.parted, at.bend, at.twist)
 
 
-def past_next(search: Search, h: float) -> float:
+@njit
+def count_below(events: Floats, h: float) -> int:
+    """Return how many of the ascending events are below h."""
+    low, high = 0, events.size
+    while low < high:
+        middle = (low + high) // 2
+        if events[middle] < h:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@njit
+def past_next(events: Floats, beside: float, h: float) -> float:
     """Return a separation just past the next detachment above h; inf where there is none."""
-    number = np.searchsorted(search.events, h - search.beside, side="right")
-    return search.events[number] + search.beside if number < search.events.size else math.inf
+    number = count_below(events, np.nextafter(h - beside, math.inf))
+    return events[number] + beside if number < events.size else math.inf
 
 
-def next_below(search: Search, h: float) -> float:
+@njit
+def next_below(events: Floats, h: float) -> float:
     """Return the next touch below h; -inf where there is none."""
-    number = np.searchsorted(search.events, h, side="left")
-    return search.events[number - 1] if number > 0 else -math.inf
+    number = count_below(events, h)
+    return events[number - 1] if number > 0 else -math.inf
 
 
-def rounded(at: Stand, target: float, falls: bool, search: Search) -> float:
+@njit
+def rounded(at: Stand, target: float, search: Search) -> float:
     """Return the separation [m] with so many digits that it does not depend on where the search for it began."""
     if at.h == math.inf or at.parted:
         return at.h
@@ -136,8 +162,8 @@ def rounded(at: Stand, target: float, falls: bool, search: Search) -> float:
     number = math.floor(off / grid)
     part = off / grid - number
     if abs(part - 0.5) < _DOUBTFUL:
-        middle = law.stand_at(search.top - (number + 0.5) * grid, falls, search)
+        middle = stand_at(search.top - (number + 0.5) * grid, search)
         part = 0.0 if middle.demand < target else 1.0
     near: float = search.top - (number + (1.0 if part > 0.5 else 0.0)) * grid
-    crossed = law.next_below(search, max(h, near)) >= min(h, near)
+    crossed = next_below(search.events, max(h, near)) >= min(h, near)
     return h if crossed else near

@@ -27,6 +27,7 @@ from roughmdr.aggregate.loop import count_above
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 
 
@@ -39,6 +40,9 @@ class Response(NamedTuple):
     """-dF/dh [N/m], jumps not included."""
     bound: float
     """An upper bound of the stiffness [N/m] of these contacts wherever the flat is higher."""
+
+
+NO_RESPONSE = Response(0.0, 0.0, 0.0)
 
 
 class Asperities(NamedTuple):
@@ -113,9 +117,11 @@ def block_at(asperities: Asperities, number: int) -> Block:
     stop = min(start + GROUP, asperities.height.size)
     shared = asperities.params.shape[0] < asperities.height.size
     if number >= asperities.ready[0] and not (shared and number > 0):
-        asperities.params[0 if shared else start : 1 if shared else stop] = law.prepare(
-            asperities.material, asperities.columns, start, 1 if shared else stop, 0.0
-        )
+        begin, end = (0, 1) if shared else (start, stop)
+        found = law.prepare(asperities.material, asperities.columns, begin, end, 0.0).reshape(-1)
+        kept = asperities.params[begin:end].reshape(-1)
+        for i in range(kept.size):
+            kept[i] = found[i]
     block = Block(
         asperities.height[start:stop],
         asperities.params[0:1] if shared else asperities.params[start:stop],
@@ -169,8 +175,8 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
         deepest = block.max_scales[DEPTH_SCALE]
         count = count_above(block.z, law.lowest_in_contact(h, 0, count_of_pairs, now, deepest))
         if law.adhesive:
-            block.in_contact[:] = block.in_contact_before
-            block.in_contact[count:] = 0.0
+            for i in range(GROUP):
+                block.in_contact[i] = block.in_contact_before[i] if i < count else 0.0
         if count == 0:
             continue
         asperities.ready[1] += count
@@ -211,6 +217,10 @@ def add_response(count: int, block: Block, modulus: float, total: Floats, compen
         accumulate(total, compensation, 2, sum_by_halves(terms, count, GROUP))
 
 
+@njit
 def stand(asperities: Asperities) -> None:
     """Have the flat stand where it was tried last."""
-    asperities.in_contact[:] = asperities.tried
+    in_contact, tried = asperities.in_contact, asperities.tried
+    for number in range(in_contact.shape[0]):
+        for i in range(in_contact.shape[1]):
+            in_contact[number, i] = tried[number, i]

@@ -4,53 +4,29 @@ from functools import cache
 
 import numpy as np
 
-from roughmdr.aggregate import far_contacts, machine_jumps, machine_stand, passage, response
+from roughmdr.aggregate import machine_stand, response
 from roughmdr.aggregate.block import SumKernels
 from roughmdr.aggregate.detachment import detachment_depths
 from roughmdr.aggregate.loop import compiled_sum
+from roughmdr.aggregate.machine_leg import follow
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import as_argument, specialise
 
 _BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
 _NONE = np.zeros(0)
-_PARTS = (
-    far_contacts.far_groups,
-    response.block_at,
-    response.add_response,
-    response.response,
-    response.stand,
-    machine_stand.stand_at,
-    machine_stand.bent,
-    machine_stand.root_from,
-    machine_stand.is_last,
-    machine_stand.moved,
-    machine_stand.past_next,
-    machine_stand.next_below,
-    passage.root_between,
-    passage.root_below,
-    passage.rise,
-    passage.sink,
-    passage.record,
-    passage.arrive,
-    passage.passage,
-    machine_stand.rounded,
-    machine_jumps.peak_before,
-    machine_jumps.through_jumps,
-    passage.follow,
-)
 
 
 @cache
 def _compiled(kernels: Kernels) -> SumKernels:
-    """Return the kernels with the parts of the search, compiled with them; each calls those before it."""
+    """Return the kernels with the parts of the response, compiled with them."""
     whole = SumKernels(kernels.name)
     vars(whole).update({**vars(compiled_sum(kernels)), "__name__": kernels.name, "hardening": kernels.hardening})
-    for part in _PARTS:
+    for part in (response.block_at, response.add_response):
         vars(whole)[part.__name__] = specialise(part, whole)
     return whole
 
@@ -74,13 +50,15 @@ def separations_of(
     found = list[Jump]()
     if not height.size:
         return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
-    compiled, material = _compiled(kernels), Material(effective_modulus, adhesion.work, adhesion.strength)
+    material = Material(effective_modulus, adhesion.work, adhesion.strength)
     touches = detachments = _NONE
     release = height
     if kernels.adhesive:
         release = height + detachment_depths(kernels, columns, effective_modulus, adhesion)
         touches, detachments = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
+    law = _compiled(kernels)
+    law.block_at(asperities, 0)  # its depths are the scale of first steps
     first_touch = float(height[0] + adhesion.range)
     top = max(float(detachments[-1]) if detachments.size else first_touch, first_touch)
     beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
@@ -94,11 +72,13 @@ def separations_of(
             turns.append(h)
         events = detachments if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
-        search = machine_stand.Search(machine, asperities, memory, events, first_touch, top, beside)
+        look = as_argument(response.response, law, response.NO_RESPONSE, h, True, asperities, memory)
+        place = first_touch, top, beside
+        search = machine_stand.Search(look, not leg.rises, machine, asperities, memory, events, *place)
         asperities.far.number[:] = 0
         filled = separation[leg.first : leg.first + leg.demand.size]
         room = _room(events.size + 1 if jumps and kernels.adhesive else 0)
-        compiled.follow(h, leg.demand, not leg.rises, search, filled, room)
+        follow(h, leg.demand, search, filled, room)
         if np.isnan(filled).any():
             raise OutOfRange(
                 f"the contact of an asperity is not representable: {kernels.name} with "

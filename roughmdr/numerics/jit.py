@@ -72,22 +72,21 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     ``inline`` puts its source into every caller: for parts of a loop that are called too often. ``small`` puts its
     machine code there: for parts of loops that become vector code.
     """
+    options = {"inline": "always" if inline else "never", "forceinline": small}
+    return cast(_Function, _kept_on_disk(partial(numba.njit, nogil=True, **options), function))
+
+
+def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -> Any:
+    """Return a function compiled by a decorator of numba, with the options that all have."""
     folder = _cache_folder()
     with _CONFIG:
         before = _config.CACHE_DIR
         if folder is not None:
             _config.CACHE_DIR = folder
         try:
-            compiled = numba.njit(
-                nogil=True,
-                error_model="numpy",
-                cache=folder is not None,
-                inline="always" if inline else "never",
-                forceinline=small,
-            )(function)
+            return decorator(error_model="numpy", cache=folder is not None)(function)
         finally:
             _config.CACHE_DIR = before
-    return cast(_Function, compiled)
 
 
 @cache
@@ -129,8 +128,29 @@ def specialise(
     can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it. Numbers of
     the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
+    return njit(_with_law(loop, law), inline=inline, small=small)
+
+
+def _with_law(loop: Callable[..., Any], law: ModuleType) -> FunctionType:
+    """Return a copy of ``loop`` in which ``law`` stands for a module of kernels."""
     plain = cast(FunctionType, loop)
     copy = FunctionType(_with_literals(plain, law), {**plain.__globals__, "law": law}, loop.__name__)
     copy.__qualname__ = f"{loop.__qualname__}_{law.__name__}"
     copy.__module__ = loop.__module__
-    return njit(copy, inline=inline, small=small)
+    return copy
+
+
+def as_argument(loop: Callable[..., Any], law: ModuleType, result: object, *arguments: object) -> Callable[..., Any]:
+    """Return a copy of ``loop`` as ``specialise`` does, that compiled code takes as an argument.
+
+    Code that takes it is compiled once, for any law. Result and arguments are examples of those it is called with.
+    """
+    typeof: Callable[[object], Any] = numba.typeof
+    return _as_argument(loop, law, typeof(result)(*map(typeof, arguments)))
+
+
+@cache
+def _as_argument(loop: Callable[..., Any], law: ModuleType, signature: Any) -> Callable[..., Any]:
+    """Return what ``as_argument`` does, with a signature of numba."""
+    plain = _with_law(loop, law)
+    return plain if _config.DISABLE_JIT else cast(FunctionType, _kept_on_disk(partial(numba.cfunc, signature), plain))
