@@ -221,6 +221,6 @@ def add_response(count: int, block: Block, modulus: float, total: Floats, compen
 def stand(asperities: Asperities) -> None:
     """Have the flat stand where it was tried last."""
     in_contact, tried = asperities.in_contact, asperities.tried
-    for number in range(in_contact.shape[0]):
+    for number in range(asperities.ready[0]):
         for i in range(in_contact.shape[1]):
             in_contact[number, i] = tried[number, i]

@@ -17,6 +17,8 @@ BLOCK = 256
 @njit
 def sum_by_halves(terms: Floats, count: int, size: int) -> float:
     """Return the sum of the first ``count`` of at most ``size`` terms, a power of 2; the terms are overwritten."""
+    while size > 1 and size // 2 >= count:
+        size //= 2
     for i in range(count, size):
         terms[i] = 0.0
     half = size // 2
