@@ -7,7 +7,7 @@ from roughmdr.numerics.summation import accumulate, block_sum
 
 # Rows of the totals.
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE = range(9)
-"""That of the machine, the energy which its jumps lose, is filled where there is one (``simulate``)."""
+"""That of the machine, the energy which its jumps lose, is filled where there is one."""
 ROWS = 9
 TOTAL_INDEX = {
     "force": FORCE,
