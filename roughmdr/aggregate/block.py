@@ -71,9 +71,8 @@ class SumKernels(Kernels):
     add_totals: Callable[..., None]
     loop: Callable[..., int]
     block_at: Callable[..., Block]
-    """This and what follows: of a flat on a machine."""
+    """This and the next: of a flat on a machine."""
     add_response: Callable[..., None]
-    response: Callable[..., Any]
 
 
 law = SumKernels("law")

@@ -124,7 +124,7 @@ def moved(at: Stand, root: float, target: float) -> Stand:
 
 @njit
 def count_below(events: Floats, h: float) -> int:
-    """Return how many of the ascending events are below h."""
+    """Return how many of the ascending events are below h."""  # numpy's searchsorted takes seconds to compile
     low, high = 0, events.size
     while low < high:
         middle = (low + high) // 2

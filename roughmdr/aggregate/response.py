@@ -42,9 +42,6 @@ class Response(NamedTuple):
     """An upper bound of the stiffness [N/m] of these contacts wherever the flat is higher."""
 
 
-NO_RESPONSE = Response(0.0, 0.0, 0.0)
-
-
 class Asperities(NamedTuple):
     """The asperities of an ensemble, with room for all that is found of them once."""
 
@@ -119,7 +116,7 @@ def block_at(asperities: Asperities, number: int) -> Block:
     if number >= asperities.ready[0] and not (shared and number > 0):
         begin, end = (0, 1) if shared else (start, stop)
         found = law.prepare(asperities.material, asperities.columns, begin, end, 0.0).reshape(-1)
-        kept = asperities.params[begin:end].reshape(-1)
+        kept = asperities.params[begin:end].reshape(-1)  # one by one, here and below: slices take seconds to compile
         for i in range(kept.size):
             kept[i] = found[i]
     block = Block(

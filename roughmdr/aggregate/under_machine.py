@@ -72,7 +72,7 @@ def separations_of(
             turns.append(h)
         events = detachments if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
-        look = as_argument(response.response, law, response.NO_RESPONSE, h, True, asperities, memory)
+        look = as_argument(response.response, law, response.Response(0.0, 0.0, 0.0), h, True, asperities, memory)
         place = first_touch, top, beside
         search = machine_stand.Search(look, not leg.rises, machine, asperities, memory, events, *place)
         asperities.far.number[:] = 0

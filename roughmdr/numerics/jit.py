@@ -141,9 +141,9 @@ def _with_law(loop: Callable[..., Any], law: ModuleType) -> FunctionType:
 
 
 def as_argument(loop: Callable[..., Any], law: ModuleType, result: object, *arguments: object) -> Callable[..., Any]:
-    """Return a copy of ``loop`` as ``specialise`` does, that compiled code takes as an argument.
+    """Return a specialised copy of ``loop``, as ``specialise`` does, for compiled code to take as an argument.
 
-    Code that takes it is compiled once, for any law. Result and arguments are examples of those it is called with.
+    Code that takes it is compiled once for all laws. ``result`` and ``arguments`` are examples that give the types.
     """
     typeof: Callable[[object], Any] = numba.typeof
     return _as_argument(loop, law, typeof(result)(*map(typeof, arguments)))
@@ -151,6 +151,6 @@ def as_argument(loop: Callable[..., Any], law: ModuleType, result: object, *argu
 
 @cache
 def _as_argument(loop: Callable[..., Any], law: ModuleType, signature: Any) -> Callable[..., Any]:
-    """Return what ``as_argument`` does, with a signature of numba."""
+    """Return the copy for a signature of numba."""
     plain = _with_law(loop, law)
     return plain if _config.DISABLE_JIT else cast(FunctionType, _kept_on_disk(partial(numba.cfunc, signature), plain))

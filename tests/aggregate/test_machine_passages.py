@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import roughmdr as rm
+from roughmdr.aggregate import machine_leg
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
@@ -81,6 +82,16 @@ def test_the_flat_stands_where_the_demand_is_met_first(kind: str, adhesion: str,
         met = -between if dead else way - between / machine["machine_stiffness"]
         rising = asked[step] > asked[step - 1]
         assert (met <= asked[step] + 1e-9 * scale if rising else met >= asked[step] - 1e-9 * scale).all()
+
+
+def test_the_search_is_compiled_once_for_all_laws() -> None:
+    """Laws whose parameters are numbers, with and without adhesion."""
+    compiled = []
+    for kind, work in (("paraboloid", W), ("cone", W), ("paraboloid", 0.0)):
+        rm.load_separation(rough(kind, 5, seed=1), force=[0.0, 1e-6], effective_modulus=E, work=work)
+        compiled.append(len(machine_leg.follow.signatures))
+    assert compiled[0] >= 1
+    assert len(set(compiled)) == 1
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)

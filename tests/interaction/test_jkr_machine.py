@@ -158,16 +158,19 @@ def test_random_ensembles_stand_where_the_demand_is_met_first(seed: int) -> None
     data, material, turns, stiffness = random_case(seed)
     steps = np.concatenate([np.linspace(a, b, 6)[:-1] for a, b in pairwise(turns)])
     given = {"remote": steps, "machine_stiffness": stiffness} if stiffness else {"force": steps}
-    found = rm.load_separation(data, **given, **material)
+    losses = "dissipated_energy", "machine_dissipated_energy"
+    found = rm.load_separation(data, **given, **material, variables=("force", "contact_count", *losses))
     asked = steps if stiffness else -steps
     off = np.isnan(found.separation.values)
+    plain = rm.load_separation(data, **given, **material).separation
     _, d0, load = scales(*UNITS[seed % 3])
+    np.testing.assert_allclose(plain, found.separation, rtol=0.0, atol=1e-10 * d0)
     h = np.where(off, np.nanmax(found.separation, initial=0.0) + 3.0 * d0, found.separation)
     part = 1 + np.arange(20)
     begin = np.append(max(h[0], d0), h[:-1])
     path = np.append(begin[0], (begin[:, None] + (h - begin)[:, None] * part / part.size).ravel())
     path[part.size :: part.size] = h
-    law = rm.load_separation(data, separation=path, **material, variables=("force", "contact_count"))
+    law = rm.load_separation(data, separation=path, **material, variables=("force", "contact_count", losses[0]))
     demand = path - law.force.values / stiffness if stiffness else -law.force.values
     unit = max(d0, float(abs(law.force).max()) / stiffness) if stiffness else data.asperity.size * load
     touching = law.contact_count.values > 0
@@ -176,6 +179,9 @@ def test_random_ensembles_stand_where_the_demand_is_met_first(seed: int) -> None
     np.testing.assert_array_equal(law.contact_count.values[at][~off], found.contact_count.values[~off])
     on = touching[at] & ~off
     np.testing.assert_allclose(demand[at][on], asked[on], rtol=0.0, atol=1e-10 * unit)
+    total, of_machine = (found[name].values for name in losses)
+    np.testing.assert_allclose(total - of_machine, law[losses[0]].values[at], rtol=0.0, atol=1e-9 * np.nanmax(total))
+    assert (np.diff(of_machine[np.isfinite(of_machine)]) >= -1e-12 * np.nanmax(total)).all()
     for step in np.flatnonzero(~off[1:] & ~off[:-1]) + 1:
         way = slice(at[step - 1] + 1, at[step])
         beyond = np.sign(asked[step] - asked[step - 1]) * (demand[way] - asked[step])

@@ -67,10 +67,12 @@ class Section:
     def meet(self, level: float, *, peaks: bool) -> Met | None:
         """Return where the demand is first ``level``; or, if ``peaks`` are asked for too, its peak within before that.
 
-        None where there is neither. At the beginning the demand is below.
+        None where there is neither. At the beginning the demand is below, but for rounding.
         """
         if self._width == 0.0:
             return None
+        if self._value(0.0) >= level:
+            return self._passed(0.0)
         if self._value(1.0) >= level:
             return self._root(0.0, 1.0, level)
         begin = self._slope(0.0)
@@ -88,14 +90,19 @@ class Section:
 
     def _peak(self, begin: float, end: float, level: float) -> float:
         """Return the place of the peak, or one before it where ``level`` is passed."""
-        root, place, length = Bracket((0.0, begin), (1.0, end)), 0.0, self._width * _RTOL
+        root, before = Bracket((0.0, begin), (1.0, end)), 0.0
         for _ in range(_MAX_ROUNDS):
             place = root.next
             change = self._slope(place) * self._by_place(place)
-            if self._value(place) >= level or abs(change) <= _PEAK_RTOL * begin or root.width <= length:
-                break
+            if not math.isfinite(change) or (self._fold and Factors(self._few, self._at(place)).unstable):
+                change = end  # so near the fold that another branch was found, or none
+            elif self._value(place) >= level or abs(change) <= _PEAK_RTOL * begin:
+                return place
+            before = place if change > 0.0 else before
             root.narrow(place, change)
-        return place
+            if root.width <= _RTOL:
+                break
+        return before
 
     def _root(self, low: float, high: float, level: float) -> Met:
         """Return where the demand is passed between two places, by Newton's method."""
@@ -113,6 +120,10 @@ class Section:
                 if not low < further < high:
                     break
             place = further
+        return self._passed(place)
+
+    def _passed(self, place: float) -> Met:
+        """Return the state at a place as that where the demand is passed."""
         return Met(self._whole(place), True, self._slope(place))
 
     def _by_place(self, place: float) -> float:
