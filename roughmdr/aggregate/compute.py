@@ -27,6 +27,11 @@ from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 
+_UNCOUPLED_HILLS = (
+    "hills of a map grow into each other where they are not coupled, and count the same surface more than once: "
+    'ask for [interaction] model = "pairwise"'
+)
+
 
 def compute(
     ensemble: Ensemble,
@@ -72,20 +77,22 @@ def compute(
         couple(total, found)
     else:
         total, radius, visits = sums(path, rows)
+    total[totals.AREA] *= ensemble.area_share
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
         np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" else 0.0,
-        float(ensemble.attrs.get("radius_uncertainty", 0.0)),
-        bool(ensemble.attrs.get("of_surface", 0)),
+        ensemble.resolution_error,
+        ensemble.origin,
         _overlap(ensemble, radius),
     )
     result = LoadSeparation.of(
         total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
-    return result._replace(warnings=ensemble.warnings, pull_off=pull_off)
+    warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []))
+    return result._replace(warnings=warnings, pull_off=pull_off)
 
 
 def check_asked(ensemble: Ensemble, names: list[str], adhesion: Adhesion, interaction: Interaction | None) -> None:

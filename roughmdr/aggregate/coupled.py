@@ -17,7 +17,13 @@ from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
-from roughmdr.model_error.coupling import MARKED_FRACTION, MARKED_SHARE, coupling_error, summits_error
+from roughmdr.model_error.coupling import (
+    HILLS_MARKED_FRACTION,
+    MARKED_FRACTION,
+    MARKED_SHARE,
+    coupling_error,
+    summits_error,
+)
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
@@ -41,7 +47,7 @@ class CoupledTotals(NamedTuple):
     overlap_count: int
     """At the closest approach with an equilibrium, as the next."""
     overlap_share: float
-    """Of the force."""
+    """Of the force; NaN of hills, which are parts of one surface."""
     marked: int
     """Number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or contact.
     """
@@ -103,8 +109,8 @@ def _law(
     assumptions = Assumptions(
         ensemble.validity_limits(found.radius),
         np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
-        radius_uncertainty=float(ensemble.attrs.get("radius_uncertainty", 0.0)),
-        of_surface=bool(ensemble.attrs.get("of_surface", 0)),
+        resolution_error=ensemble.resolution_error,
+        origin=ensemble.origin,
         overlap=found.overlap_share,
         coupling_error=found.error,
     )
@@ -164,22 +170,25 @@ def _found(
 ) -> CoupledTotals:
     """Return the totals of contacts that are coupled in pairs along a path."""
     steps = along.steps
-    total, solved = _totals(steps, ensemble.nominal_area)
+    total, solved = _totals(steps, ensemble)
     share = np.array([step.overlap.share for step in steps])
     if ensemble.nominal_area is None:
         fraction = np.full(separation.size, math.nan)
     else:
         fraction = total[totals.AREA] / ensemble.nominal_area
-    beyond = (share > MARKED_SHARE) | (fraction > MARKED_FRACTION) | [step.lost > 0 for step in steps]
+    hills = ensemble.origin == "hills"
+    beyond = (fraction > HILLS_MARKED_FRACTION) if hills else (share > MARKED_SHARE) | (fraction > MARKED_FRACTION)
+    beyond |= [step.lost > 0 for step in steps]
     largest = np.nanmax(np.abs(total[totals.FORCE]), initial=0.0) if adhesive else total[totals.FORCE]
     beyond |= total[totals.ERROR] > interaction.error * largest  # contacts that did not come to rest
-    error = coupling_error(np.nan_to_num(fraction), share, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    error = coupling_error(np.nan_to_num(fraction), share, ensemble)
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
-    return CoupledTotals(total, along.radius, along.visits, error, closest.contacts, closest.share, marked)
+    overlap = math.nan if hills else closest.share
+    return CoupledTotals(total, along.radius, along.visits, error, closest.contacts, overlap, marked)
 
 
-def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, NDArray[np.bool_]]:
+def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np.bool_]]:
     """Return totals [row, step], and which steps have an equilibrium: NaN where there is none.
 
     A step whose contact area exceeds the patch has none.
@@ -188,7 +197,7 @@ def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, ND
     for row, values in (
         (totals.FORCE, [step.force for step in steps]),
         (totals.RADIUS, [step.radius_sum for step in steps]),
-        (totals.AREA, [step.area for step in steps]),
+        (totals.AREA, [ensemble.area_share * step.area for step in steps]),
         (totals.STIFFNESS, [step.stiffness for step in steps]),
         (totals.COUNT, [step.contacts for step in steps]),
         (totals.ERROR, [step.error for step in steps]),
@@ -198,8 +207,8 @@ def _totals(steps: "list[Step]", nominal_area: float | None) -> tuple[Floats, ND
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])
-    if nominal_area is not None:
-        solved &= total[totals.AREA] <= nominal_area
+    if ensemble.nominal_area is not None:
+        solved &= total[totals.AREA] <= ensemble.nominal_area
     total[:, ~solved] = np.nan
     return total, solved
 
@@ -211,14 +220,14 @@ def _on_grid(
     from roughmdr.interaction.grid_path import solve_on_grid
 
     found = solve_on_grid(ensemble, separation, effective_modulus, "stiffness" in names)
-    total, solved = _totals(found.steps, ensemble.nominal_area)
+    total, solved = _totals(found.steps, ensemble)
     nx, ny = found.shape
     warning = (
         f"computed by boundary elements on a grid of {nx} x {ny} points: realisations of which steps were marked, as "
         'interaction.beyond = "boundary_elements" asks; their contacts are connected patches'
     )
     fraction = np.nan_to_num(total[totals.AREA]) / (ensemble.nominal_area or math.inf)
-    error = summits_error(fraction, of_surface=bool(ensemble.attrs.get("of_surface", 0)))
+    error = summits_error(fraction, ensemble.origin)
     return pairwise._replace(
         total=total, error=error, marked=int(np.sum(~solved)), grid_points=nx * ny, warnings=(warning,)
     )

@@ -1,7 +1,7 @@
 """An ensemble of asperities: plain arrays inside, an xarray dataset outside."""
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,19 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number
 from roughmdr.schema.units import unit_factor
 from roughmdr.schema.wording import short_repr
-from roughmdr.shapes import SHAPES, SharedProfile
+from roughmdr.shapes import SHAPES, Shape, SharedProfile, TabledShape
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import COORDINATES
+
+Origin = Literal["asperities", "summits", "hills"]
+"""Asperities on a plane, the summits of a continuous surface, or its hills."""
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _SIDES = ("patch", "patch_x", "patch_y")
+_FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
+_OF_HILLS = ("resolution_error", "area_share", "anisotropy")
 
 
 @dataclass(frozen=True)
@@ -41,8 +46,8 @@ class Ensemble:
         order = np.argsort(-self.height, kind="stable")
         descending = self.height[order]
         if (descending[1:] == descending[:-1]).any():
-            order = np.lexsort((*self.parameters.values(), -self.height))
-
+            columns = [column for values in self.parameters.values() for column in np.atleast_2d(values.T)]
+            order = np.lexsort((*columns, -self.height))
         return self.taken(order)
 
     def taken(self, numbers: NDArray[np.int64]) -> "Ensemble":
@@ -53,6 +58,30 @@ class Ensemble:
 
         parameters, positions = pick(self.parameters), pick(self.positions)
         return replace(self, height=self.height[numbers], parameters=parameters, positions=positions)
+
+    @property
+    def origin(self) -> Origin:
+        """Where the asperities come from, on which it depends how far the model of them holds."""
+        if self.attrs.get("asperity_model") == "hills":
+            return "hills"
+        return "summits" if self.attrs.get("of_surface") else "asperities"
+
+    @property
+    def resolution_error(self) -> float:
+        """The relative error of the force that the resolution of a map causes [1]."""
+        if self.origin == "hills":
+            return float(self.attrs.get("resolution_error", 0.0))
+        return min(_FORCE_PER_RADIUS * float(self.attrs.get("radius_uncertainty", 0.0)), 1.0)
+
+    @property
+    def anisotropy(self) -> float:
+        """Ratio of the r.m.s. slopes of the map of hills across and along its ridges [1]."""
+        return float(self.attrs.get("anisotropy", 1.0))
+
+    @property
+    def area_share(self) -> float:
+        """The area of contacts over that of circles as stiff: below 1 where they are long [1]."""
+        return float(self.attrs.get("area_share", 1.0))
 
     @property
     def spread(self) -> float:
@@ -85,7 +114,7 @@ class Ensemble:
         variables = {"height": Array(("asperity",), self.height, COORDINATES["height"].attrs)}
         for name, column in self.parameters.items():
             attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}"}
-            variables[name] = Array(("asperity",), column, attrs)
+            variables[name] = Array(dimensions_of(SHAPES[self.shape]), column, attrs)
         if self.shared_profile is not None:
             for name, column in self.shared_profile.columns.items():
                 attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}, the same for all"}
@@ -111,7 +140,8 @@ class Ensemble:
                 shared_profile = kind.from_columns(columns)
             else:
                 names = kind.parameter_set({name for name in kind.units if name in dataset})
-                parameters = {name: _column(dataset, name, kind.units[name]) for name in names}
+                along = dimensions_of(kind)
+                parameters = {name: _column(dataset, name, kind.units[name], *along) for name in names}
                 kind.check(parameters)
         except ShapeError as error:
             raise SceneError(f"ensemble: {error}") from None
@@ -122,6 +152,11 @@ class Ensemble:
         area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
         attrs = {**sides, **_of_map(dataset.attrs)}
         return cls(shape, height, parameters, area, positions, attrs, shared_profile, texts).sorted()
+
+
+def dimensions_of(shape: type[Shape]) -> tuple[str, ...]:
+    """Return the dimensions of the parameters of asperities of a shape."""
+    return ("asperity", shape.dimension) if issubclass(shape, TabledShape) else ("asperity",)
 
 
 def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | None:
@@ -136,13 +171,16 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return whether the asperities are summits of a surface, the uncertainty of their radii, and how far they keep
-    apart, as far as attributes have them; SceneError if these are no numbers.
+    """Return whether the asperities are summits of a surface, the uncertainty of their radii, how far they keep apart,
+    and what is known of hills, as far as attributes have them; SceneError if these are not what they should be.
     """
+    model = attrs.get("asperity_model", "hills")
+    if model != "hills":
+        raise SceneError(f"ensemble: attribute asperity_model is {short_repr(model)}; it must be 'hills' or absent")
     try:
-        return {
+        return {name: attrs[name] for name in ("asperity_model",) if name in attrs} | {
             name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)
-            for name in ("of_surface", "radius_uncertainty", "exclusion_distance")
+            for name in ("of_surface", "radius_uncertainty", "exclusion_distance", *_OF_HILLS)
             if name in attrs
         }
     except OutOfRange as error:
@@ -159,14 +197,16 @@ def _size(name: str, value: Any) -> float:
         raise SceneError(str(error)) from None
 
 
-def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity") -> Floats:
+def _column(dataset: "xr.Dataset", name: str, unit: str, *along: str) -> Floats:
+    along = along or ("asperity",)
     if name not in dataset:
         raise SceneError(f"ensemble: variable {name!r} is missing")
     variable = dataset[name]
-    if variable.dims != (along,):
-        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over ({along!r},)")
+    if variable.dims != along:
+        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over {along}")
     if variable.size == 0:
-        raise SceneError(f"ensemble: it has no {along}; at least one is needed")
+        empty = next(dimension for dimension in along if variable.sizes[dimension] == 0)
+        raise SceneError(f"ensemble: it has no {empty}; at least one is needed")
     if variable.dtype.kind not in "iuf":
         raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
     try:
@@ -177,6 +217,7 @@ def _column(dataset: "xr.Dataset", name: str, unit: str, along: str = "asperity"
     with np.errstate(over="ignore"):  # refused below
         column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
     if not np.isfinite(column).all():
-        where = int(np.argmin(np.isfinite(column)))
-        raise SceneError(f"ensemble: {name} is {column[where]} at {along} {where}; it must be finite")
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(column))[0])
+        place = ", ".join(f"{dimension} {i}" for dimension, i in zip(along, where, strict=True))
+        raise SceneError(f"ensemble: {name} is {column[where]} at {place}; it must be finite")
     return column

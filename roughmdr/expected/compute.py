@@ -96,7 +96,9 @@ def compute(
     overlap = poisson_overlap(equal_radii, nominal_area)
     contacts = float(total[COUNT].max())
     jkr_error = contacts * validity.contact_error if model == "jkr" and contacts > 0.0 else 0.0
-    assumptions = Assumptions(limits, jkr_error, of_surface=source.of_surface, overlap=overlap)
+    assumptions = Assumptions(
+        limits, jkr_error, origin="summits" if source.of_surface else "asperities", overlap=overlap
+    )
     warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, nodes, total[FORCE]))

@@ -26,6 +26,11 @@ def sides_of(ensemble: Ensemble) -> tuple[float, float] | None:
 def check_placed(ensemble: Ensemble, interaction: Interaction) -> None:
     """SceneError unless an ensemble has the positions and the patch that its interaction needs."""
     pairwise = interaction.model == "pairwise"
+    if interaction.beyond == "boundary_elements" and ensemble.origin == "hills":
+        raise SceneError(
+            "interaction.beyond is 'boundary_elements'; it does not go with hills, which do not say how their map "
+            "looks between them"
+        )
     missing = [name for name in ("x", "y") if name not in ensemble.positions]
     if pairwise and missing:
         raise SceneError(

@@ -32,7 +32,10 @@ class Placed:
         self.length, self.interaction = sides[0], interaction
         self.patch = Periodic.of(sides[1] / sides[0])
         _check_apart(ensemble, at / self.length, self.sides)
-        hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
+        if ensemble.origin == "hills":  # each is a part of the surface
+            hidden = np.zeros(ensemble.height.size, dtype=np.bool_)
+        else:
+            hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
         self.kept = np.flatnonzero(~hidden)
         """The numbers of the asperities that are not buried."""
         ensemble = ensemble.taken(self.kept)

@@ -1,7 +1,10 @@
 """The error of the force of asperities that are coupled in pairs, to second order in their distance."""
 
+import math
+
 import numpy as np
 
+from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
 
 _SEPARATED, _POWER = 0.15, 2.5
@@ -11,24 +14,33 @@ _OVERLAP, _CROWDED = 0.15, 0.2
 _SUMMITS = 1.3
 """Of the summits of a continuous surface, whose flanks are no paraboloids, over the root of the contact fraction."""
 
+_HILLS = 0.06
+"""Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
+ratio of the slopes along and across."""
+
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
 """Shares of the force of overlapping contacts, and contact fractions, from which there is a warning or a mark."""
+HILLS_MARKED_FRACTION = 0.3
+"""Of hills, whose contacts overlap as those of one surface do: beyond, nothing was measured."""
 
 
-def coupling_error(contact_fraction: Floats, overlap: Floats, *, of_surface: bool = False) -> Floats:
+def coupling_error(contact_fraction: Floats, overlap: Floats, ensemble: Ensemble | None = None) -> Floats:
     """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
 
     ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
-    contacts that overlap; shape (n,) each.
+    contacts that overlap; shape (n,) each. ``ensemble`` are the asperities, on a plane where it is left out.
     """
+    if ensemble is not None and ensemble.origin == "hills":
+        return np.where(contact_fraction > 0.0, min(_HILLS * math.sqrt(ensemble.anisotropy), 1.0), 0.0)
     error = _SEPARATED * contact_fraction**_POWER + overlap * (_OVERLAP + _CROWDED * contact_fraction)
-    return np.minimum(error + summits_error(contact_fraction, of_surface=of_surface), 1.0)
+    origin = "asperities" if ensemble is None else ensemble.origin
+    return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
 
 
-def summits_error(contact_fraction: Floats, *, of_surface: bool) -> Floats:
+def summits_error(contact_fraction: Floats, origin: Origin) -> Floats:
     """Return the part of it that asperities cause by standing for the summits of a surface [1]."""
-    return np.asarray((_SUMMITS if of_surface else 0.0) * np.sqrt(contact_fraction))
+    return np.asarray((_SUMMITS if origin == "summits" else 0.0) * np.sqrt(contact_fraction))
 
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False) -> list[str]:

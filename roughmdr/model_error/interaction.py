@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.ensemble.ensemble import Origin
 from roughmdr.numerics.arguments import Floats
 
 _NEIGHBOURS = 6  # of a hexagonal lattice
@@ -37,8 +38,15 @@ TENSION, MOST_TENSION = 0.2, 1.1
 is, and what it exceeds in one case of ten: of JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``)."""
 
 
+HILLS = Coefficients(low=0.5, typical=3.0, estimate=10.0)
+"""Of the hills of a map, each of which grows into those beside it where it does not feel them: the force is too high
+(``pipelines/hills.py``)."""
+
+OF_ORIGIN: dict[Origin, Coefficients] = {"asperities": ASPERITIES, "summits": SUMMITS, "hills": HILLS}
+
+
 def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASPERITIES) -> Floats:
-    """Return by how much the force of independent asperities is too low, over the true force [1].
+    """Return by how much the force of independent asperities is off, over the true force [1].
 
     ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). Where boundary elements find full
     contact, from 0.3 to 0.5 on, the error is the whole force.

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.asperity.validity import ValidityLimits
-from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
+from roughmdr.ensemble.ensemble import Origin
+from roughmdr.model_error.interaction import OF_ORIGIN, interaction_error
 from roughmdr.numerics.arguments import Floats
 
 TRUSTED_FRACTION = 0.02
@@ -16,14 +17,13 @@ TRUSTED_ERROR = 0.02
 """Error by interaction up to which the force of coupled asperities is told to be right."""
 
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
-_FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
 
 PARTS = {
     "interaction_error": "asperities that do not feel each other, or are coupled only so far",
     "slope_error": "slopes that are not small",
     "profile_end_error": "contacts beyond the end of their profile",
     "adhesion_range_error": "JKR, where adhesion reaches further than it supposes",
-    "resolution_error": "radii of summits that the map does not resolve",
+    "resolution_error": "a map that does not resolve its summits or hills",
 }
 """The parts of the model error, by their names in results."""
 
@@ -34,10 +34,10 @@ class Assumptions(NamedTuple):
     limits: ValidityLimits
     jkr_error: float = 0.0
     """About the error of JKR's force of all contacts [N]; 0 where it is not used."""
-    radius_uncertainty: float = 0.0
-    """Relative uncertainty of the radii of a map's summits."""
-    of_surface: bool = False
-    """Whether the asperities are the summits of a continuous surface."""
+    resolution_error: float = 0.0
+    """The relative error of the force that the resolution of a map causes."""
+    origin: Origin = "asperities"
+    """Where the asperities come from."""
     overlap: float = math.nan
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
     coupling_error: Floats | None = None
@@ -85,14 +85,14 @@ class ModelError(NamedTuple):
             "slope_error": limits.slope_error,
             "profile_end_error": limits.end_error,
             "adhesion_range_error": min(assumptions.jkr_error / largest, 1.0) if largest > 0.0 else 0.0,
-            "resolution_error": min(_FORCE_PER_RADIUS * assumptions.radius_uncertainty, 1.0),
+            "resolution_error": assumptions.resolution_error,
         }
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
         coupled = assumptions.coupling_error
         if coupled is None:
-            interaction = interaction_error(contact_fraction, SUMMITS if assumptions.of_surface else ASPERITIES)
+            interaction = interaction_error(contact_fraction, OF_ORIGIN[assumptions.origin])
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)

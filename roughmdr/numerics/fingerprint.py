@@ -7,6 +7,7 @@ from pathlib import Path
 _PACKAGE = Path(__file__).parent.parent
 COMPILED = (
     "aggregate",
+    "ensemble/maps/hills",
     "ensemble/placement.py",
     "expected",
     "fields",

@@ -7,8 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.model_error.coupling import coupling_error
-from roughmdr.model_error.interaction import ASPERITIES, MOST_TENSION, SUMMITS, TENSION, Coefficients, interaction_error
+from roughmdr.model_error.coupling import coupling_error, summits_error
+from roughmdr.model_error.interaction import (
+    ASPERITIES,
+    HILLS,
+    MOST_TENSION,
+    SUMMITS,
+    TENSION,
+    Coefficients,
+    interaction_error,
+)
 from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -139,14 +147,20 @@ def _trust_coupled(known: dict[str, Floats]) -> str:
 def _advice(known: dict[str, Floats], coefficients: Coefficients) -> str:
     """Return by how much [interaction] would better the error, if contacts overlap as often as those of this scene."""
     fraction, overlap = (known[name].max(initial=0.0) for name in ("largest_contact_fraction", "overlap_fraction"))
-    better = coupling_error(np.array([fraction]), np.array([overlap]), of_surface=coefficients is SUMMITS)
-    return f'with [interaction] model = "pairwise" by the interaction within about {_percent(float(better[0]))}'
+    if coefficients is HILLS:
+        return 'hills need [interaction] model = "pairwise": without it their forces mean nothing'
+    better = coupling_error(np.array([fraction]), np.array([overlap]))
+    if coefficients is SUMMITS:
+        better = better + summits_error(np.array([fraction]), "summits")
+    within = _percent(float(min(better[0], 1.0)))
+    return f'with [interaction] model = "pairwise" by the interaction within about {within}'
 
 
 def _coefficients(known: dict[str, Floats]) -> Coefficients:
     """Return the coefficients that the error by interaction was estimated with."""
-    as_asperities = interaction_error(known["largest_contact_fraction"].max())
-    return SUMMITS if known["interaction_error"].max() > _MORE * as_asperities else ASPERITIES
+    error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
+    kinds = (ASPERITIES, SUMMITS, HILLS)  # by rising errors
+    return next((kind for kind in kinds if error <= _MORE * interaction_error(fraction, kind)), HILLS)
 
 
 def _interaction(fraction: float, coefficients: Coefficients) -> str:

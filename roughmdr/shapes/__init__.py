@@ -1,8 +1,9 @@
 """The profiles of single asperities. CONTRIBUTING.md says how to add one: a file here and a line in ``SHAPES``."""
 
-from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile
+from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile, TabledShape
 from roughmdr.shapes.blunt_tips import CappedParaboloid, RoundedCone
 from roughmdr.shapes.flat_tips import FlatPunch, RoundedPunch, TruncatedCone, TruncatedParaboloid
+from roughmdr.shapes.mdr_table.shape import MdrTable
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.series import PowerSeries
 from roughmdr.shapes.sphere import Sphere
@@ -23,6 +24,7 @@ SHAPES: dict[str, type[Shape]] = {
         RoundedPunch,
         PowerSeries,
         Tabulated,
+        MdrTable,
     )
 }
 
@@ -31,6 +33,7 @@ __all__ = [
     "CappedParaboloid",
     "Cone",
     "FlatPunch",
+    "MdrTable",
     "Paraboloid",
     "PowerLaw",
     "PowerSeries",
@@ -40,6 +43,7 @@ __all__ = [
     "Shape",
     "SharedProfile",
     "Sphere",
+    "TabledShape",
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",

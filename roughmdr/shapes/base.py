@@ -243,6 +243,15 @@ class SharedProfile(ProfileShape):
         return math.inf
 
 
+class TabledShape(ProfileShape):
+    """A shape whose parameters are arrays, of which each asperity of an ensemble has its own, all equally long.
+
+    Parameters of asperities are arrays [asperity, point], and params a row each.
+    """
+
+    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble, beside ``asperity``
+
+
 def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats:
     """Return ``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``limit``."""
     try:

@@ -39,7 +39,7 @@ def shape_of(name: str, case: dict[str, Any]) -> Any:
 
 def tables() -> list[Any]:
     found = []
-    for name in SHAPES:
+    for name in sorted(SHAPES.keys() - {"mdr_table"}):  # known by its g: ``shapes/test_mdr_table.py``
         for number, case in enumerate(json.loads((DATA / f"{name}.json").read_text())["cases"]):
             found.append(pytest.param(name, case, id=f"{name}-{number}"))
     return found

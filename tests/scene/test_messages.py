@@ -53,7 +53,7 @@ def test_the_example_for_what_is_missing_makes_the_scene_complete(key: str) -> N
     assert read(table).toml
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", sorted(SHAPES.keys() - {"mdr_table"}))  # of files and maps alone
 def test_the_examples_of_the_parameters_of_every_shape_go_together(shape: str) -> None:
     section = {**ASPERITIES, "shape": shape}
     del section["radius"]

@@ -46,6 +46,13 @@ def _table(rng: Rng) -> Shape:
     return rm.Tabulated(r * length / r[-1], f * length * power_of_ten(rng, -4.0, 0.0))
 
 
+def _mdr_table(rng: Rng) -> Shape:
+    """Return an MDR table of rises of any size at radii near to each other or far apart."""
+    count = int(rng.integers(1, 20))
+    a, g = (np.cumsum(10.0 ** rng.uniform(-2.0, 0.0, count)) for _ in range(2))
+    return rm.MdrTable(a * _length(rng), g * _length(rng))
+
+
 def _capped(rng: Rng) -> Shape:
     radius = _length(rng)
     return rm.CappedParaboloid(radius, radius * power_of_ten(rng, 0.0, 4.0), _length(rng))
@@ -64,4 +71,5 @@ DRAW: dict[str, Callable[[Rng], Shape]] = {
     "rounded_punch": lambda rng: rm.RoundedPunch(_length(rng), _length(rng)),
     "power_series": _series,
     "tabulated": _table,
+    "mdr_table": _mdr_table,
 }

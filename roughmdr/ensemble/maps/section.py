@@ -1,4 +1,4 @@
-"""source = "surface": the summits of a measured height map, as paraboloids."""
+"""source = "surface": the summits of a measured height map, as paraboloids, or its hills, with a profile each."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, StrictBool, field_validator
+from pydantic import BeforeValidator, StrictBool, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
@@ -14,12 +14,12 @@ from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_tre
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, mean_and_rms
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
+from roughmdr.ensemble.maps.resolution import hills_warning, radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.schema.quantities import Length
+from roughmdr.schema.quantities import EntryError, Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
@@ -28,7 +28,7 @@ _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 
 
 class SurfaceAsperities(FromFile):
-    """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``).
+    """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``), or its hills.
 
     ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
     file; ``periodic`` overrides the file. ``detrend`` is removed, by default "quadratic", or "mean" of a periodic map;
@@ -36,19 +36,27 @@ class SurfaceAsperities(FromFile):
 
     Attributes of the ensemble beside those of ``find_summits`` and ``map_statistics``: ``rms_height_raw`` [m], before
     the trend is removed; ``mean_curvature_radius`` [m], 1/<sqrt(k1 k2)>; with a cutoff ``uncut_...``, without it; and
-    ``radius_uncertainty`` [1] (``resolution``).
+    ``radius_uncertainty`` [1] (``resolution``). Those of hills are told by ``find_hills``.
     """
 
     of_surface: ClassVar[bool] = True
 
     source: Literal["surface"]
-    shape: Literal["paraboloid"] = "paraboloid"
+    model: Literal["summits", "hills"] = "summits"
+    shape: Literal["paraboloid", "mdr_table"] | None = None
     size: Annotated[Size | None, BeforeValidator(SizeReader())] = None
     unit: str | None = None
     channel: str | None = None
     detrend: Trend | None = None
     periodic: StrictBool | None = None
     cutoff: Length | None = None
+
+    @model_validator(mode="after")
+    def _shape_of_the_model(self) -> "SurfaceAsperities":
+        shape = "paraboloid" if self.model == "summits" else "mdr_table"
+        if self.shape not in (None, shape):
+            raise EntryError("shape", self.shape, f"is not that of model = {self.model!r}: {shape}; leave it out")
+        return self
 
     @field_validator("unit")
     @classmethod
@@ -65,13 +73,20 @@ class SurfaceAsperities(FromFile):
             uncut = {} if self.cutoff is None else self._summits(surface, noise)[1]
             self._remove_short_waves(surface)
             summits, found = self._summits(surface, noise)
+            if self.model == "hills":
+                from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler
+
+                summits = find_hills(surface, summits)
         except RoughmdrError as error:
             raise SceneError(f"{self.file}: {error}") from error
         attrs = {**summits.attrs, **found, "rms_height_raw": raw, "detrend": self._trend(surface)}
         if self.cutoff is not None:
             attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
-        attrs["radius_uncertainty"] = radius_uncertainty(attrs)
-        text = warning(path.name, attrs)
+        if self.model == "hills":
+            text = hills_warning(path.name, attrs)
+        else:
+            attrs["radius_uncertainty"] = radius_uncertainty(attrs)
+            text = warning(path.name, attrs)
         return replace(summits, attrs=attrs, warnings=(text,) if text else ())
 
     @property

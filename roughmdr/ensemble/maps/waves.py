@@ -27,13 +27,35 @@ class MapWaves(NamedTuple):
         """
         mean, rms_height = mean_and_rms(surface)
         slope = float(map_statistics(surface)["rms_slope"])
-        moments = Moments(rms_height**2, 0.5 * slope**2, 0.375 * _mean_square_laplacian(surface))
+        moments = Moments(rms_height**2, 0.5 * slope**2, 0.375 * mean_square_laplacian(surface))
         complete = surface.defined == surface.height.size
         short_wave = 2.0 * max(surface.dx, surface.dy) if cutoff is None else cutoff
         return cls(mean, moments, _spectrum(surface, mean) if complete else None, short_wave)
 
 
-def _mean_square_laplacian(surface: HeightMap) -> float:
+def slope_ratio(surface: HeightMap) -> float:
+    """Return the ratio of the r.m.s. slopes across and along the ridges of a map, at least 1.
+
+    Those are the roots of the eigenvalues of <grad h grad h>, over the points whose next along x and along y is
+    defined.
+    """
+    height, dx, dy, periodic, _ = surface
+    nx, ny = height.shape
+    products, scale = np.zeros(3), surface.highest or 1.0
+    for rows in blocks(nx if periodic else max(nx - 1, 1), ny):
+        part = height[np.arange(rows.start, rows.stop + 1) % nx] / scale
+        along_x, along_y = np.diff(part, axis=0) / dx, np.diff(part[:-1], axis=1, append=part[:-1, :1]) / dy
+        if not periodic:
+            along_x, along_y = along_x[:, :-1], along_y[:, :-1]
+        known = np.isfinite(along_x) & np.isfinite(along_y)
+        x, y = along_x[known], along_y[known]
+        products += [x @ x, y @ y, x @ y]
+    xx, yy, xy = products
+    middle, half = 0.5 * (xx + yy), float(np.hypot(0.5 * (xx - yy), xy))
+    return float(np.sqrt((middle + half) / max(middle - half, 1e-12 * middle))) if middle > 0.0 else 1.0
+
+
+def mean_square_laplacian(surface: HeightMap) -> float:
     """Return <(h_xx + h_yy)^2> [1/m2] by second differences, over the points whose four neighbours are defined."""
     height, dx, dy, periodic, _ = surface
     nx, ny = height.shape

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from roughmdr.ensemble.maps.resolution import verdict
+from roughmdr.ensemble.maps.resolution import hills_verdict, verdict
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.schema.units import format_quantity
 
@@ -23,12 +23,21 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
             f"{length('rms_height')} after the cutoff"
         )
         slopes += f", uncut {attrs['uncut_rms_slope']:.3g}: pressures at a given contact area fall with it"
+    found = (
+        (
+            f"hills on a wavelength of {length('wavelength')}, their contacts {attrs['area_share']:.2g} of the area of "
+            f"circles as stiff; r.m.s. slopes along and across differ by a factor of {attrs['anisotropy']:.3g}",
+            hills_verdict(attrs),
+        )
+        if attrs.get("asperity_model") == "hills"
+        else (verdict(attrs),)
+    )
     return (
         f"{length('patch_x')} x {length('patch_y')}, {attrs['undefined_share']:.2%} undefined; {kept}",
         f"{heights}; {slopes}",
         f"{attrs['points_per_summit']:.3g} points a summit, misfit {attrs['misfit']:.2g}; "
         f"{attrs['saddles']} saddles left out",
-        verdict(attrs),
+        *found,
     )
 
 

@@ -19,7 +19,7 @@ from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, RANGE, STRENG
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
-from roughmdr.shapes import Paraboloid, Shape
+from roughmdr.shapes import Paraboloid, Shape, TabledShape
 from roughmdr.shapes.power_profiles import profile_of
 
 
@@ -38,6 +38,17 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
     rows = np.zeros((stop - start, 2 - law.first_node))
     for i in range(stop - start):
         rows[i, 0] = columns.params[start + i]
+        law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
+    law.fill_nodes(rows)
+    return rows
+
+
+def prepare_tabled(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+    """Return as ``prepare`` where the params of an asperity are a row themselves."""
+    size = columns.params.shape[1]
+    rows = np.zeros((stop - start, size - law.first_node))
+    for i in range(stop - start):
+        rows[i, :size] = columns.params[start + i]
         law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
     law.fill_nodes(rows)
     return rows
@@ -122,7 +133,7 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
 @cache
 def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range."""
-    profile, shared = profile_of(shape), shape.shared
+    profile, shared, tabled = profile_of(shape), shape.shared, issubclass(shape, TabledShape)
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
         of_paraboloid = (paraboloid,) if shape is Paraboloid else ()
@@ -148,7 +159,11 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else shape.name)
     vars(whole).update(constants, **{name: compiled(part) for name, part in plain.items() if part is not None})
     # What a table looks up is no vector code.
-    vector = {} if shared else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
+    vector = (
+        {}
+        if shared or tabled
+        else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
+    )
     inlined = whole.copy()
     small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else set())
     for name, part in parts.items():
@@ -158,5 +173,7 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     whole.state_of_force = whole.state  # of a row under dead load
     if shared:
         whole.prepare, whole.params_of = whole.prepare_shared, whole.shared_params
+    if tabled:
+        whole.prepare = whole.prepare_tabled
     vars(inlined).update({**vars(whole), **vector})
     return whole

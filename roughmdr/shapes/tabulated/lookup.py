@@ -16,6 +16,7 @@ import math
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
+from roughmdr.numerics.search import last_at_or_below
 from roughmdr.numerics.vector_math import sqrt
 from roughmdr.shapes.profile import Params, Profile
 
@@ -34,21 +35,12 @@ def beginnings(params: Params | Floats) -> tuple[int, int]:
     return offset, int(params[offset - 1])
 
 
-def _last_at_or_below(value: float, params: Params, offset: int, step: int, count: int) -> int:
-    """Return the index of the last of ``count`` rising numbers, ``step`` apart, that is at most ``value``, else 0."""
-    low, left = 0, count
-    while left > 1:
-        half = left // 2
-        low, left = (low + half if value >= params[offset + step * (low + half)] else low), left - half
-    return low
-
-
 def _find_piece(t: float, params: Params) -> int:
     """Return the offset of the piece that t lies on; beyond the last one, minus the offset of the far field."""
     offset, count = beginnings(params)
     if t >= params[offset + count]:
         return -(offset + count + 1 + PIECE * count)
-    return offset + count + 1 + PIECE * _last_at_or_below(t, params, offset, 1, count)
+    return offset + count + 1 + PIECE * last_at_or_below(t, params, offset, 1, count)
 
 
 def _polynomial(u: float, offset: int, params: Params) -> float:
@@ -115,7 +107,7 @@ def _roundings(params: Params) -> float:
 def _f_and_slope(r: float, params: Params) -> tuple[float, float]:
     offset, count = beginnings(params)
     spline = offset + count * (1 + PIECE) + 1 + FAR
-    knot = spline + 1 + KNOT * _last_at_or_below(r, params, spline + 1, KNOT, int(params[spline]))
+    knot = spline + 1 + KNOT * last_at_or_below(r, params, spline + 1, KNOT, int(params[spline]))
     s, c0, c1, c2 = r - params[knot], params[knot + 2], params[knot + 3], params[knot + 4]
     return params[knot + 1] + s * (c0 + s * (c1 / 2.0 + s * c2 / 3.0)), c0 + s * (c1 + s * c2)
 

@@ -1,0 +1,115 @@
+"""Find the hills of a height map."""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
+from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
+from roughmdr.ensemble.maps.hills.table import fill_table, points_of
+from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
+from roughmdr.ensemble.maps.resolution import hills_error
+from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
+from roughmdr.shapes.mdr_table.shape import rising
+
+_WAVELENGTH = 6.6
+"""Times r.m.s. slope over r.m.s. Laplacian: that of a map with waves of one length, about (2 pi there)."""
+SCALES = 20
+"""Contact radii of a hill: 1.18 from one to the next."""
+SMALLEST, LARGEST = 0.04, 1.0
+"""The first and the last of them, in wavelengths."""
+MIDDLE = 0.15
+"""The contact radius at whose centre a hill stands for its neighbours [wavelength]: about where contacts meet."""
+
+
+class Hills(NamedTuple):
+    """Hills, one each for the summits of a map."""
+
+    height: Floats
+    """Of their tops [m]."""
+    g: Floats
+    """[hill, point], [m]."""
+    moved: Floats
+    """From the summit to the centre of the contact of ``MIDDLE`` size [hill, 2], in wavelengths."""
+    area_share: Floats
+    """Of that contact, over a circle as stiff."""
+    kept: NDArray[np.bool_]
+    """Whether it is a hill: whether it falls from its top."""
+
+
+def wavelength(surface: HeightMap) -> float:
+    """Return the length of the waves that make the curvatures of a map [m]."""
+    slope = float(map_statistics(surface)["rms_slope"])
+    return _WAVELENGTH * slope / math.sqrt(mean_square_laplacian(surface))
+
+
+def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
+    """Return the hills of a map on its summits: asperities with an MDR table each, of the same attributes.
+
+    Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory.
+    """
+    length = wavelength(surface)
+    spline = Spline.of(surface, length)
+    radius = np.geomspace(SMALLEST, LARGEST, SCALES)
+    points = points_of(radius)
+    rows, columns = summits.positions["x"] / surface.dx - 0.5, summits.positions["y"] / surface.dy - 0.5
+    count = summits.height.size
+    height, g, moved = np.empty(count), np.empty((count, SCALES)), np.empty((count, 2))
+    kept, share = np.empty(count, dtype=np.bool_), np.empty(count)
+    _measure(spline, rows, columns, radius, points, Hills(height, g, moved, share, kept))
+    nx, ny = surface.height.shape
+    sides = np.array([nx * surface.dx, ny * surface.dy])
+    at = np.column_stack([(rows + 0.5) * surface.dx, (columns + 0.5) * surface.dy]) + length * moved
+    at = at % sides if surface.periodic else np.clip(at, 0.0, np.nextafter(sides, 0.0))
+    return replace(
+        summits,
+        shape="mdr_table",
+        height=height[kept],
+        parameters={"a": np.tile(length * points, (int(kept.sum()), 1)), "g": rising(g[kept])},
+        positions={"x": at[kept, 0], "y": at[kept, 1]},
+        attrs={**summits.attrs, **_attributes(surface, length, share[kept])},
+    ).sorted()
+
+
+def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, float | int | str]:
+    """Return what is known of all hills of a map, by the names of attributes."""
+    points = length / max(surface.dx, surface.dy)
+    return {
+        "asperity_model": "hills",
+        "wavelength": length,
+        "points_per_wave": points,
+        "resolution_error": hills_error(points),
+        "area_share": float(np.mean(share)) if share.size else 1.0,
+        "anisotropy": slope_ratio(surface),
+    }
+
+
+@njit
+def _measure(spline: Spline, rows: Floats, columns: Floats, radius: Floats, points: Floats, hills: Hills) -> None:
+    """Fill in the hills of summits; their rows and columns become those of the spline's summits."""
+    taken_off, nearest, mean = np.empty((RAYS, STEPS + 1)), np.empty(1), np.empty(radius.size)
+    for i in range(rows.size):
+        x, y = top_of(Territory(spline, rows[i], columns[i], taken_off, nearest))
+        rows[i], columns[i] = rows[i] + x / spline.spacing_x, columns[i] + y / spline.spacing_y
+        hill = Territory(spline, rows[i], columns[i], taken_off, nearest)
+        explore(hill)
+        ellipse, before = np.zeros(PARAMETERS), np.zeros(2)
+        top = raw_height(hill, 0.0, 0.0)
+        for k in range(radius.size):
+            if k > 0:
+                ellipse[2:] *= radius[k - 1] / radius[k]
+            mean[k] = improve(hill, radius[k], ellipse)
+            top = max(top, mean[k])
+            if k > 0 and radius[k - 1] <= MIDDLE < radius[k]:
+                share = (MIDDLE - radius[k - 1]) / (radius[k] - radius[k - 1])
+                hills.moved[i] = (1.0 - share) * before + share * radius[k] * ellipse[2:]
+                hills.area_share[i] = area_share(ellipse)
+            before = radius[k] * ellipse[2:]
+        hills.height[i] = top
+        hills.kept[i] = fill_table(radius, mean, top, points, hills.g[i])

@@ -1,0 +1,173 @@
+"""The surface of one hill: the map about its summit, where each rise beyond a valley is turned into a fall.
+
+Heights between the points of the map are those of its cubic spline. Along rays from the summit the surface must fall:
+from where it rises the territory of a neighbour begins, and so much and as much again is taken off.
+"""
+
+import math
+from functools import partial
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
+
+_inlined = partial(njit, small=True)  # a call would count the references to every array of its arguments
+
+RAYS, STEPS = 32, 96
+REACH = 3.0
+"""Length of a ray, in wavelengths of the map (``find.wavelength``)."""
+
+
+_CLIMBS, _CLIMB = 4, 0.02  # steps towards a summit along both axes, and their length at most
+
+
+class Spline(NamedTuple):
+    """A map as a cubic spline."""
+
+    coefficients: Floats
+    """Of the B-splines at the points, [x, y]."""
+    spacing_x: float
+    """[wavelength]."""
+    spacing_y: float
+    periodic: bool
+
+    @classmethod
+    def of(cls, surface: HeightMap, wavelength: float) -> "Spline":
+        """Return the spline of a map; undefined points take the height of the nearest that is defined."""
+        from scipy.ndimage import distance_transform_edt, spline_filter
+
+        height = surface.height
+        if surface.defined < height.size:
+            where = distance_transform_edt(
+                ~np.isfinite(height), (surface.dx, surface.dy), return_distances=False, return_indices=True
+            )
+            height = height[tuple(where)]
+        mode: Literal["grid-wrap", "mirror"] = "grid-wrap" if surface.periodic else "mirror"
+        return cls(
+            spline_filter(height, order=3, mode=mode),
+            surface.dx / wavelength,
+            surface.dy / wavelength,
+            surface.periodic,
+        )
+
+
+class Territory(NamedTuple):
+    """The surface of one hill; lengths in wavelengths from its summit."""
+
+    map: Spline
+    row: float
+    """Place of the summit between the points of the map."""
+    column: float
+    taken_off: Floats
+    """What is taken off along each ray, [ray, step]."""
+    nearest_rise: Floats
+    """Distance up to which nothing is; one number."""
+
+
+@_inlined
+def _wrapped(index: int, size: int, periodic: bool) -> int:
+    """Return the point of the map that stands for one beyond its edges: that of the next period, or mirrored."""
+    if periodic:
+        return index % size
+    if size == 1:
+        return 0
+    index = abs(index) % (2 * size - 2)
+    return index if index < size else 2 * size - 2 - index
+
+
+@_inlined
+def _basis(u: float) -> tuple[float, float, float, float]:
+    """Return the four cubic B-splines over the interval that u from 0 to 1 lies on."""
+    v, square, cube = 1.0 - u, u * u, u * u * u
+    return (
+        v * v * v / 6.0,
+        (4.0 - 6.0 * square + 3.0 * cube) / 6.0,
+        (1.0 + 3.0 * (u + square - cube)) / 6.0,
+        cube / 6.0,
+    )
+
+
+@_inlined
+def map_height(spline: Spline, row: float, column: float) -> float:
+    """Return the height of the map [m] at a place between its points."""
+    c, periodic = spline.coefficients, spline.periodic
+    nx, ny = c.shape
+    i, j = math.floor(row), math.floor(column)
+    along_x, along_y = _basis(row - i), _basis(column - j)
+    total = 0.0
+    if 1 <= i < nx - 2 and 1 <= j < ny - 2:
+        for k in range(4):
+            m = i - 1 + k
+            line = along_y[0] * c[m, j - 1] + along_y[1] * c[m, j] + along_y[2] * c[m, j + 1] + along_y[3] * c[m, j + 2]
+            total += along_x[k] * line
+        return total
+    for k in range(4):
+        line, m = 0.0, _wrapped(i - 1 + k, nx, periodic)
+        for n in range(4):
+            line += along_y[n] * c[m, _wrapped(j - 1 + n, ny, periodic)]
+        total += along_x[k] * line
+    return total
+
+
+@_inlined
+def raw_height(hill: Territory, x: float, y: float) -> float:
+    """Return the height of the map [m] at a place [wavelength] from the summit."""
+    return map_height(hill.map, hill.row + x / hill.map.spacing_x, hill.column + y / hill.map.spacing_y)
+
+
+@njit
+def top_of(hill: Territory) -> tuple[float, float]:
+    """Return the place of the summit [wavelength], from where that of the paraboloid through its points is."""
+    x = y = 0.0
+    for _ in range(_CLIMBS):
+        for axis in range(2):
+            dx, dy = (_CLIMB, 0.0) if axis == 0 else (0.0, _CLIMB)
+            here, above, below = (
+                raw_height(hill, x, y),
+                raw_height(hill, x + dx, y + dy),
+                raw_height(hill, x - dx, y - dy),
+            )
+            bend = above + below - 2.0 * here
+            if bend < 0.0:
+                move = min(max(0.5 * (below - above) / bend, -1.0), 1.0)
+                x, y = x + move * dx, y + move * dy
+    return x, y
+
+
+@njit
+def explore(hill: Territory) -> None:
+    """Fill in what is taken off along the rays."""
+    step, nearest = REACH / STEPS, REACH
+    for ray in range(RAYS):
+        angle = 2.0 * math.pi * ray / RAYS
+        x, y = step * math.cos(angle), step * math.sin(angle)
+        before, total = raw_height(hill, 0.0, 0.0), 0.0
+        for k in range(STEPS):
+            hill.taken_off[ray, k] = total
+            here = raw_height(hill, (k + 1) * x, (k + 1) * y)
+            if here > before:
+                nearest = min(nearest, k * step)
+                total += 2.0 * (here - before)
+            before = here
+        hill.taken_off[ray, STEPS] = total
+    hill.nearest_rise[0] = nearest
+
+
+@_inlined
+def height(hill: Territory, x: float, y: float) -> float:
+    """Return the height of the hill [m] at a place [wavelength] from its summit."""
+    raw, r = raw_height(hill, x, y), math.sqrt(x * x + y * y)
+    if r <= hill.nearest_rise[0]:
+        return raw
+    step = min(r * (STEPS / REACH), STEPS - 1e-9)
+    ray = (math.atan2(y, x) / (2.0 * math.pi) % 1.0) * RAYS
+    k, m = int(step), int(ray)
+    u, v, following = step - k, ray - m, (m + 1) % RAYS
+    m %= RAYS
+    taken = hill.taken_off
+    one = (1.0 - u) * taken[m, k] + u * taken[m, k + 1]
+    other = (1.0 - u) * taken[following, k] + u * taken[following, k + 1]
+    return float(raw - ((1.0 - v) * one + v * other))

@@ -1,0 +1,1 @@
+"""The shape that is given by its MDR profile: its functions, the numbers that they read, and the shape itself."""

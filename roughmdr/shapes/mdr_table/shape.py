@@ -1,0 +1,142 @@
+"""A profile that is given by its MDR profile."""
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.errors import ShapeError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes.base import TabledShape, check_radii
+from roughmdr.shapes.mdr_table import lookup, rows
+
+_MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
+_MAX_LENGTH = 1e100  # [m], so that the squares of radii are floats
+
+
+class MdrTable(TabledShape):
+    """g [m] at contact radii a [m], the indentation of a contact without adhesion; both rise, from above 0.
+
+    Between the points, and to the tip, g is a monotone cubic in a^2, beyond them a paraboloid. Every rising g is that
+    of a profile (inverse of H 17), whose contact is a disc; f follows from it. In an ensemble each asperity has a table
+    of its own, all with equally many points.
+
+    Raises
+    ------
+    ShapeError
+        Unless a and g are equally many numbers, at least one, finite, above 0 and rising by more than a millionth of
+        the last of them.
+    """
+
+    name = "mdr_table"
+    units: ClassVar[dict[str, str]] = {"a": "m", "g": "m"}
+    dimension = "point"
+    profile = lookup.PROFILE
+
+    def __init__(self, a: ArrayLike, g: ArrayLike) -> None:
+        self.radii, self.indentations = _row("a", a), _row("g", g)
+        if self.radii.size != self.indentations.size:
+            raise ShapeError(
+                f"mdr_table: a holds {self.radii.size} numbers and g {self.indentations.size}; "
+                "they must be equally many"
+            )
+        self.check(self.parameters)
+
+    def __repr__(self) -> str:
+        return f"MdrTable({self.radii.size} points to a={self.radii[-1]:g}, g={self.indentations[-1]:g})"
+
+    @classmethod
+    def example(cls) -> dict[str, Any]:
+        return {"a": [1.0, 2.0], "g": [1.0, 5.0]}
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        return {"a": self.radii, "g": self.indentations}
+
+    @classmethod
+    def check(cls, parameters: Any) -> None:
+        for name, values in parameters.items():
+            table = np.atleast_2d(values)
+            last = table[:, -1:]
+            wrong = ~((np.diff(table, axis=1, prepend=0.0) > _MIN_STEP * last) & (last < _MAX_LENGTH))
+            wrong |= last <= 1.0 / _MAX_LENGTH
+            if wrong.any():
+                row, k = (int(at) for at in np.argwhere(wrong)[0])
+                where = "" if table.shape[0] == 1 else f" at asperity {row}"
+                before = f" after {table[row, k - 1]:g} m" if k > 0 else ""
+                raise ShapeError(
+                    f"mdr_table: {name}[{k}] is {table[row, k]:g} m{before}{where}; {name} must rise from above 0, by "
+                    f"more than {_MIN_STEP:g} of its last number, which must be between 1e-100 and 1e100 m"
+                )
+
+    @classmethod
+    def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
+        """Return powers of two next to the last a and g as width and rise, so that dividing by them changes no bit."""
+        a, g = (np.atleast_2d(parameters[name]) for name in ("a", "g"))
+        width, rise = (2.0 ** np.frexp(column[:, -1])[1] for column in (a, g))
+        return width, rise, rows.rows_of(a / width[:, None], g / rise[:, None])
+
+    @cached_property
+    def _nondimensional(self) -> tuple[float, float, Floats]:
+        width, rise, params = self.nondimensionalise(self.parameters)
+        return float(width[0]), float(rise[0]), params[0]
+
+    def nondimensional(self) -> tuple[float, float, Any]:
+        return self._nondimensional
+
+    def df(self, r: ArrayLike) -> Floats:
+        return self.slopes(self.nondimensional(), check_radii("r", r))
+
+    def precisely(self, t: float) -> tuple[Any, Any, Any]:
+        """Return a, g and a g - G as ``ProfileShape`` does, here from the antiderivatives of each piece."""
+        from mpmath import mp
+
+        with mp.workdps(40):
+            width, rise, _ = self.nondimensional()
+            slopes = rows.knot_slopes(*(column[None] for column in (self.radii / width, self.indentations / rise)))[0]
+            points = [
+                (mp.mpf(0), mp.mpf(0)),
+                *zip(map(mp.mpf, self.radii / width), map(mp.mpf, self.indentations / rise), strict=True),
+            ]
+            a, g, load = mp.mpf(t), mp.mpf(0), mp.mpf(0)
+            for k, (begin, value) in enumerate(points):
+                if begin > a:
+                    break
+                first, second, third = mp.mpf(slopes[k]), mp.mpf(0), mp.mpf(0)
+                end = a
+                if k + 1 < len(points):
+                    following, after = points[k + 1]
+                    h = following**2 - begin**2
+                    chord, last = (after - value) / h, mp.mpf(slopes[k + 1])
+                    second, third = (3 * chord - 2 * first - last) / h, (first + last - 2 * chord) / h**2
+                    end = min(a, following)
+                s = begin**2
+                # dg/ds in powers of s
+                powers = first - 2 * second * s + 3 * third * s**2, 2 * second - 6 * third * s, 3 * third
+                g = value + sum(c * (end ** (2 * i + 2) - begin ** (2 * i + 2)) / (i + 1) for i, c in enumerate(powers))
+                load += sum(
+                    2 * c * (end ** (2 * i + 3) - begin ** (2 * i + 3)) / (2 * i + 3) for i, c in enumerate(powers)
+                )
+            return width * a, rise * g, width * rise * load
+
+
+def rising(g: Floats) -> Floats:
+    """Return g [table, point] with the least rise from point to point that a table may have where it rises less."""
+    steps = np.diff(g, axis=1, prepend=0.0)
+    return np.asarray(np.cumsum(np.maximum(steps, 2.0 * _MIN_STEP * np.abs(g).max(axis=1, keepdims=True)), axis=1))
+
+
+def _row(name: str, values: ArrayLike) -> Floats:
+    """Return ``values`` as read-only floats; ShapeError unless they are finite numbers in a row."""
+    try:
+        row = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ShapeError(f"mdr_table: {name} is {values!r}; it must be a list of numbers") from None
+    if row.ndim != 1 or row.size == 0:
+        raise ShapeError(f"mdr_table: {name} has the shape {row.shape}; it must hold numbers in a row")
+    if not np.isfinite(row).all():
+        where = int(np.argmin(np.isfinite(row)))
+        raise ShapeError(f"mdr_table: {name}[{where}] is {row[where]}; it must be finite")
+    row.setflags(write=False)
+    return row
