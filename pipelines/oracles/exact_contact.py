@@ -9,8 +9,9 @@ from collections.abc import Callable
 import roughmdr as rm
 from oracles.jkr import Asperity
 from oracles.jkr_power_law import JkrPowerLaw, PowerShape
+from oracles.mdr_tables import MdrTableProfile
 from oracles.multiprecision import Number, mp
-from oracles.profiles import closed_profile
+from oracles.profiles import Profile, closed_profile
 from roughmdr.shapes import Shape
 
 _STEP = mp.mpf("1e-15")  # relative, of the first secant
@@ -42,13 +43,17 @@ class ExactContact:
         if isinstance(shape, PowerShape):
             self.asperity: Asperity = JkrPowerLaw(shape, effective_modulus, work)
         else:
-            self.asperity = Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
+            if isinstance(shape, rm.MdrTable):
+                profile: Profile = MdrTableProfile(shape.radii, shape.indentations)
+            else:
+                profile = closed_profile(shape)
+            self.asperity = Asperity(profile, effective_modulus, work, shape.nondimensional()[0])
 
     def at(self, t: Number) -> dict[str, Number]:
         """Return the equilibrium at t, with the digits that differences lose next to a corner or an equator."""
         t = mp.mpf(t)
         lost = 0
-        if not isinstance(self.shape, PowerShape | rm.PowerSeries | rm.Tabulated):
+        if not isinstance(self.shape, PowerShape | rm.PowerSeries | rm.Tabulated | rm.MdrTable):
             nearest = min(abs(t), abs(t - 1)) or mp.mpf(1)  # to a corner
             lost = int(5 * max(0, -mp.log10(nearest)) + (t if isinstance(self.shape, rm.Sphere) else 0))
         with mp.workdps(mp.dps + lost):

@@ -41,6 +41,14 @@ class Ensemble:
     shared_profile: SharedProfile | None = None  # of a shape whose parameters are not plain numbers
     warnings: tuple[str, ...] = ()  # for the user, about the asperities themselves
 
+    @classmethod
+    def alike(cls, shape: Shape, height: Floats, positions: dict[str, Floats], patch: float) -> "Ensemble":
+        """Return placed asperities of one shape at heights [m], on a patch of a side [m]."""
+        shared = shape if isinstance(shape, SharedProfile) else None
+        given = {} if shared else shape.parameters
+        parameters = {name: np.repeat(np.asarray(value)[None], height.size, axis=0) for name, value in given.items()}
+        return cls(shape.name, height, parameters, None, positions, {"patch": patch}, shared)
+
     def sorted(self) -> "Ensemble":
         """Return the asperities from the highest summit to the lowest, equal heights by their parameters."""
         order = np.argsort(-self.height, kind="stable")

@@ -20,7 +20,7 @@ from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
 from roughmdr.interaction.totals import Overlap, Step
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import SHAPES, SharedProfile
+from roughmdr.shapes import SHAPES
 
 DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
 """Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
@@ -174,10 +174,8 @@ def prepare(shape: str) -> None:
     """Compile all that the asperities of a shape need, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
-    shared = example if isinstance(example, SharedProfile) else None
-    parameters = {} if shared else {name: np.full(3, float(value)) for name, value in example.parameters.items()}
     height, place = np.array([2e-3, 1e-3, 0.0]), np.array([0.0, 1.0, 3.0])
-    ensemble = Ensemble(shape, height, parameters, None, {"x": place, "y": place}, {"patch": 10.0}, shared)
+    ensemble = Ensemble.alike(example, height, {"x": place, "y": place}, 10.0)
     solve_path(ensemble, np.zeros(1), 1.0, Interaction(), stiffness=True)
     mesh = Mesh(place / 10.0, place / 10.0, Periodic.of(1.0), True, DEFAULT_ERROR)
     mesh.field(height)

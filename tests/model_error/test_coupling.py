@@ -4,14 +4,27 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.model_error.coupling import WARNED_FRACTION, WARNED_SHARE, coupling_error, coupling_warnings
 
 share = st.floats(0.0, 1.0)
 
 
-def error(fraction: float, overlap: float, of_surface: bool = False) -> float:
+def error(fraction: float, overlap: float, **attrs: float | str) -> float:
     columns = (np.array([value]) for value in (fraction, overlap))
-    return float(coupling_error(*columns, of_surface=of_surface)[0])
+    ensemble = Ensemble("paraboloid", np.zeros(1), {"radius": np.ones(1)}, attrs={**attrs})
+    return float(coupling_error(*columns, ensemble)[0])
+
+
+@given(share, share)
+def test_it_is_that_of_asperities_on_a_plane_where_nothing_else_is_known(fraction: float, overlap: float) -> None:
+    assert error(fraction, overlap) == float(coupling_error(np.array([fraction]), np.array([overlap]))[0])
+
+
+def test_that_of_hills_grows_with_their_anisotropy() -> None:
+    errors = [error(0.01, 0.3, asperity_model="hills", anisotropy=ratio) for ratio in (1.0, 4.0, 1e6)]
+    assert 0.05 < errors[0] < errors[1] < errors[2] == 1.0
+    assert error(0.0, 0.0, asperity_model="hills") == 0.0
 
 
 @given(share, share, st.floats(0.0, 0.5))
@@ -20,11 +33,11 @@ def test_it_grows_with_each_share_and_stays_a_fraction(fraction: float, overlap:
     assert 0.0 <= here <= 1.0
     for grown in ((fraction + more, overlap), (fraction, overlap + more)):
         assert error(*grown) >= here
-    assert error(fraction, overlap, of_surface=True) >= here
+    assert error(fraction, overlap, of_surface=1) >= here
 
 
 def test_without_contact_there_is_none() -> None:
-    assert error(0.0, 0.0) == error(0.0, 0.0, of_surface=True) == 0.0
+    assert error(0.0, 0.0) == error(0.0, 0.0, of_surface=1) == 0.0
 
 
 def test_separated_contacts_are_within_what_the_lattice_showed() -> None:

@@ -93,7 +93,11 @@ BASES: dict[str, dict[str, Any]] = {
             "tabulated": {"r": [0, "1 um", "3 um"], "f": [0, "10 nm", "100 nm"]},
         }.items()
     },
-    "a surface": {**SCENE, "asperities": {"source": "surface", "file": "map.nc", "shape": "paraboloid"}, "batch": {}},
+    "a surface": {
+        **SCENE,
+        "asperities": {"source": "surface", "file": "map.nc", "shape": "paraboloid", "model": "summits"},
+        "batch": {},
+    },
     "a surface of plain numbers": {
         **SCENE,
         "asperities": {

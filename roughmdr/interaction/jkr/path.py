@@ -9,7 +9,7 @@ from roughmdr.interaction.jkr.front import Front
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes import SHAPES, SharedProfile
+from roughmdr.shapes import SHAPES
 
 _ABOVE = 1e-9  # of the side of the patch: from so far above first touch the flat comes at least
 
@@ -46,8 +46,6 @@ def prepare(shape: str) -> None:
     """Compile all that adhesive contacts of a shape need, before several threads or a clock need it."""
     kind = SHAPES[shape]
     example = kind(**kind.example())
-    shared = example if isinstance(example, SharedProfile) else None
-    parameters = {} if shared else {name: np.full(3, float(value)) for name, value in example.parameters.items()}
     place = np.array([0.0, 1.0, 3.0])
-    ensemble = Ensemble(shape, np.zeros(3), parameters, None, {"x": place, "y": place}, {"patch": 10.0}, shared)
+    ensemble = Ensemble.alike(example, np.zeros(3), {"x": place, "y": place}, 10.0)
     solve_path(ensemble, np.zeros(1), 1.0, 1e-6, Interaction(), set())

@@ -24,8 +24,10 @@ SCALES = 20
 """Contact radii of a hill: 1.18 from one to the next."""
 SMALLEST, LARGEST = 0.04, 1.0
 """The first and the last of them, in wavelengths."""
-MIDDLE = 0.15
+MIDDLE = 0.14
 """The contact radius at whose centre a hill stands for its neighbours [wavelength]: about where contacts meet."""
+APART = 0.05
+"""Centres of contacts of that size nearer than this [wavelength] are those of one hill with two tops."""
 
 
 class Hills(NamedTuple):
@@ -67,6 +69,7 @@ def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
     sides = np.array([nx * surface.dx, ny * surface.dy])
     at = np.column_stack([(rows + 0.5) * surface.dx, (columns + 0.5) * surface.dy]) + length * moved
     at = at % sides if surface.periodic else np.clip(at, 0.0, np.nextafter(sides, 0.0))
+    kept &= ~_repeated(at / sides, height, APART * length / sides, periodic=surface.periodic)
     return replace(
         summits,
         shape="mdr_table",
@@ -75,6 +78,21 @@ def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
         positions={"x": at[kept, 0], "y": at[kept, 1]},
         attrs={**summits.attrs, **_attributes(surface, length, share[kept])},
     ).sorted()
+
+
+def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> NDArray[np.bool_]:
+    """Return which hills are those of a higher one near by; positions [hill, 2] and ``apart`` over the sides."""
+    from scipy.spatial import cKDTree
+
+    box = 1.0 / apart
+    scaled = np.clip(at * box, 0.0, np.nextafter(box, 0.0))
+    pairs = cKDTree(scaled, boxsize=box if periodic else None).query_pairs(1.0, output_type="ndarray")
+    repeated = np.zeros(height.size, dtype=np.bool_)
+    lower = np.where(height[pairs[:, 0]] < height[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
+    higher = pairs.sum(axis=1) - lower
+    for i in np.lexsort((lower, -height[higher])):
+        repeated[lower[i]] |= not repeated[higher[i]]
+    return repeated
 
 
 def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, float | int | str]:

@@ -9,6 +9,9 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
+LEAST_GROWTH = 0.4
+"""Of g from point to point, over that of a paraboloid: where the valley is in contact, the next hill begins."""
+
 
 def points_of(radius: Floats) -> Floats:
     """Return the radii of the tables: between two contact radii where a^2 has its mean, from the tip on."""
@@ -54,4 +57,6 @@ def fill_table(radius: Floats, mean: Floats, summit: float, points: Floats, g: F
         else:
             slope = (level[last + 1] - level[last]) / (place[last + 1] - place[last])
             g[k] = level[last] + slope * (s - place[last])
+        if k > 0:
+            g[k] = max(g[k], g[k - 1] * (1.0 + LEAST_GROWTH * (s / (points[k - 1] * points[k - 1]) - 1.0)))
     return True

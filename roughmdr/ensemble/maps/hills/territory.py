@@ -21,7 +21,7 @@ REACH = 3.0
 """Length of a ray, in wavelengths of the map (``find.wavelength``)."""
 
 
-_CLIMBS, _CLIMB = 4, 0.02  # steps towards a summit along both axes, and their length at most
+_CLIMBS, _CLIMB = 10, 0.02  # steps towards a summit along both axes, and their length at most
 
 
 class Spline(NamedTuple):
