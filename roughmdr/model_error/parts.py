@@ -96,7 +96,10 @@ class ModelError(NamedTuple):
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
-        trusted = contact_fraction <= _SLACK * TRUSTED_FRACTION if coupled is None else interaction <= TRUSTED_ERROR
+        if coupled is None:
+            trusted = contact_fraction <= _SLACK * TRUSTED_FRACTION
+        else:  # that of hills is alike all along
+            trusted = np.isfinite(force) if assumptions.origin == "hills" else interaction <= TRUSTED_ERROR
         beyond = separation[~trusted]
         return cls(
             curve,

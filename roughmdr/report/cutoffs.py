@@ -58,7 +58,11 @@ def tabulate_cutoffs(scene: Scene, lengths: str) -> str:
 
 
 def _row(scene: Scene, section: SurfaceAsperities, cutoff: float | None) -> tuple[str, ...]:
-    given: dict[str, Any] = section.model_dump(exclude_unset=True) | {"cutoff": cutoff}
+    given: dict[str, Any] = section.model_dump(exclude_unset=True) | {
+        "cutoff": cutoff,
+        "model": "summits",
+        "shape": None,
+    }
     summits = type(section).model_validate(given).asperities
     attrs, count = summits.attrs, summits.height.size
     area = summits.nominal_area or math.inf

@@ -99,7 +99,11 @@ def describe_ensemble(ensemble: Labelled) -> str:
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
     if "points_per_summit" in attrs:
         lines += _indent("map", describe_map(attrs))
-        lines += [("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")]
+        lines += [
+            ("hills", "each has the profile of its best contacts, by size: ellipses on its own part of the map")
+            if attrs.get("asperity_model") == "hills"
+            else ("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")
+        ]
     return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 

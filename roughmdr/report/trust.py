@@ -122,6 +122,8 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: st
 def _coupling(known: dict[str, Floats]) -> str:
     """Return how asperities are coupled, the error, and that of independent ones in their place."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
+    if not known["overlap_fraction"].size:  # of hills it has no meaning
+        return f"hills of a map are coupled in pairs: force at closest approach within {_percent(error)}"
     independent = _interaction(float(known["largest_contact_fraction"].max()), ASPERITIES)
     on_grid = int((known["grid_points"] > 0.0).sum())
     paired = known["grid_points"].size - on_grid

@@ -7,13 +7,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 import xarray as xr
+from click.testing import CliRunner
 from oracles.gaussian_maps import gaussian_map
 from scenes import scene
 from scipy.special import ellipe, ellipk
 from studies.versus_bem.maps import write_map
 
 import roughmdr as rm
+from roughmdr.cli import main
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
 from roughmdr.ensemble.maps.hills.find import find_hills
@@ -258,3 +261,19 @@ def test_adhesive_hills_are_coupled_and_part(map_file: Path) -> None:
     assert float(law.force.min()) < 0.0
     assert float(law.contact_count[-1]) == 0.0
     assert (np.diff(law.dissipated_energy) >= 0.0).all()
+
+
+def test_what_is_said_of_hills(map_file: Path, tmp_path: Path) -> None:
+    result = rm.run(of_hills(map_file, interaction={"model": "pairwise"}), tmp_path / "out.nc")
+    assert np.isnan(result.trusted_separation).all()
+    said = CliRunner().invoke(main, ["info", str(tmp_path / "out.nc")]).output
+    assert "hills of a map are coupled in pairs: force at closest approach within" in said
+    assert "the map resolves its hills" in said
+    (tmp_path / "hills.toml").write_text(tomli_w.dumps(of_hills(map_file)))
+    saved = (
+        CliRunner().invoke(main, ["generate", str(tmp_path / "hills.toml"), "-o", str(tmp_path / "hills.nc")]).output
+    )
+    assert "each has the profile of its best contacts" in saved
+    cut = CliRunner().invoke(main, ["generate", str(tmp_path / "hills.toml"), "--cutoffs", "20 um"])
+    assert cut.exit_code == 0, cut.output
+    assert "none" in cut.output
