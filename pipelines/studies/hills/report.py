@@ -12,7 +12,7 @@ from studies.study import table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLOURS = dict(zip(METHODS, ("0.6", "#1b6ca8", "#c8553d", "#9ecae1", "#6baed6", "#2171b5"), strict=True))
+_COLOURS = dict(zip(METHODS, ("0.6", "#1b6ca8", "#c8553d", "#c2a5cf", "#9970ab", "#762a83"), strict=True))
 
 
 def errors_of(result: xr.Dataset, quantity: str = "force") -> xr.DataArray:
@@ -72,7 +72,7 @@ def draw(result: xr.Dataset) -> "Figure":
     panels = figure.subplots(1, len(parts) + 1)
     for panel, (name, own) in zip(panels, parts.items(), strict=False):
         errors, fraction = errors_of(own), 100.0 * own["fraction"].to_numpy()
-        for method in METHODS[:4]:
+        for method in METHODS[:3]:
             each = 100.0 * errors.sel(solver=method).to_numpy()
             low, middle, high = np.nanquantile(each, [0.1, 0.5, 0.9], axis=0)
             panel.fill_between(fraction, low, high, color=_COLOURS[method], alpha=0.2, lw=0.0)
