@@ -14,6 +14,7 @@ from roughmdr.ensemble.maps.hills.table import fill_table, points_of
 from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
 from roughmdr.ensemble.maps.resolution import hills_error
 from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
+from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.shapes.mdr_table.shape import rising
@@ -54,7 +55,8 @@ def wavelength(surface: HeightMap) -> float:
 def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
     """Return the hills of a map on its summits: asperities with an MDR table each, of the same attributes.
 
-    Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory.
+    Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory. SceneError
+    where no summit is a hill: where none falls from its top, as next to rounding.
     """
     length = wavelength(surface)
     spline = Spline.of(surface, length)
@@ -70,6 +72,8 @@ def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
     at = np.column_stack([(rows + 0.5) * surface.dx, (columns + 0.5) * surface.dy]) + length * moved
     at = at % sides if surface.periodic else np.clip(at, 0.0, np.nextafter(sides, 0.0))
     kept &= ~_repeated(at / sides, height, APART * length / sides, periodic=surface.periodic)
+    if not kept.any():
+        raise SceneError("the map has no hill: none of its summits falls from its top")
     return replace(
         summits,
         shape="mdr_table",
@@ -103,7 +107,7 @@ def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, f
         "wavelength": length,
         "points_per_wave": points,
         "resolution_error": hills_error(points),
-        "area_share": float(np.mean(share)) if share.size else 1.0,
+        "area_share": float(np.mean(share)),
         "anisotropy": slope_ratio(surface),
     }
 
