@@ -11,7 +11,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.errors import Fault
 from roughmdr.scene import read
-from roughmdr.shapes import SHAPES
+from roughmdr.shapes import SCENE_SHAPES
 
 COMPLETE = scene(
     counter={"modulus": "70 GPa", "poisson": 0.2},
@@ -53,7 +53,7 @@ def test_the_example_for_what_is_missing_makes_the_scene_complete(key: str) -> N
     assert read(table).toml
 
 
-@pytest.mark.parametrize("shape", sorted(SHAPES.keys() - {"mdr_table"}))  # of files and maps alone
+@pytest.mark.parametrize("shape", SCENE_SHAPES)
 def test_the_examples_of_the_parameters_of_every_shape_go_together(shape: str) -> None:
     section = {**ASPERITIES, "shape": shape}
     del section["radius"]

@@ -19,7 +19,7 @@ from studies.random_scenes.judge import judge
 from studies.random_scenes.scenes import scenes, write_inputs
 from studies.study import named
 
-from roughmdr.shapes import SHAPES
+from roughmdr.shapes import SCENE_SHAPES
 
 SEEDS = (2026, 2027)
 """One for each process."""
@@ -59,7 +59,7 @@ def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> l
 
 def measure(quick: bool) -> xr.Dataset:
     """Judge all scenes; return the kind of each, what became of it, and why it was refused if it was."""
-    each, cohesive = (QUICK if quick else FULL) // len(SEEDS), QUICK_COHESIVE if quick else tuple(SHAPES)
+    each, cohesive = (QUICK if quick else FULL) // len(SEEDS), QUICK_COHESIVE if quick else tuple(SCENE_SHAPES)
     with tempfile.TemporaryDirectory() as folder:
         write_inputs(Path(folder))
         search_part = partial(search, count=each, folder=Path(folder), cohesive=cohesive)

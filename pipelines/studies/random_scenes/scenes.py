@@ -15,7 +15,7 @@ from scipy.ndimage import gaussian_filter
 from studies.random_scenes.numbers import Draw, Table, distribution, entry, number, power_of_ten, quantity, seldom
 
 import roughmdr as rm
-from roughmdr.shapes import SHAPES
+from roughmdr.shapes import SCENE_SHAPES, SHAPES
 from roughmdr.variables import CURVE_VARIABLES
 
 _FILE_SIZE = 1e-6  # of the heights in files [m]
@@ -41,7 +41,7 @@ def write_inputs(folder: Path) -> None:
         "tabulated": {"r": [0.0, 1e-5, 3e-5, 6e-5], "f": [0.0, 5e-7, 5e-6, 3e-5]},
     }
     height = {"distribution": "normal", "std": _FILE_SIZE}
-    for name, shape in SHAPES.items():
+    for name, shape in SCENE_SHAPES.items():
         numbers = {key: 1e2 * _FILE_SIZE if shape.units[key] == "m" else 2.5 for key in shape.parameter_sets[-1]}
         section: Table = {"source": "random", "shape": name, "count": 5, "patch": 1e-3, "height": height}
         rm.generate(section | profiles.get(name, numbers), seed=1).to_netcdf(folder / f"{name}.nc")
@@ -260,7 +260,7 @@ def sweep(draw: Draw, table: Table) -> Table:
 def scenes(draw: Draw, folder: Path, cohesive: tuple[str, ...]) -> Table:
     """Draw a whole scene, as a table: ``folder`` holds its files, ``cohesive`` shapes have adhesion of finite range."""
     source = draw(st.sampled_from(("random",) * 8 + ("nayak", "file", "surface")))
-    shapes = [shape for shape in SHAPES if shape != "tabulated"] * 3 + ["tabulated"]
+    shapes = [shape for shape in SCENE_SHAPES if shape != "tabulated"] * 3 + ["tabulated"]
     shape = draw(st.sampled_from(shapes)) if source in ("random", "file") else "paraboloid"
     models = ("none", "jkr", "jkr", "dugdale", "auto") if shape in cohesive else ("none", "jkr")
     model = draw(st.sampled_from(models))

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.shapes import SHAPES
+from roughmdr.shapes import SCENE_SHAPES, SHAPES
 
 Table = dict[str, Any]
 Rng = np.random.Generator
@@ -53,7 +53,7 @@ def scene(number: int) -> RandomScene:
     rng = np.random.default_rng([SEED, number])
     estimator = "expected" if number % 4 == 0 else str(rng.choice(["sampled", "sampled", "stratified"]))
     adhesion = str(rng.choice(ADHESIONS, p=[0.25, 0.6, 0.15]))
-    shapes = list(SHAPES) if adhesion != "dugdale" else COHESIVE[: 2 if estimator == "expected" else 3]
+    shapes = list(SCENE_SHAPES) if adhesion != "dugdale" else COHESIVE[: 2 if estimator == "expected" else 3]
     shape = str(rng.choice(shapes))
     nayak = shape == "paraboloid" and rng.uniform() < 0.2
     effective_modulus, width, slope = decades(rng, 3, 13), decades(rng, -9, 0), decades(rng, -4, 0)

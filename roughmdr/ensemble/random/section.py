@@ -22,7 +22,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity
-from roughmdr.shapes import SHAPES, PowerSeries, Shape, SharedProfile, TabledShape, Tabulated
+from roughmdr.shapes import SCENE_SHAPES, SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
 _Section = TypeVar("_Section", bound=Section)
 _Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
@@ -277,5 +277,5 @@ def _section(shape: type[Shape]) -> type[RandomAsperities]:
 if TYPE_CHECKING:
     AnyRandomAsperities = RandomAsperities
 else:
-    _sections = [_section(shape) for shape in SHAPES.values() if not (shape.shared or issubclass(shape, TabledShape))]
+    _sections = [_section(shape) for shape in SCENE_SHAPES.values() if not shape.shared]
     AnyRandomAsperities = Annotated[Union[RandomPowerSeries, RandomTabulated, *_sections], Field(discriminator="shape")]
