@@ -98,7 +98,7 @@ class ModelError(NamedTuple):
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
         if coupled is None:
             trusted = contact_fraction <= _SLACK * TRUSTED_FRACTION
-        else:  # that of hills is alike all along
+        else:  # the error of hills is the same at every contact fraction
             trusted = np.isfinite(force) if assumptions.origin == "hills" else interaction <= TRUSTED_ERROR
         beyond = separation[~trusted]
         return cls(

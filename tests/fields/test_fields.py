@@ -36,6 +36,7 @@ SHAPES: dict[str, tuple[Shape, float]] = {  # each with an indentation
     "rounded_punch": (rm.RoundedPunch(flat_radius=5e-7, edge_radius=5e-6), 3e-8),
     "power_series": (rm.PowerSeries(terms={1.0: 0.01, 2.0: 4e4, 4.5: 1e18}), 1e-7),
     "tabulated": (rm.Tabulated(r=R_TABLE, f=R_TABLE**2 / 1e-5 + 0.01 * R_TABLE), 1e-7),
+    "mdr_table": (rm.MdrTable(a=R_TABLE[1:], g=[1e-8, 7e-8, 1.2e-7, 5e-7]), 1e-7),
 }
 BREAKS = {  # where the pressure is not smooth
     "truncated_cone": [7e-7],
@@ -44,6 +45,7 @@ BREAKS = {  # where the pressure is not smooth
     "capped_paraboloid": [5e-7],
     "rounded_punch": [5e-7],
     "tabulated": list(R_TABLE[1:]),
+    "mdr_table": list(R_TABLE[1:]),
 }
 every_shape = pytest.mark.parametrize("name", SHAPES)
 every_work = pytest.mark.parametrize("work", [0.0, WORK], ids=["elastic", "jkr"])

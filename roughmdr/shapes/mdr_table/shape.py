@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import TabledShape, check_radii
+from roughmdr.shapes.base import TabledShape
 from roughmdr.shapes.mdr_table import lookup, rows
 
 _MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
@@ -84,9 +84,6 @@ class MdrTable(TabledShape):
 
     def nondimensional(self) -> tuple[float, float, Any]:
         return self._nondimensional
-
-    def df(self, r: ArrayLike) -> Floats:
-        return self.slopes(self.nondimensional(), check_radii("r", r))
 
     def precisely(self, t: float) -> tuple[Any, Any, Any]:
         """Return a, g and a g - G as ``ProfileShape`` does, here from the antiderivatives of each piece."""

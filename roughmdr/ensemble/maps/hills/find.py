@@ -20,7 +20,8 @@ from roughmdr.numerics.jit import njit
 from roughmdr.shapes.mdr_table.shape import rising
 
 _WAVELENGTH = 6.6
-"""Times r.m.s. slope over r.m.s. Laplacian: that of a map with waves of one length, about (2 pi there)."""
+"""Of the ratio of r.m.s. slope to r.m.s. Laplacian, which is wavelength/(2 pi) where all waves are equally long: 5 %
+more than 2 pi, as the sizes below were tuned with it (``pipelines/hills.py``)."""
 SCALES = 20
 """Contact radii of a hill: 1.18 from one to the next."""
 SMALLEST, LARGEST = 0.04, 1.0
@@ -57,6 +58,10 @@ def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
 
     Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory. SceneError
     where no summit is a hill: where none falls from its top, as next to rounding.
+
+    Attributes beside those of the summits: ``wavelength`` [m]; ``points_per_wave`` [1], along the coarser axis;
+    ``resolution_error`` [1], of the force; ``area_share`` [1], the mean area of contacts over that of circles as stiff;
+    ``anisotropy`` [1], the ratio of the r.m.s. slopes across and along the ridges.
     """
     length = wavelength(surface)
     spline = Spline.of(surface, length)
