@@ -29,6 +29,7 @@ LINES = (
     ("fields",),
     ("ensemble",),
     ("interaction",),
+    ("elements",),
     ("scene",),
     ("model_error",),
     ("aggregate",),

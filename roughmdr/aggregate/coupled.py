@@ -217,9 +217,12 @@ def _on_grid(
     pairwise: CoupledTotals, ensemble: Ensemble, separation: Floats, effective_modulus: float, names: list[str]
 ) -> CoupledTotals:
     """Return the totals of the whole path by boundary elements, in place of those of contacts coupled in pairs."""
-    from roughmdr.interaction.grid_path import solve_on_grid
+    from roughmdr.elements.path import solve_on_grid
+    from roughmdr.elements.surface import POINTS, grid_shape, surface_of_asperities
 
-    found = solve_on_grid(ensemble, separation, effective_modulus, "stiffness" in names)
+    surface = surface_of_asperities(ensemble, float(separation.min()), periodic=True)
+    shape = grid_shape(surface.sides, POINTS)
+    found = solve_on_grid(surface, separation, effective_modulus, shape, stiffness="stiffness" in names)
     total, solved = _totals(found.steps, ensemble)
     nx, ny = found.shape
     warning = (

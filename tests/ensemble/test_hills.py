@@ -17,13 +17,13 @@ from studies.versus_bem.maps import write_map
 
 import roughmdr as rm
 from roughmdr.cli import main
+from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
 from roughmdr.ensemble.maps.hills.find import find_hills
 from roughmdr.ensemble.maps.hills.table import fill_table, points_of
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import slope_ratio
-from roughmdr.interaction.boundary_elements import BoundaryElements
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
+from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.find import find_hills
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.interaction.boundary_elements import BoundaryElements
 from roughmdr.numerics.arguments import Floats
 from studies.hills.maps import ANISOTROPIC, ISOTROPIC, QUICK, SIDE, MapCase
 from studies.study import named

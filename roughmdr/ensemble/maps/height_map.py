@@ -76,3 +76,16 @@ def _rms(parts: Iterable[Floats]) -> float:
         total += float(defined @ defined)
         count += defined.size
     return math.sqrt(total / count) if count else 0.0
+
+
+def filled(surface: HeightMap) -> Floats:
+    """Return the heights; undefined points have that of the nearest point that is defined."""
+    from scipy.ndimage import distance_transform_edt
+
+    height = surface.height
+    if surface.defined == height.size:
+        return height
+    where = distance_transform_edt(
+        ~np.isfinite(height), (surface.dx, surface.dy), return_distances=False, return_indices=True
+    )
+    return np.asarray(height[tuple(where)])

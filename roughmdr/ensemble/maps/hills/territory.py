@@ -8,9 +8,7 @@ import math
 from functools import partial
 from typing import Literal, NamedTuple
 
-import numpy as np
-
-from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.height_map import HeightMap, filled
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -37,17 +35,11 @@ class Spline(NamedTuple):
     @classmethod
     def of(cls, surface: HeightMap, wavelength: float) -> "Spline":
         """Return the spline of a map; undefined points take the height of the nearest that is defined."""
-        from scipy.ndimage import distance_transform_edt, spline_filter
+        from scipy.ndimage import spline_filter
 
-        height = surface.height
-        if surface.defined < height.size:
-            where = distance_transform_edt(
-                ~np.isfinite(height), (surface.dx, surface.dy), return_distances=False, return_indices=True
-            )
-            height = height[tuple(where)]
         mode: Literal["grid-wrap", "mirror"] = "grid-wrap" if surface.periodic else "mirror"
         return cls(
-            spline_filter(height, order=3, mode=mode),
+            spline_filter(filled(surface), order=3, mode=mode),
             surface.dx / wavelength,
             surface.dy / wavelength,
             surface.periodic,

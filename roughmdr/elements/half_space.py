@@ -1,8 +1,10 @@
-"""A rigid height map pressed into an elastic half-space that repeats, by boundary elements, without adhesion.
+"""A rigid height map pressed into an elastic half-space by boundary elements, without adhesion.
 
 The pressures of the grid cells are found by constrained conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231
-(1999), 206) and displace the surface by the Green's function of the half-space in wave numbers, 2/(E* q). The mean
-displacement is 0: separations count from the mean plane of the deformed half-space.
+(1999), 206). Where the half-space repeats with the map they displace the surface by the Green's function in wave
+numbers, 2/(E* q), and the mean displacement is 0: separations count from the mean plane of the deformed half-space.
+Where the map stands alone they do so by that of a rectangle under pressure (A. E. H. Love, Phil. Trans. R. Soc. A 228
+(1929), 377), on a grid of twice the sides, and separations count from the undeformed half-space.
 """
 
 import math
@@ -38,19 +40,19 @@ class Patches(NamedTuple):
 class BoundaryElements:
     """A height map over a patch of ``sides``, all in one unit, which E* = 1 goes with; -inf is never touched.
 
-    It keeps the pressures of the last separation, from which the next one starts.
+    The half-space repeats with the map unless it is not ``periodic``. The pressures of the last separation are kept,
+    and the next one starts from them.
     """
 
-    def __init__(self, height: Floats, sides: Floats) -> None:
+    def __init__(self, height: Floats, sides: Floats, *, periodic: bool = True) -> None:
         from scipy import fft
 
-        self.height, self.sides = height, sides
+        self.height, self.sides, self.periodic = height, sides, periodic
         self.cell_area = float(sides[0] * sides[1]) / height.size
-        x, y = (fft.fftfreq(height.shape[0]) / (sides[0] / height.shape[0]), fft.rfftfreq(height.shape[1]))
-        wave = np.hypot(x[:, None], y / (sides[1] / height.shape[1]))
-        wave[0, 0] = np.inf
-        self._compliance = 1.0 / (math.pi * wave)
-        self._cell_stiffness = 1.0 / float(fft.irfft2(self._compliance, s=height.shape)[0, 0])
+        cell = sides / np.array(height.shape)
+        self._shape = height.shape if periodic else tuple(fft.next_fast_len(2 * n, real=True) for n in height.shape)
+        self._compliance = _of_waves(self._shape, cell) if periodic else fft.rfft2(_of_rectangles(self._shape, cell))
+        self._cell_stiffness = 1.0 / float(fft.irfft2(self._compliance, s=self._shape)[0, 0])
         self.pressure = np.zeros_like(height)
         """[E*], at the last separation."""
 
@@ -61,18 +63,20 @@ class BoundaryElements:
     def _displaced(self, pressure: Floats) -> Floats:
         from scipy import fft
 
-        spectrum = fft.rfft2(pressure)
-        return np.asarray(fft.irfft2(self._compliance * spectrum, s=pressure.shape, overwrite_x=True))
+        spectrum = fft.rfft2(pressure, s=self._shape)
+        spectrum *= self._compliance
+        displaced = np.asarray(fft.irfft2(spectrum, s=self._shape, overwrite_x=True))
+        return displaced[: pressure.shape[0], : pressure.shape[1]]
 
     def press(self, separation: float) -> float:
-        """Return the force at a separation; NaN where none is found, as from the mean height of the map down."""
+        """Return the force at a separation; NaN where none is found, as from the mean height of a periodic map down."""
         with np.errstate(invalid="ignore"):
             overlap = self.height - separation
         deepest = float(overlap.max())
         if deepest <= 0.0:
             self.pressure = np.zeros_like(overlap)
             return 0.0
-        if overlap.mean() >= 0.0:
+        if self.periodic and overlap.mean() >= 0.0:
             return math.nan
         overlap /= deepest
         for start in self._starts(overlap):
@@ -126,25 +130,47 @@ class BoundaryElements:
     def patches(self) -> Patches:
         """Return the connected contacts, with the mean share of the cells at their edges taken off."""
         loaded = self.pressure > 0.0
-        labels, count = _connected(loaded)
+        labels, count = _connected(loaded, across=self.periodic)
         cells = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
         edges = np.zeros(count + 1)
-        for axis in (0, 1):
-            for way in (1, -1):
-                edge = loaded & ~np.roll(loaded, way, axis)
-                edges += np.bincount(labels[edge], minlength=count + 1)
+        around = np.pad(loaded, 1, mode="wrap" if self.periodic else "edge")  # where a map ends its contacts do not
+        for beside in (around[:-2, 1:-1], around[2:, 1:-1], around[1:-1, :-2], around[1:-1, 2:]):
+            edges += np.bincount(labels[loaded & ~beside], minlength=count + 1)
         area = (cells - _EDGE_SHARE * edges)[1:] * self.cell_area
         radius_sum = math.fsum(np.sqrt(area / math.pi).tolist())
         return Patches(count, math.fsum(area.tolist()), radius_sum)
 
 
-def _connected(loaded: NDArray[np.bool_]) -> tuple[NDArray[np.int64], int]:
-    """Return the number from 1 of the patch of each cell, 0 outside, and their count; across the rim too."""
+def _of_waves(shape: tuple[int, ...], cell: Floats) -> Floats:
+    """Return the displacement by waves of pressure, over the pressure: 2/q, 0 of the mean."""
+    from scipy import fft
+
+    wave = np.hypot(fft.fftfreq(shape[0], cell[0])[:, None], fft.rfftfreq(shape[1], cell[1]))
+    wave[0, 0] = np.inf
+    return 1.0 / (math.pi * wave)
+
+
+def _of_rectangles(shape: tuple[int, ...], cell: Floats) -> Floats:
+    """Return the displacement at all distances from a cell under unit pressure, those of cells before it at the end."""
+    x, y = (np.fft.fftfreq(n, 1.0 / n) * size for n, size in zip(shape, cell, strict=True))
+    left, right = ((x + each)[:, None] for each in (-0.5 * cell[0], 0.5 * cell[0]))
+    below, above = (y + each for each in (-0.5 * cell[1], 0.5 * cell[1]))
+
+    def part(a: Floats, b: Floats) -> Floats:
+        return a * np.arcsinh(b / np.abs(a)) + b * np.arcsinh(a / np.abs(b))
+
+    return np.asarray(part(right, above) - part(right, below) - part(left, above) + part(left, below)) / math.pi
+
+
+def _connected(loaded: NDArray[np.bool_], *, across: bool) -> tuple[NDArray[np.int64], int]:
+    """Return the number from 1 of the patch of each cell, 0 outside, and their count; ``across`` the rim too."""
     from scipy.ndimage import label
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     labels, count = label(loaded)
+    if not across:
+        return labels.astype(np.int64), int(count)
     one = np.concatenate([labels[0], labels[:, 0]])
     other = np.concatenate([labels[-1], labels[:, -1]])
     both = (one > 0) & (other > 0)

@@ -9,9 +9,10 @@ from oracles.boundary_elements import HeightMap
 from scenes import scene
 
 import roughmdr as rm
+from roughmdr.elements.half_space import BoundaryElements
+from roughmdr.elements.path import solve_on_grid
+from roughmdr.elements.surface import POINTS, grid_shape, surface_of_asperities
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction.boundary_elements import BoundaryElements
-from roughmdr.interaction.grid_path import solve_on_grid
 from roughmdr.numerics.arguments import Floats
 
 OVER_HERTZ = {20.0: 1.145247762211, 12.0: 1.273263599777, 8.0: 1.489602436784, 6.0: 1.814344884220, 5.0: 2.2277808930}
@@ -32,6 +33,11 @@ def paraboloid(side: float, points: int) -> Floats:
     x = np.arange(points) * side / points
     x = np.minimum(x, side - x)
     return -0.5 * (x[:, None] ** 2 + x**2)
+
+
+def on_grid(ensemble: Ensemble, separation: Floats, modulus: float, points: int, *, stiffness: bool = False) -> Any:
+    surface = surface_of_asperities(ensemble, float(separation.min()), periodic=True)
+    return solve_on_grid(surface, separation, modulus, grid_shape(surface.sides, points), stiffness=stiffness).steps
 
 
 def crowded(**changes: Any) -> Any:
@@ -108,7 +114,7 @@ def test_the_error_of_the_grid_covers_that_of_a_paraboloid(h: float, offset: flo
     """Its summit anywhere between points, light contacts too, of which the grid has one cell or none."""
     place = np.full(1, offset * 20.0 / 64)
     ensemble = Ensemble("paraboloid", np.zeros(1), {"radius": np.ones(1)}, 400.0, {"x": place, "y": place})
-    step = solve_on_grid(ensemble, np.array([h]), 1.0, stiffness=False, points=64).steps[0]
+    step = on_grid(ensemble, np.array([h]), 1.0, 64)[0]
     exact = 4.0 / 3.0 * (-h) ** 1.5 * (OVER_HERTZ[20.0] if h == -1.0 else 1.0)
     assert abs(step.force - exact) <= step.error + 0.02 * exact * (h != -1.0)  # 0.014 of it by the images at -0.05
     assert step.error <= (0.1 if h == -1.0 else 1.5) * max(step.force, exact) + 20.0 / 64 * -h
@@ -116,8 +122,8 @@ def test_the_error_of_the_grid_covers_that_of_a_paraboloid(h: float, offset: flo
 
 def test_the_order_of_the_path_changes_nothing() -> None:
     ensemble, path = Ensemble.from_dataset(crowded()), np.array([2e-6, 0.5e-6, 1e-6, 0.5e-6])
-    found = solve_on_grid(ensemble, path, 1e6, stiffness=True, points=64).steps
-    back = solve_on_grid(ensemble, path[::-1], 1e6, stiffness=True, points=64).steps[::-1]
+    found = on_grid(ensemble, path, 1e6, 64, stiffness=True)
+    back = on_grid(ensemble, path[::-1], 1e6, 64, stiffness=True)[::-1]
     assert found == back
     assert found[1] == found[3]
     assert 0.0 < found[0].force < found[2].force < found[1].force
@@ -127,7 +133,7 @@ def test_a_deeper_map_changes_nothing() -> None:
     """A map that reaches farther down, as a longer path has it, gives the force that the first one does."""
     ensemble = Ensemble.from_dataset(crowded(count=16))
     deep, far = np.array([-8e-6]), np.array([-8e-6, -40e-6])
-    one, both = (solve_on_grid(ensemble, path, 1e6, stiffness=False, points=64).steps for path in (deep, far))
+    one, both = (on_grid(ensemble, path, 1e6, 64) for path in (deep, far))
     assert both[0].force == pytest.approx(one[0].force, rel=1e-4)
 
 
@@ -145,7 +151,7 @@ def test_a_marked_path_is_computed_on_the_grid_as_a_whole() -> None:
     assert grid.interaction_error == 0.0
     assert 0.0 < grid.numerical_error < 0.02
     np.testing.assert_allclose(grid.force[0], pairs.force[0], rtol=0.01)  # where next to nothing overlaps
-    steps = solve_on_grid(Ensemble.from_dataset(crowded()), np.array(separation), 1e6, stiffness=False).steps
+    steps = on_grid(Ensemble.from_dataset(crowded()), np.array(separation), 1e6, POINTS)
     np.testing.assert_allclose(grid.force, [step.force for step in steps], rtol=1e-5)
 
 

@@ -8,17 +8,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.buried import drop, reach
 from roughmdr.numerics.arguments import Floats
 
-POINTS = 512
-"""Grid points along the side of a square patch; a rectangular one has about as many in all."""
-_LEAST_POINTS = 16
 _AT_A_TIME = 2**21
-
-
-def grid_shape(sides: Floats, points: int = POINTS) -> tuple[int, int]:
-    """Return even numbers of points along x and y, whose cells are about square."""
-    ratio = math.sqrt(float(sides[0] / sides[1]))
-    x, y = (2 * max(round(0.5 * points * each), _LEAST_POINTS // 2) for each in (ratio, 1.0 / ratio))
-    return x, y
 
 
 def union_map(ensemble: Ensemble, sides: Floats, shape: tuple[int, int], floor: float) -> Floats:
