@@ -158,10 +158,9 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
 @click.option("--variable", "variables", multiple=True, help="Variable to draw; repeatable. Default: all.")
 @click.option("--with-expected", is_flag=True, help="Also draw the expected law of the scene.")
 @click.option("--with-theory", is_flag=True, help="Also draw the theory curves that apply to the scene.")
+@click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that RESULT holds.")
 @_fresh
-def plot(
-    result: Path, output: Path, variables: tuple[str, ...], with_expected: bool, with_theory: bool, fresh: bool
-) -> None:
+def plot(result: Path, output: Path, variables: tuple[str, ...], fresh: bool, **overlays: bool) -> None:
     """Draw the load-separation law in RESULT.
 
     An existing picture of the same format is replaced, since RESULT draws it again.
@@ -173,7 +172,7 @@ def plot(
     check_picture(output, [result], fresh=fresh)
     data = read_result(result)
     _warn_if_changed(result, data)
-    picture = draw_result(data, variables, result, with_expected=with_expected, with_theory=with_theory)
+    picture = draw_result(data, variables, result, **overlays)
     for title, remark in picture.remarks:
         print_text(f"{title:<12} {remark}")
     save(picture.figure, output)

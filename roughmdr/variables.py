@@ -66,7 +66,18 @@ REMOTE = Variable(
 )
 """A coordinate where a path controls it, a variable where it follows from a preload."""
 
-LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES}
+REFERENCE_VARIABLES = _declare(
+    ("reference_force", "N", "normal force by boundary elements"),
+    ("reference_contact_area", "m2", "contact area by boundary elements"),
+    ("reference_contact_count", "1", "number of connected contacts by boundary elements"),
+    ("reference_stiffness", "N m-1", "slope -dF/dh by boundary elements"),
+    ("reference_pressure", "Pa", "force over nominal area by boundary elements"),
+    ("reference_contact_fraction", "1", "contact area over nominal area by boundary elements"),
+    ("reference_error", "1", "estimated relative error of the force by boundary elements, by their grid"),
+)
+"""Variables of a law by boundary elements beside that of the asperities."""
+
+LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES, **REFERENCE_VARIABLES}
 """Variables that a result can have over its steps."""
 
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
@@ -135,6 +146,10 @@ def _pairwise(scene: Any) -> bool:
     return bool(scene.needs_positions)
 
 
+def _referred(scene: Any) -> bool:
+    return scene.reference is not None
+
+
 def _adhering(scene: Any) -> bool:
     return bool(scene.needs_positions and scene.adhesion_model.work > 0.0)
 
@@ -185,6 +200,9 @@ RUN_DIAGNOSTICS = _diagnostics(
         "1",
         "points of the grid of boundary elements; 0 where contacts are coupled in pairs",
         in_result=_pairwise,
+    ),
+    Diagnostic(
+        "reference_points", "1", "points of the grid of the reference by boundary elements", in_result=_referred
     ),
     Diagnostic(
         "avalanche_count",

@@ -47,6 +47,8 @@ class LoadSeparation(NamedTuple):
     """
     grid_points: float = math.nan
     """Of the boundary elements that the law was computed by; 0 of contacts coupled in pairs, NaN likewise."""
+    reference_points: float = math.nan
+    """Of the grid of boundary elements beside the law; NaN where there are none."""
     avalanche_count: float = math.nan
     """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
     avalanche_size_max: float = math.nan

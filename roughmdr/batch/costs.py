@@ -7,6 +7,7 @@ about three. They are constants, never measured while a batch runs, so that ever
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
+from roughmdr.elements.refine import first_points
 from roughmdr.scene import Scene
 
 START_UP = 1.2
@@ -25,6 +26,11 @@ _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 # With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
 _GRID_STEP = 1.2  # of boundary elements, should they be needed
+_REFERENCE_STEP, _REFERENCE_POINT, _ALONE = (
+    5e-3,
+    3e-6,
+    4.0,
+)  # of a reference, all its grids together
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB
@@ -45,7 +51,7 @@ def seconds(cell: Cell, estimator: str) -> float:
         tables = _TABLES_DUGDALE_PROFILE if dugdale and not simple else _TABLES
         return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
-    begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
+    begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0) + _reference_seconds(cell)
     if cell.scene.needs_positions:
         return begin + section.expected_count * _DRAW + paired_seconds(cell)
     return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
@@ -63,6 +69,16 @@ def paired_seconds(cell: Cell) -> float:
     grid = _GRID_STEP if beyond == "boundary_elements" else 0.0
     each = grid + _PAIRWISE_STEP + count * _PAIRWISE_VISIT
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
+
+
+def _reference_seconds(cell: Cell) -> float:
+    """Return about how long the reference of a realisation takes [s]; 0 where none is asked for."""
+    reference = cell.scene.reference
+    if reference is None:
+        return 0.0
+    points = first_points(cell.scene.asperities.expected_count, reference.error) ** 2
+    step = _REFERENCE_STEP + _REFERENCE_POINT * points * (1.0 if cell.scene.repeats else _ALONE)
+    return np.unique(cell.path.separation).size * step
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

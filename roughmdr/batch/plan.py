@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.path_ends import PathFinder
+from roughmdr.batch.reference import check_surface, reference_variables
 from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
@@ -95,7 +96,9 @@ class Plan(NamedTuple):
     def variables(self) -> list[str]:
         """The variables of the result over its steps."""
         asked, machine = self.scene.output.variables, self.cells[0].machine
-        return asked if machine is None else machine.variables(asked)
+        if machine is not None:
+            return machine.variables(asked)
+        return asked if self.scene.reference is None else [*asked, *reference_variables(asked)]
 
     @property
     def warnings(self) -> list[str]:
@@ -173,7 +176,11 @@ def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], Loadin
 
 def _check_asperities_read(cell: Scene) -> None:
     """SceneError where asperities that are read, not drawn, lack what their interaction needs."""
-    if cell.interaction_model is not None and not cell.asperities.is_random:
+    if cell.asperities.is_random:
+        return
+    if cell.reference is not None:
+        check_surface(cell, cell.asperities.ensemble(cell.seed, 0))
+    if cell.interaction_model is not None:
         check_placed(cell.asperities.ensemble(cell.seed, 0), cell.interaction_model)
 
 
@@ -193,11 +200,13 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.is_random and not scene.needs_positions:
+    if scene.asperities.is_random and not scene.needs_positions and scene.reference is None:
         independent = "interaction.model is 'mean_field'" if scene.interaction else "asperities are independent"
         yield f"positions: {independent}; nothing depends on their positions"
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
+    if scene.reference is None:
+        yield "boundary elements: the scene has no [reference]"
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

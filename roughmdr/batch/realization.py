@@ -4,6 +4,7 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
+from roughmdr.variables import REFERENCE_VARIABLES
 
 
 def simulate_ensemble(
@@ -47,7 +48,15 @@ def simulate_realization(
             interaction=scene.interaction_model,
             variables=variables,
         )
+    placed = scene.needs_positions or scene.reference is not None
     ensemble = scene.asperities.ensemble(
-        scene.seed, realization, stratified=estimator == "stratified", with_positions=scene.needs_positions
+        scene.seed, realization, stratified=estimator == "stratified", with_positions=placed
     )
-    return simulate_ensemble(scene, path, ensemble, variables)
+    if scene.reference is None:
+        return simulate_ensemble(scene, path, ensemble, variables)
+    from roughmdr.batch.reference import with_reference
+
+    assert isinstance(path, LoadingPath)  # as ``Scene`` validates
+    asked = [name for name in variables if name not in REFERENCE_VARIABLES]
+    law = simulate_ensemble(scene, path, ensemble, asked)
+    return with_reference(law, scene, path.separation, realization, ensemble).only(variables)

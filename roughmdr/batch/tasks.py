@@ -169,6 +169,7 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
         "overlap_count": result.overlap_count,
         "marked_steps": result.marked_steps,
         "grid_points": result.grid_points,
+        "reference_points": result.reference_points,
         "avalanche_count": result.avalanche_count,
         "avalanche_size_max": result.avalanche_size_max,
         "remark": "\n".join(result.warnings),

@@ -1,4 +1,5 @@
 """Boundary elements: height maps pressed into an elastic half-space on a grid, without adhesion.
 
-``half_space`` solves one separation, ``path`` a path of them. The surface is that of asperities (``union_map``).
+``surface`` is what is pressed: a height map, or asperities (``union_map``). ``half_space`` solves one separation,
+``path`` all on one grid, ``refine`` on a grid as fine as an error asks for.
 """

@@ -81,11 +81,8 @@ def surface_of_map(surface: HeightMap, tops: Floats, *, periodic: bool) -> Surfa
         rows, columns = ((np.arange(n) + 0.5) * (count / n) - 0.5 for n, count in zip(shape, counts, strict=True))
         at = np.broadcast_arrays(rows[:, None], columns)
         heights = map_coordinates(coefficients, at, order=3, mode=mode, prefilter=False)
-        nearest = [
-            np.clip(np.rint(each), 0, count - 1).astype(np.int64)
-            for each, count in zip((rows, columns), counts, strict=True)
-        ]
-        return np.where(known[np.ix_(*nearest)], heights, -np.inf)
+        i, j = (np.rint(each).clip(0, n - 1).astype(np.int64) for each, n in zip((rows, columns), counts, strict=True))
+        return np.where(known[np.ix_(i, j)], heights, -np.inf)
 
     sides = np.array([surface.dx * counts[0], surface.dy * counts[1]])
     return Surface(sides, tops, periodic, on_grid, has_floor=False)

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.streams import Streams
 from roughmdr.errors import RoughmdrError
@@ -71,6 +72,15 @@ class Source(Section):
     def description(self) -> tuple[str, ...]:
         """Lines on the measurement that the asperities are from; none where they are from none."""
         return ()
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the surface is one period of one without end."""
+        return True
+
+    def height_map(self, seed: int, realization: int) -> HeightMap | None:
+        """Return the map on which the asperities of a realisation were found; None where there is none."""
+        return None
 
     @property
     def expected_count(self) -> float:

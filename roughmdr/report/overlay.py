@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from roughmdr.batch.plan import Cell, Plan, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.plots import EXPECTED, OverlayLine
+from roughmdr.report.plots import EXPECTED, Overlay, OverlayLine
 from roughmdr.report.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.result.layout import control_of, controlled_values
 from roughmdr.scene import read
@@ -29,13 +28,6 @@ _THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
     "contact_fraction": ("contact_fraction", False),
 }
 _SEPARATION_RTOL = 1e-9  # of the largest separation
-
-
-class Overlay(NamedTuple):
-    """Lines to draw, and remarks on whether they are drawn, and if not why."""
-
-    lines: list[OverlayLine]
-    remarks: list[str]
 
 
 def plan_of_result(file: Path | None, result: Labelled) -> Plan:

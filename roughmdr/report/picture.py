@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from roughmdr.errors import LimitWarning
 from roughmdr.report.given import given_result
 from roughmdr.report.plots import draw, format_of, save
+from roughmdr.report.reference import overlay_reference
 from roughmdr.result.layout import asked_variables
 from roughmdr.storage.files import check_writable
 from roughmdr.storage.labelled import Labelled
@@ -32,6 +33,7 @@ def plot(
     variables: str | Iterable[str] = (),
     with_expected: bool = False,
     with_theory: bool = False,
+    with_reference: bool = False,
     fresh: bool = False,
 ) -> "Figure":
     """Draw the load-separation law of a result, as ``roughmdr plot`` does.
@@ -48,6 +50,8 @@ def plot(
         Those to draw; all that the result holds unless given.
     with_expected, with_theory : bool, optional
         Whether to draw the expected law of the scene, and the theory curves that apply to it, as well.
+    with_reference : bool, optional
+        Whether to draw the law by boundary elements that the result holds beside its own.
     fresh : bool, optional
         Whether to replace a file of any kind at ``out``.
 
@@ -81,7 +85,9 @@ def plot(
     if out is not None:
         check_picture(Path(out), [] if file is None else [file], fresh=fresh)
     names = [variables] if isinstance(variables, str) else list(variables)
-    figure, remarks = draw_result(data, names, file, with_expected=with_expected, with_theory=with_theory)
+    figure, remarks = draw_result(
+        data, names, file, with_expected=with_expected, with_theory=with_theory, with_reference=with_reference
+    )
     for title, remark in remarks:
         if "not drawn" in remark:
             warnings.warn(f"{title}: {remark}", LimitWarning, stacklevel=2)
@@ -102,19 +108,25 @@ def check_picture(path: Path, inputs: Iterable[Path], *, fresh: bool) -> None:
 
 
 def draw_result(
-    result: Labelled, variables: Iterable[str], file: Path | None, *, with_expected: bool, with_theory: bool
+    result: Labelled,
+    variables: Iterable[str],
+    file: Path | None,
+    *,
+    with_expected: bool,
+    with_theory: bool,
+    with_reference: bool = False,
 ) -> Picture:
     """Return the picture of a result that was read, from ``file`` unless that is None; all variables if none is named.
 
     Errors as in ``plot``.
     """
     names = asked_variables(result, variables)
-    if not (with_expected or with_theory):
-        return Picture(draw(result, names), [])
-    from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
+    overlays = [("reference", overlay_reference(result, names))] if with_reference else []
+    if with_expected or with_theory:
+        from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
 
-    plan = plan_of_result(file, result)
-    overlays = [("expected", overlay_expected(plan, names))] if with_expected else []
-    overlays += [("theory", overlay_theory(plan, names))] if with_theory else []
+        plan = plan_of_result(file, result)
+        overlays += [("expected", overlay_expected(plan, names))] if with_expected else []
+        overlays += [("theory", overlay_theory(plan, names))] if with_theory else []
     lines = [line for _, overlay in overlays for line in overlay.lines]
     return Picture(draw(result, names, lines), [(title, text) for title, each in overlays for text in each.remarks])

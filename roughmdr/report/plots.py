@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 EXPECTED = "expected"
+REFERENCE = "boundary elements"
 _BRANCH_COLOURS = {"loading": "#1b6ca8", "unloading": "#c8553d"}
 _BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 _THEORY_COLOURS = ("#2a8c4a", "#f2a900", "#8e44ad", "#17a2b8", "#8c564b")
@@ -42,11 +43,18 @@ _ABSCISSA_NAMES = {**{name: name for name in STEP_COORDINATES}, "remote": "posit
 class OverlayLine(NamedTuple):
     """A curve drawn over a result: a variable in one cell, over the whole path."""
 
-    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene
+    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene, or ``REFERENCE``
     variable: str
     cell: int
     separation: Floats
     values: Floats  # NaN where the theory gives none
+
+
+class Overlay(NamedTuple):
+    """Lines to draw, and remarks on whether they are drawn, and if not why."""
+
+    lines: list[OverlayLine]
+    remarks: list[str]
 
 
 class _Curve(NamedTuple):
@@ -224,12 +232,15 @@ def _curve_style(curve: _Curve, labels: list[str]) -> dict[str, Any]:
 
 
 def _overlay_style(label: str, overlays: list[str], cell: int | None, cells: int) -> dict[str, Any]:
-    """Return a thin dark line for the expected law, and for a theory curve dots in the colour of its cell.
+    """Return a thin dark line for the expected law, dark dashes for the reference, and for a theory curve dots in the
+    colour of its cell.
 
     With a single cell each theory curve has its own colour; in the legend of several cells (``cell`` None) it is grey.
     """
     if label == EXPECTED:
         return {"color": "#111111", "lw": 0.7 if cells == 1 else 0.5}
+    if label == REFERENCE:
+        return {"color": "#111111", "ls": (0, (4.0, 2.0)), "lw": 1.2 if cells == 1 else 0.8}
     number = overlays.index(label)
     dots = {"ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 1.8}
     if cells == 1:

@@ -8,6 +8,7 @@ import numpy as np
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
+from roughmdr.report.reference import reference_lines
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
 from roughmdr.schema.wording import format_bytes, format_seconds, printable
@@ -35,6 +36,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
         *prospect_lines(prospect),
+        *_reference(plan),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
     lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
@@ -58,6 +60,13 @@ def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "", "time, memory and tasks are those of the runs above"
 
 
+def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
+    """Yield what [reference] adds."""
+    reference = plan.scene.reference
+    if reference is not None:
+        yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g}"
+
+
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     attrs = result.attrs
@@ -74,6 +83,7 @@ def describe_result(result: Labelled, elapsed: float | None = None, *, left_out:
         *_avalanches(result),
         *_contacts_at_ends(result),
         *trust_of_result(result),
+        *reference_lines(result),
         *_adhesion(result),
         *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
         *_indent("failed", describe_failed(result).splitlines()),

@@ -10,7 +10,16 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES, DONE, LAW_VARIABLES, REMOTE, SEPARATION, STEP_COORDINATES, TRAVEL
+from roughmdr.variables import (
+    AUXILIARY_COORDINATES,
+    DONE,
+    LAW_VARIABLES,
+    REFERENCE_VARIABLES,
+    REMOTE,
+    SEPARATION,
+    STEP_COORDINATES,
+    TRAVEL,
+)
 
 
 def stored_variables(result: Labelled) -> list[str]:
@@ -18,7 +27,9 @@ def stored_variables(result: Labelled) -> list[str]:
     return [
         name.removesuffix("_mean")
         for name, array in result.variables.items()
-        if array.dims[-1:] == ("step",) and name.removesuffix("_mean") in LAW_VARIABLES
+        if array.dims[-1:] == ("step",)
+        and name.removesuffix("_mean") in LAW_VARIABLES
+        and name.removesuffix("_mean") not in REFERENCE_VARIABLES
     ]
 
 

@@ -20,6 +20,7 @@ from roughmdr.scene.sections import (
     InteractionSection,
     MaterialSection,
     Output,
+    ReferenceSection,
 )
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.faults import mismatch
@@ -45,6 +46,7 @@ class Scene(Section):
     adhesion: AdhesionSection | None = None
     asperities: Asperities
     interaction: InteractionSection | None = None
+    reference: ReferenceSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -98,6 +100,8 @@ class Scene(Section):
         coupling = self.interaction_model
         if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
             raise mismatch("interaction", reason)
+        if self.reference is not None:
+            self._check_reference()
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
@@ -116,6 +120,12 @@ class Scene(Section):
             raise mismatch(f"asperities.{key}", f"{exponent:g} is too low; with adhesion it must be above 0.5")
         return self
 
+    def _check_reference(self) -> None:
+        if self.work > 0.0:
+            raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
+        if self.path.control != "separation":
+            raise mismatch("reference", f"goes with path.separation, not with path.{self.path.key}")
+
     def _check_accuracy(self, accuracy: Accuracy) -> None:
         if not self.asperities.is_random:
             raise mismatch("accuracy", f"does not go with source {self.asperities.source!r}: nothing in it is random")
@@ -129,6 +139,8 @@ class Scene(Section):
 
     def reason_against(self, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
+        if estimator == "expected" and self.reference is not None:
+            return "the reference presses single surfaces, which the expected law does not know"
         if estimator == "expected" and self.needs_positions:
             return "asperities that feel each other in pairs have positions, which the expected law does not know"
         return self.asperities.reason_against(estimator)
@@ -180,6 +192,11 @@ class Scene(Section):
     def needs_positions(self) -> bool:
         """Whether the law depends on where the asperities stand."""
         return self.interaction is not None and self.interaction.model == "pairwise"
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the surface repeats beyond its patch: as the interaction says, or else as its map says."""
+        return self.asperities.repeats if self.interaction is None else self.interaction.boundary == "periodic"
 
     @property
     def without_grid(self) -> "Scene":

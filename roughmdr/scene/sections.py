@@ -5,6 +5,10 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from roughmdr.elements.settings import DEFAULT_ERROR as DEFAULT_REFERENCE_ERROR
+from roughmdr.elements.settings import LEAST_ERROR as LEAST_REFERENCE_ERROR
+from roughmdr.elements.settings import MOST_ERROR as MOST_REFERENCE_ERROR
+from roughmdr.elements.settings import Reference
 from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import DEFAULT_ERROR as DEFAULT_SOLVER_ERROR
 from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Boundary, Interaction, Model
@@ -91,6 +95,24 @@ class InteractionSection(Section):
     def interaction_model(self) -> Interaction:
         """Interaction with its parameters."""
         return Interaction(self.model, self.boundary, self.order, self.error, self.beyond)
+
+
+class ReferenceSection(Section):
+    """[reference]: the surface pressed by boundary elements beside the law of its asperities, without adhesion.
+
+    The force is right to ``error`` as far as the grid is concerned: relative to itself, and where it is below 1 % of
+    the largest one to that.
+    """
+
+    model: Literal["boundary_elements"]
+    error: Annotated[
+        float, BeforeValidator(Quantity("1", at_least=LEAST_REFERENCE_ERROR, at_most=MOST_REFERENCE_ERROR))
+    ] = DEFAULT_REFERENCE_ERROR
+
+    @property
+    def reference(self) -> Reference:
+        """The reference with its parameters."""
+        return Reference(self.error)
 
 
 def _check_variable(value: object) -> object:

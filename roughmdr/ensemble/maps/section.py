@@ -93,16 +93,24 @@ class SurfaceAsperities(FromFile):
     def description(self) -> tuple[str, ...]:
         return describe_map(self.asperities.attrs)
 
-    @cached_property
-    def waves(self) -> MapWaves:
-        """The waves of the map that the summits are those of; SceneError where it cannot be read."""
+    @property
+    def repeats(self) -> bool:
+        return bool(self.asperities.attrs["periodic"])
+
+    def height_map(self, seed: int, realization: int) -> HeightMap:
+        """Return the map as it is after its trend and short waves were removed; SceneError where it cannot be read."""
         try:
             surface = self._read_map()
             self._remove_trend(surface)
             self._remove_short_waves(surface)
         except RoughmdrError as error:
             raise SceneError(f"{self.file}: {error}") from error
-        return MapWaves.of(surface, self.cutoff)
+        return surface
+
+    @cached_property
+    def waves(self) -> MapWaves:
+        """The waves of the map that the summits are those of; SceneError where it cannot be read."""
+        return MapWaves.of(self.height_map(0, 0), self.cutoff)
 
     def _read_map(self) -> HeightMap:
         path = Path(self.file)

@@ -1,0 +1,122 @@
+"""Surfaces on any grid, maps that end, and the error that a grid is refined to."""
+
+import math
+
+import numpy as np
+import pytest
+
+from roughmdr.elements.half_space import BoundaryElements
+from roughmdr.elements.path import GridPath, solve_on_grid
+from roughmdr.elements.refine import LARGEST_GRID, first_points, largest_error, solve_to_error
+from roughmdr.elements.surface import grid_shape, surface_of_asperities, surface_of_map
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.interaction.totals import Step
+from roughmdr.numerics.arguments import Floats
+
+SIDE = 3e-6
+
+
+def waves(points: int, seed: int = 1, most: int = 6) -> Floats:
+    """A periodic map [m] of waves, the same on every grid, at points in the middle of cells."""
+    rng = np.random.default_rng(seed)
+    x = (np.arange(points) + 0.5) / points
+    height = np.zeros((points, points))
+    for i, j in np.ndindex(most, most):
+        size, a, b = rng.normal(size=3) / math.hypot(i + 1, j + 1) ** 1.8
+        height += size * np.cos(2 * np.pi * i * x + 9 * a)[:, None] * np.cos(2 * np.pi * j * x + 9 * b)
+    return np.asarray(height * 1e-8)
+
+
+def of(points: int, *, periodic: bool = True) -> HeightMap:
+    return HeightMap(waves(points), SIDE / points, SIDE / points, periodic)
+
+
+def test_a_map_is_on_every_grid_what_it_is_between_its_points() -> None:
+    surface = surface_of_map(of(96), np.array([1e-8]), periodic=True)
+    for points in (32, 96, 150):
+        np.testing.assert_allclose(surface.on_grid((points, points), 0.0), waves(points), atol=2e-11)
+    np.testing.assert_allclose(surface.on_grid((96, 96), 0.0), waves(96), atol=1e-20)
+
+
+def test_undefined_points_are_never_touched_on_any_grid() -> None:
+    height = waves(64)
+    height[10:20, 30:40] = np.nan
+    surface = surface_of_map(HeightMap(height, SIDE / 64, SIDE / 64, True), np.array([1e-8]), periodic=True)
+    fine = surface.on_grid((128, 128), 0.0)
+    assert np.isneginf(fine[21:39, 61:79]).all()
+    assert np.isfinite(fine).sum() == 128**2 - 20 * 20
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e3])
+def test_a_paraboloid_that_stands_alone_is_hertz(unit: float) -> None:
+    x = (np.arange(128) + 0.5) / 32.0 - 2.0
+    height = -0.5 * (x[:, None] ** 2 + x**2) * unit
+    elements = BoundaryElements(height / unit, np.array([4.0, 4.0]), periodic=False)
+    for depth in (0.2, 0.5):
+        assert elements.press(-depth) == pytest.approx(4.0 / 3.0 * depth**1.5, rel=1e-3)
+        assert elements.patches().area == pytest.approx(math.pi * depth, rel=0.02)
+
+
+def test_another_program_displaces_the_same_where_the_map_ends() -> None:
+    from ContactMechanics import FreeFFTElasticHalfSpace
+
+    height, shape = waves(32)[:, :24] / SIDE, (32, 24)
+    sides = np.array([1.0, 0.75])
+    theirs = FreeFFTElasticHalfSpace(shape, 1.0, tuple(sides))
+    ours = BoundaryElements(height, sides, periodic=False)
+    ours.pressure = np.random.default_rng(3).uniform(size=shape)
+    forces = np.zeros((64, 48))
+    forces[:32, :24] = ours.pressure * ours.cell_area
+    expected = np.abs(theirs.evaluate_disp(forces)[:32, :24])
+    np.testing.assert_allclose(ours.displacement(), expected, rtol=1e-12)
+
+
+def test_contacts_at_opposite_rims_are_two_where_the_map_ends() -> None:
+    for periodic, contacts in ((True, 1), (False, 2)):
+        grid = BoundaryElements(np.zeros((8, 8)), np.ones(2), periodic=periodic)
+        grid.pressure[[0, 7], 3] = 1.0
+        assert grid.patches().contacts == contacts
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("error", [0.1, 0.02])
+def test_the_error_asked_for_is_met(periodic: bool, error: float) -> None:
+    height_map = of(96, periodic=periodic)
+    surface = surface_of_map(height_map, np.sort(height_map.height.ravel())[-20:], periodic=periodic)
+    path = np.linspace(0.9, 0.4, 6) * float(height_map.height.max())
+    found = solve_to_error(surface, path, 1e9, error, stiffness=False)
+    fine = solve_on_grid(surface, path, 1e9, (420, 420), stiffness=False)
+    force, true = (np.array([step.force for step in each.steps]) for each in (found, fine))
+    stated = np.array([step.error for step in found.steps]) / force
+    assert largest_error(found) <= error
+    assert (np.abs(force / true - 1.0) <= stated + 1e-3).all()
+    assert found.shape[0] < 420
+
+
+def test_a_smaller_error_takes_a_finer_grid_up_to_the_largest() -> None:
+    assert first_points(100, 0.005) == pytest.approx(2.0 * first_points(100, 0.02))
+    assert first_points(1e9, 0.02) == LARGEST_GRID
+
+
+def test_asperities_that_stand_alone_end_beyond_their_contacts() -> None:
+    """One paraboloid, and two that hardly feel each other, on a patch that nothing else tells of."""
+    for x, times in (([5e-3], 1.0), ([5e-3, 65e-3], 2.0)):
+        count = len(x)
+        placed = {"x": np.array(x), "y": np.full(count, -2e-3)}
+        asperities = Ensemble("paraboloid", np.zeros(count), {"radius": np.full(count, 0.1)}, None, placed)
+        surface = surface_of_asperities(asperities, -1e-6, periodic=False)
+        found = solve_on_grid(
+            surface, np.array([1e-6, -1e-6]), 1e9, grid_shape(surface.sides, 300 * times), stiffness=True
+        )
+        hertz = times * 4.0 / 3.0 * 1e9 * math.sqrt(0.1) * 1e-9
+        assert found.steps[0] == Step()
+        assert found.steps[1].force == pytest.approx(hertz, rel=0.01)
+        assert found.steps[1].stiffness == pytest.approx(1.5 * hertz / 1e-6, rel=0.03)
+        assert found.steps[1].contacts == count
+
+
+def test_light_forces_are_held_against_the_largest() -> None:
+    steps = [Step(force=1.0, error=0.01), Step(force=1e-4, error=1e-4), Step(error=math.inf)]
+    assert largest_error(GridPath(steps, (16, 16))) == pytest.approx(0.01)
+    assert largest_error(GridPath([Step()], (16, 16))) == 0.0
