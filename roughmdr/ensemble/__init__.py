@@ -1,7 +1,8 @@
 """Ensembles of asperities, and the sources that [asperities] in a scene chooses among.
 
-Sources: ``random`` (distributions), ``gaussian`` (summits of a Gaussian surface), ``maps`` (summits of a height map)
-and ``from_file`` (a saved ensemble). ``source`` declares what each of them answers.
+Sources: ``random`` (distributions), ``gaussian`` (summits of a Gaussian surface), ``spectral`` (maps of one, and the
+hills or summits of these), ``maps`` (those of a height map) and ``from_file`` (a saved ensemble). ``source`` declares
+what each of them answers.
 """
 
 import operator
@@ -16,13 +17,14 @@ from roughmdr.ensemble.gaussian.section import NayakAsperities
 from roughmdr.ensemble.maps.section import SurfaceAsperities
 from roughmdr.ensemble.random.section import AnyRandomAsperities, RandomAsperities
 from roughmdr.ensemble.source import Source
+from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.errors import SceneError, warn_limits
 from roughmdr.schema.faults import find_faults
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_AnySource = AnyRandomAsperities | NayakAsperities | SurfaceAsperities | FileAsperities
+_AnySource = AnyRandomAsperities | NayakAsperities | SpectrumAsperities | SurfaceAsperities | FileAsperities
 Asperities = Annotated[_AnySource, Field(discriminator="source")]
 
 __all__ = [
@@ -31,6 +33,7 @@ __all__ = [
     "NayakAsperities",
     "RandomAsperities",
     "Source",
+    "SpectrumAsperities",
     "SurfaceAsperities",
     "generate",
     "make",

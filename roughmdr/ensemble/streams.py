@@ -13,6 +13,7 @@ from roughmdr.numerics.arguments import Floats
 
 HEIGHT, POSITION, PARAMETER = 0, 1, 2  # PARAMETER is the first shape parameter; those of further parameters follow
 COUNT, POPULATION = 100, 101  # the number of asperities, and the population that each belongs to
+WAVES = 200  # the amplitudes of the waves of a map, two numbers each
 _SCRAMBLE = 1000  # scrambling of stratified numbers
 
 _BITS = 52

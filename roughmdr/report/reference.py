@@ -16,9 +16,10 @@ _ABSENT = "the result holds no reference; run its scene with --set reference.mod
 
 def reference_lines(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield how far the mean force is off the reference, where that bears at least ``LIGHT`` of the largest force."""
-    if not _holds(result, "force"):
+    name = next((each for each in ("force", "pressure") if _holds(result, each)), None)
+    if name is None:
         return
-    force, reference, error = (_mean(result, name) for name in ("force", "reference_force", "reference_error"))
+    force, reference, error = (_mean(result, each) for each in (name, f"reference_{name}", "reference_error"))
     points = float(np.nanmax(result.variables["reference_points"].values))
     largest = np.nanmax(reference, axis=-1, initial=0.0)[..., None]
     told = (reference > 0.0) & (reference >= LIGHT * largest) & np.isfinite(force)

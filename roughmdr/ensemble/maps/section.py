@@ -1,6 +1,5 @@
 """source = "surface": the summits of a measured height map, as paraboloids, or its hills, with a profile each."""
 
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
@@ -11,15 +10,14 @@ from pydantic import BeforeValidator, StrictBool, field_validator, model_validat
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, mean_and_rms
+from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape, summits_on
+from roughmdr.ensemble.maps.height_map import HeightMap, mean_and_rms
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.resolution import hills_warning, radius_uncertainty, warning
-from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.schema.quantities import EntryError, Length
+from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
@@ -42,7 +40,7 @@ class SurfaceAsperities(FromFile):
     of_surface: ClassVar[bool] = True
 
     source: Literal["surface"]
-    model: Literal["summits", "hills"] = "summits"
+    model: Model = "summits"
     shape: Literal["paraboloid", "mdr_table"] | None = None
     size: Annotated[Size | None, BeforeValidator(SizeReader())] = None
     unit: str | None = None
@@ -53,9 +51,7 @@ class SurfaceAsperities(FromFile):
 
     @model_validator(mode="after")
     def _shape_of_the_model(self) -> "SurfaceAsperities":
-        shape = "paraboloid" if self.model == "summits" else "mdr_table"
-        if self.shape not in (None, shape):
-            raise EntryError("shape", self.shape, f"is not that of model = {self.model!r}: {shape}; leave it out")
+        check_shape(self.model, self.shape)
         return self
 
     @field_validator("unit")
@@ -65,29 +61,19 @@ class SurfaceAsperities(FromFile):
         return value
 
     def read(self) -> Ensemble:
-        path = Path(self.file)
         try:
             surface = self._read_map()
             noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
+            trend = self._trend(surface)
             self._remove_trend(surface)
-            uncut = {} if self.cutoff is None else self._summits(surface, noise)[1]
-            self._remove_short_waves(surface)
-            summits, found = self._summits(surface, noise)
-            if self.model == "hills":
-                from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler
-
-                summits = find_hills(surface, summits)
+            attrs: dict[str, float | int | str] = {"rms_height_raw": raw, "detrend": trend}
+            if self.cutoff is not None:
+                uncut = summits_on(surface, noise).attrs
+                attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
+                remove_short_waves(surface, self.cutoff)
+            return asperities_on(surface, noise, self.model, Path(self.file).name, attrs)
         except RoughmdrError as error:
             raise SceneError(f"{self.file}: {error}") from error
-        attrs = {**summits.attrs, **found, "rms_height_raw": raw, "detrend": self._trend(surface)}
-        if self.cutoff is not None:
-            attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
-        if self.model == "hills":
-            text = hills_warning(path.name, attrs)
-        else:
-            attrs["radius_uncertainty"] = radius_uncertainty(attrs)
-            text = warning(path.name, attrs)
-        return replace(summits, attrs=attrs, warnings=(text,) if text else ())
 
     @property
     def description(self) -> tuple[str, ...]:
@@ -102,7 +88,8 @@ class SurfaceAsperities(FromFile):
         try:
             surface = self._read_map()
             self._remove_trend(surface)
-            self._remove_short_waves(surface)
+            if self.cutoff is not None:
+                remove_short_waves(surface, self.cutoff)
         except RoughmdrError as error:
             raise SceneError(f"{self.file}: {error}") from error
         return surface
@@ -126,22 +113,3 @@ class SurfaceAsperities(FromFile):
                 f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
             )
         remove_trend(surface.height, trend)
-
-    def _remove_short_waves(self, surface: HeightMap) -> None:
-        if self.cutoff is not None:
-            remove_short_waves(surface, self.cutoff)
-
-    def _summits(self, surface: HeightMap, noise: float) -> tuple[Ensemble, dict[str, float | int | str]]:
-        """Return the summits of a map, and statistics of both; RoughmdrError where no float holds their radii."""
-        if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
-            raise RoughmdrError(
-                f"the map has no summit: with detrend {self._trend(surface)!r} it is flat, but for rounding"
-            )
-        with np.errstate(over="ignore", under="ignore"):  # refused below
-            summits = find_summits(surface, noise)
-        radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
-        if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
-            raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
-        smallest = float(radius.min())  # over which no mean curvature overflows
-        mean = smallest / float(np.mean(smallest / radius))
-        return summits, {**summits.attrs, **map_statistics(surface), "mean_curvature_radius": mean}

@@ -13,8 +13,11 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
     def length(name: str) -> str:
         return format_quantity(float(attrs[name]), "m")
 
-    kept = f"{'periodic, ' * int(attrs['periodic'])}detrended: {attrs['detrend']}"
-    heights = f"r.m.s. height {length('rms_height_raw')} as measured, {length('rms_height')} of it kept"
+    kept = "periodic" if attrs["periodic"] else "not periodic"
+    heights = f"r.m.s. height {length('rms_height')}"
+    if "detrend" in attrs:
+        kept += f", detrended: {attrs['detrend']}"
+        heights = f"r.m.s. height {length('rms_height_raw')} as measured, {length('rms_height')} of it kept"
     slopes = f"r.m.s. slope {attrs['rms_slope']:.3g}"
     if "cutoff" in attrs:
         kept += f", without waves below {length('cutoff')}"

@@ -1,0 +1,61 @@
+"""The asperities of a height map by either model of them: summits or hills."""
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
+from roughmdr.ensemble.maps.resolution import hills_warning, radius_uncertainty, warning
+from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.errors import RoughmdrError
+from roughmdr.schema.quantities import EntryError
+
+Model = Literal["summits", "hills"]
+
+
+def check_shape(model: Model, shape: str | None) -> None:
+    """EntryError where a shape is given that is not that of the model."""
+    own = "paraboloid" if model == "summits" else "mdr_table"
+    if shape not in (None, own):
+        raise EntryError("shape", shape, f"is not that of model = {model!r}: {own}; leave it out")
+
+
+def summits_on(surface: HeightMap, noise: float) -> Ensemble:
+    """Return the summits of a map that stand out by more than ``noise`` [m], with the statistics of the map.
+
+    RoughmdrError where there are none, or where no float holds their radii.
+    """
+    if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
+        raise RoughmdrError("the map has no summit: it is flat, but for rounding")
+    with np.errstate(over="ignore", under="ignore"):  # refused below
+        summits = find_summits(surface, noise)
+    radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
+    if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
+        raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
+    smallest = float(radius.min())  # over which no mean curvature overflows
+    mean = smallest / float(np.mean(smallest / radius))
+    return replace(summits, attrs={**summits.attrs, **map_statistics(surface), "mean_curvature_radius": mean})
+
+
+def asperities_on(
+    surface: HeightMap,
+    noise: float,
+    model: Model,
+    name: str,
+    attrs: dict[str, float | int | str] | None = None,
+) -> Ensemble:
+    """Return the summits or hills of a map, with its statistics and further ``attrs``; a warning calls it ``name``."""
+    found = summits_on(surface, noise)
+    if model == "hills":
+        from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler
+
+        found = find_hills(surface, found)
+    all_attrs = {**found.attrs, **(attrs or {})}
+    if model == "hills":
+        text = hills_warning(name, all_attrs)
+    else:
+        all_attrs["radius_uncertainty"] = radius_uncertainty(all_attrs)
+        text = warning(name, all_attrs)
+    return replace(found, attrs=all_attrs, warnings=(text,) if text else ())

@@ -1,0 +1,143 @@
+"""source = "spectrum": the hills or summits of maps of a periodic Gaussian surface, isotropic or not."""
+
+import math
+from dataclasses import replace
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
+
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
+from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.random.distribution_families import ndtri
+from roughmdr.ensemble.source import Source
+from roughmdr.ensemble.spectral.surface import Waves
+from roughmdr.ensemble.streams import WAVES, make_streams
+from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.schema.quantities import EntryError, Length, Quantity
+from roughmdr.spectrum import Moments, SelfAffine
+
+_LARGEST_MAP = 8192  # points along a side
+_MARGIN = 1.02  # points over twice the waves along a side, at least
+_ROUNDING = 1e-13  # of the r.m.s. height: of the transform
+
+
+class SpectrumAsperities(Source):
+    """[asperities] with source = "spectrum": maps of a Gaussian surface that repeats with ``patch``, and their hills.
+
+    The spectrum is self-affine between ``long_wave`` and ``short_wave``, and 0 elsewhere: that of source "nayak". With
+    ``anisotropy`` lengths along x are stretched by the root of it, and those along y compressed. A map has ``points`` a
+    shortest wave. The mean over realisations of <h^2>, or of the squared slope, is the one given.
+    """
+
+    of_surface: ClassVar[bool] = True
+
+    source: Literal["spectrum"]
+    model: Model = "hills"
+    shape: Literal["paraboloid", "mdr_table"] | None = None
+    patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]
+    hurst: Annotated[float, BeforeValidator(Quantity("1", at_least=0.0, at_most=1.0))]
+    long_wave: Length
+    short_wave: Length
+    rms_height: Length | None = None
+    rms_slope: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
+    anisotropy: Annotated[float, BeforeValidator(Quantity("1", at_least=1.0, at_most=100.0))] = 1.0
+    points: Annotated[float, BeforeValidator(Quantity("1", at_least=2.5, at_most=64.0))] = 6.0
+
+    @field_validator("short_wave")
+    @classmethod
+    def _shorter(cls, value: float, info: ValidationInfo) -> float:
+        long_wave = info.data.get("long_wave")
+        if long_wave is not None and not value < long_wave:
+            raise RoughmdrError(f"must be below long_wave, {long_wave:g} m")
+        return value
+
+    @model_validator(mode="after")
+    def _check_surface(self) -> "SpectrumAsperities":
+        check_shape(self.model, self.shape)
+        if (self.rms_height is None) == (self.rms_slope is None):
+            raise RoughmdrError("source 'spectrum' takes one of rms_height and rms_slope")
+        longest = self.long_wave * math.sqrt(self.anisotropy)
+        if longest > self.patch:
+            message = f"must be at least the longest wave, {longest:.3g} m along x"
+            raise EntryError("patch", self.patch, message)
+        if self._points > _LARGEST_MAP:
+            message = f"takes a map of {self._points:.3g} points along a side; at most {_LARGEST_MAP} are allowed"
+            raise EntryError("patch", self.patch, message)
+        try:
+            _ = self.summits
+        except (OutOfRange, ArithmeticError, ValueError) as error:
+            raise EntryError("short_wave", self.short_wave, f"leaves no surface with summits: {error}") from None
+        return self
+
+    @property
+    def _points(self) -> int:
+        """Points along a side of a map."""
+        from scipy.fft import next_fast_len
+
+        shortest = self.short_wave / math.sqrt(self.anisotropy)
+        least = max(self.points, 2.0 * _MARGIN) * self.patch / shortest
+        return 2 * next_fast_len(math.ceil(0.5 * least) + 1, real=True) if least < _LARGEST_MAP else math.ceil(least)
+
+    @cached_property
+    def _waves(self) -> Waves:
+        height = 1.0 if self.rms_height is None else self.rms_height
+        spectrum = SelfAffine.of(
+            hurst=self.hurst, long_wave=self.long_wave, short_wave=self.short_wave, rms_height=height
+        )
+        return Waves.of(spectrum, self.patch, self.anisotropy, rms_slope=self.rms_slope)
+
+    @cached_property
+    def summits(self) -> SummitDistribution:
+        """The distribution of the summits of such surfaces without end."""
+        return SummitDistribution(Moments.checked(*self._waves.moments))
+
+    @property
+    def shape_name(self) -> str:
+        return "paraboloid" if self.model == "summits" else "mdr_table"
+
+    @property
+    def expected_count(self) -> float:
+        return max(self.summits.density * self.nominal_area, 1.0)
+
+    @property
+    def nominal_area(self) -> float:
+        return self.patch * self.patch
+
+    @property
+    def sigma(self) -> float:
+        return self.summits.sigma
+
+    def reason_against(self, estimator: str) -> str:
+        return f"source 'spectrum' draws whole maps, of which nothing is {estimator}"
+
+    def limited_to(self, count: int) -> "SpectrumAsperities":
+        side = self.patch * math.sqrt(min(1.0, count / self.expected_count))
+        patch = max(side, self.long_wave * math.sqrt(self.anisotropy))
+        return self.model_copy(update={"patch": patch}) if patch < self.patch else self
+
+    def height_map(self, seed: int, realization: int) -> HeightMap:
+        """Return the map of a realisation."""
+        waves = self._waves
+        scores = ndtri(make_streams(seed, realization)(WAVES, 2 * waves.i.size)).reshape(-1, 2).T
+        return waves.map(scores, self._points)
+
+    def ensemble(
+        self, seed: int, realization: int, *, stratified: bool = False, with_positions: bool = False
+    ) -> Ensemble:
+        surface = self.height_map(seed, realization)
+        noise = _ROUNDING * math.sqrt(float(np.sum(self._waves.variance)))
+        found = asperities_on(surface, noise, self.model, "the map of the spectrum")
+        return replace(found, attrs={**found.attrs, "seed": seed, "realization": realization})
+
+    @cached_property
+    def _usual(self) -> Ensemble:
+        return self.limited_to(1).ensemble(0, 0)
+
+    def extremes(self, chance: float) -> Ensemble:
+        """Return asperities of a small map, as high as an asperity is with this chance."""
+        usual = self._usual
+        return replace(usual, height=np.full(usual.height.size, self.summits.height_exceeded(chance)))
