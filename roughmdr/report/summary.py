@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.ensemble.maps.words import describe_map
+from roughmdr.report.advice import advice_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
@@ -17,7 +18,7 @@ from roughmdr.variables import DONE, FAILED
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
-    from roughmdr.batch.foresee import Prospect
+    from roughmdr.batch.foresee import Foreseen, Prospect
     from roughmdr.batch.plan import Plan
 
 _NOT_KNOWN = "not known: no run was computed"
@@ -36,6 +37,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
         *prospect_lines(prospect),
+        *advice_lines(plan.scene.toml, max((_resolution(cell) for cell in prospect.foreseen), default=0.0)),
         *_reference(plan),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
@@ -83,6 +85,7 @@ def describe_result(result: Labelled, elapsed: float | None = None, *, left_out:
         *_avalanches(result),
         *_contacts_at_ends(result),
         *trust_of_result(result),
+        *advice_lines(attrs["scene"], _resolution_error(result)),
         *reference_lines(result),
         *_adhesion(result),
         *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
@@ -92,6 +95,16 @@ def describe_result(result: Labelled, elapsed: float | None = None, *, left_out:
         ("run time", time),
     ]
     return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines() if left_out else ())])
+
+
+def _resolution(cell: "Foreseen") -> float:
+    return cell.law.model_error.parts["resolution_error"]
+
+
+def _resolution_error(result: Labelled) -> float:
+    """Return the largest error by the resolution of a map; 0 where an earlier version did not store it."""
+    name = "resolution_error"
+    return float(np.nanmax(_values(result, name), initial=0.0)) if name in result.variables else 0.0
 
 
 def _numerical_error(result: Labelled) -> tuple[str, str]:

@@ -1,0 +1,57 @@
+"""Advice on a map: which of its summits, its hills and boundary elements to believe, and why."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR
+from roughmdr.schema.toml_text import parse_toml
+
+_OF_MAPS = ("surface", "spectrum")
+_HILLS = "hills in pairs are within 3 % r.m.s. of them from 0.3 to 20 % contact, 6 % where waves are four times as long"
+_SUMMITS = "summits are 14 % off in pairs and 32 % alone, since their flanks are no paraboloids"
+_TO_HILLS = 'take asperities.model = "hills" with [interaction] model = "pairwise"'
+
+
+def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str]]:
+    """Yield the advice of a scene, as TOML, whose asperities are found on maps; nothing for others.
+
+    ``resolution_error`` is that of the force by the resolution of the map [1]. The figures are measured
+    (``pipelines/hills.py``, ``pipelines/adhesive_hills.py``).
+    """
+    table = parse_toml(scene)
+    asperities = table.get("asperities", {})
+    if not isinstance(asperities, dict) or asperities.get("source") not in _OF_MAPS:
+        return
+    source = asperities["source"]
+    model = asperities.get("model", "summits" if source == "surface" else "hills")
+    coupled = table.get("interaction", {}).get("model") == "pairwise"
+    yield "advice", _which(table, model, coupled)
+    if resolution_error > MAX_HILLS_ERROR:
+        finer = (
+            "raise asperities.points" if source == "spectrum" else "a finer map, or a cutoff of measured noise, helps"
+        )
+        yield (
+            "",
+            f"but the map itself is too coarse or noisy for all three, by about {100.0 * resolution_error:.2g} % here: "
+            f"{finer}",
+        )
+
+
+def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
+    """Return which of the three to believe."""
+    if _adhesive(table):
+        believed = "believe hills in pairs as far as they have values: boundary elements are without adhesion here, and"
+        if model == "hills" and coupled:
+            return f"{believed} without it {_SUMMITS}"
+        return f"{believed} without it {_SUMMITS}; {_TO_HILLS}"
+    if "reference" in table:
+        return f"believe boundary elements, which press the map itself; {_HILLS}; {_SUMMITS}"
+    ask = "ask for them with --set reference.model=boundary_elements"
+    if model == "hills" and coupled:
+        return f"believe boundary elements first, which press the map itself ({ask}): {_HILLS}"
+    return f"believe boundary elements, which press the map itself ({ask}), or {_TO_HILLS}: {_HILLS}; {_SUMMITS}"
+
+
+def _adhesive(table: dict[str, Any]) -> bool:
+    adhesion = table.get("adhesion", {})
+    return bool(adhesion) and adhesion.get("work") not in (0, 0.0)
