@@ -6,13 +6,14 @@ import numpy as np
 import xarray as xr
 
 from roughmdr.numerics.arguments import Floats
-from studies.hills.measure import METHODS, POINTS
+from studies.hills.measure import METHODS
+from studies.hills.separations import POINTS
 from studies.study import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLOURS = dict(zip(METHODS, ("0.6", "#1b6ca8", "#c8553d", "#c2a5cf", "#9970ab", "#762a83"), strict=True))
+_COLOURS = dict(zip(METHODS, ("0.6", "#1b6ca8", "#c8553d", "g","y","#c2a5cf", "#9970ab", "#762a83"), strict=True))
 
 
 def errors_of(result: xr.Dataset, quantity: str = "force") -> xr.DataArray:
