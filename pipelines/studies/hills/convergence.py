@@ -33,7 +33,8 @@ _PAIRS = "pairwise"
 def measure_convergence(quick: bool) -> xr.Dataset:
     """Press a few maps again and again."""
     trials = QUICK_TRIALS if quick else TRIALS
-    measured = [_measure(case, FINEST_ELEMENTS // 2 if quick else FINEST_ELEMENTS) for case in trials]
+    finest_elements = FINEST_ELEMENTS // 2 if quick else FINEST_ELEMENTS
+    measured = [_measure(case, finest_elements) for case in trials]
     over = {
         "trial_force": ((), "force of fine boundary elements"),
         "trial_force_finest": ((), "force of the finest boundary elements"),
@@ -53,6 +54,7 @@ def measure_convergence(quick: bool) -> xr.Dataset:
                 [each["resolution_error"] for each in measured],
                 named("share of the force that the hills of a grid say they lack"),
             ),
+            "finest_elements": ((), finest_elements, named("points a shortest wave of the finest boundary elements")),
         },
         {
             "points": ("points", list(GRIDS), named("points a shortest wave")),
@@ -62,7 +64,6 @@ def measure_convergence(quick: bool) -> xr.Dataset:
             "trial_hurst": ("trial", [case.hurst for case in trials]),
             "trial_bandwidth": ("trial", [case.bandwidth for case in trials]),
         },
-        {"finest_elements": FINEST_ELEMENTS // 2 if quick else FINEST_ELEMENTS},
     )
 
 
@@ -84,8 +85,10 @@ def _measure(case: MapCase, finest_elements: int) -> dict[str, Floats]:
         "trial_force_by_points": np.array([of_hills(points) for points in GRIDS]),
         "trial_force_by_scales": np.array([of_hills(POINTS, scales) for scales in SCALES]),
         "trial_force_by_noise": np.array(
-            [[by_asperities(square(each), separation, find, _PAIRS).force for each in shaken]
-             for find in ASPERITIES.values()]
+            [
+                [by_asperities(square(each), separation, find, _PAIRS).force for each in shaken]
+                for find in ASPERITIES.values()
+            ]
         ),
         "resolution_error": np.array([_stated(case, points) for points in GRIDS]),
     }

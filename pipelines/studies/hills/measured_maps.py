@@ -19,7 +19,7 @@ from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.resolution import hills_error
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.hills.press import QUANTITIES, by_asperities, hills_of
+from studies.hills.press import QUANTITIES, STIFFNESS_EACH, by_asperities, hills_of
 from studies.hills.separations import FRACTIONS
 from studies.study import named
 
@@ -94,11 +94,13 @@ def _by_free_elements(surface: HeightMap, separation: Floats) -> tuple[Floats, F
     """Return the quantities [quantity, separation], and the share of the force next to the border."""
     elements, top = FreeMap(surface.height, surface.dx), float(surface.height.max())
     width = math.ceil(wavelength(surface) / surface.dx)
-    numbers, border = np.empty((len(QUANTITIES), separation.size)), np.empty(separation.size)
+    numbers, border = np.full((len(QUANTITIES), separation.size), np.nan), np.empty(separation.size)
     for i, h in enumerate(separation.tolist()):
         force = elements.press(h)
         inside = float(elements.forces[width:-width, width:-width].sum())
-        numbers[:, i] = force, _contact_fraction(elements), elements.stiffness(h, _DIFFERENCE * (top - h))
+        numbers[:2, i] = force, _contact_fraction(elements)
+        if i % STIFFNESS_EACH == 0:
+            numbers[2, i] = elements.stiffness(h, _DIFFERENCE * (top - h))
         border[i] = 1.0 - inside / force
     return numbers, border
 
