@@ -28,10 +28,11 @@ _LIMITS = (-50.0, 50.0)
 def draw(result: xr.Dataset) -> "Figure":
     """Draw the errors of the force over the contact fraction, and over the run time."""
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
     from matplotlib.lines import Line2D
 
     parts = groups(result)
-    figure = Figure(figsize=(4.6 * (len(parts) + 1), 5.0), layout="constrained")
+    figure = Figure(figsize=(4.6 * (len(parts) + 1), 5.0), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.06))
     panels = figure.subplots(1, len(parts) + 1)
     for panel, (name, own) in zip(panels, parts.items(), strict=False):
         _draw_errors(panel, own)
@@ -72,8 +73,9 @@ def _draw_errors(panel: "Axes", own: xr.Dataset) -> None:
 def draw_convergence(result: xr.Dataset) -> "Figure":
     """Draw the force of hills over points a wave and contact radii, and what noise moves it by."""
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    figure = Figure(figsize=(13.8, 4.6), layout="constrained")
+    figure = Figure(figsize=(13.8, 4.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.06))
     of_points, of_scales, of_noise = figure.subplots(1, 3)
     points, hills = by_points(result), _COLOURS["hills"]
     for values, style, label in (
@@ -87,8 +89,7 @@ def draw_convergence(result: xr.Dataset) -> "Figure":
     of_points.set(ylabel="force of hills [%]", ylim=(0.02, 300.0))
     scales = by_scales(result)
     of_scales.semilogx(scales["scales"], 100.0 * scales, "o-", color=hills, label="error, r.m.s.")
-    of_scales.axvline(SCALES, color="0.6", lw=0.8, zorder=0, label=f"{SCALES}, unless told")
-    _finish(of_scales, scales["scales"].to_numpy(), "contact radii of a hill")
+    _finish(of_scales, scales["scales"].to_numpy(), f"contact radii of a hill ({SCALES} unless told)")
     of_scales.set(ylabel="force of hills [%]", ylim=(0.0, 1.6 * 100.0 * float(scales.max())))
     noise = by_noise(result)
     for name in noise["asperities"].to_numpy():

@@ -48,8 +48,8 @@ def _described(name: str, own: xr.Dataset) -> str:
         ""
         if error <= MAX_HILLS_ERROR
         else (
-            "; that is too few, so that elements and hills on these points agree about a surface that neither resolves: "
-            f"forces are too low by about {percent(error, 0)} (`resolution_error`)"
+            "; that is too few: elements and hills on these points are held to each other, and neither to the surface, "
+            f"whose forces are higher by about {percent(error, 0)} (`resolution_error`)"
         )
     )
     return (
