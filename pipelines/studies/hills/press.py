@@ -23,7 +23,7 @@ _DIFFERENCE = 1e-4  # of a separation, each way, over itself
 
 
 class Pressed(NamedTuple):
-    """What a map carries along a path, over E*, and the run time of finding asperities, force and area."""
+    """Force, area and stiffness of a map along a path, over E*, and the run time of the first two."""
 
     force: Floats
     """[m2]"""
