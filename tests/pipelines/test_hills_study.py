@@ -100,6 +100,13 @@ def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
         assert (Path(studied.folder) / f"{name}.png").stat().st_size > 5000
 
 
+def test_the_elements_that_all_is_held_against_have_converged(studied: CarriedOut) -> None:
+    elements = studied.result["trial_elements"]
+    errors = elements.isel(grid=0) / elements.isel(grid=-1) - 1.0
+    for quantity, most in (("force", 0.01), ("stiffness", 0.05), ("contact_fraction", 0.1)):
+        assert 0.0 < rms(errors.sel(quantity=quantity)) < most, quantity
+
+
 def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
     assert FOLDER in studied.text
     assert "surface" not in studied.result.dims

@@ -11,7 +11,7 @@ from roughmdr.ensemble.maps.resolution import hills_error
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
 from studies.hills.maps import MapCase
-from studies.hills.press import by_asperities, by_elements, hills_of, square
+from studies.hills.press import QUANTITIES, by_asperities, by_elements, hills_of, square
 from studies.hills.separations import POINTS, separations
 from studies.study import named
 
@@ -37,7 +37,6 @@ def measure_convergence(quick: bool) -> xr.Dataset:
     measured = [_measure(case, finest_elements) for case in trials]
     over = {
         "trial_force": ((), "force of fine boundary elements"),
-        "trial_force_finest": ((), "force of the finest boundary elements"),
         "trial_force_finest_grid": ((), "force of the hills of the finest grid"),
         "trial_force_by_points": (("points",), "force of hills"),
         "trial_force_by_scales": (("scales",), "force of hills"),
@@ -49,18 +48,24 @@ def measure_convergence(quick: bool) -> xr.Dataset:
                 name: (("trial", *dims, "fraction"), [each[name] for each in measured], named(f"{words} over E*", "m2"))
                 for name, (dims, words) in over.items()
             },
+            "trial_elements": (
+                ("trial", "grid", "quantity", "fraction"),
+                [each["trial_elements"] for each in measured],
+                {"long_name": "force [m2], contact fraction and stiffness [m] of boundary elements, over E*"},
+            ),
             "resolution_error": (
                 ("trial", "points"),
                 [each["resolution_error"] for each in measured],
                 named("share of the force that the hills of a grid say they lack"),
             ),
-            "finest_elements": ((), finest_elements, named("points a shortest wave of the finest boundary elements")),
         },
         {
             "points": ("points", list(GRIDS), named("points a shortest wave")),
             "scales": ("scales", list(SCALES), named("contact radii of a hill")),
             "noise": ("noise", [0.0, *NOISE], named("r.m.s. of white noise over that of the heights")),
             "asperities": list(ASPERITIES),
+            "grid": ("grid", [POINTS, finest_elements], named("points a shortest wave of boundary elements")),
+            "quantity": list(QUANTITIES),
             "trial_hurst": ("trial", [case.hurst for case in trials]),
             "trial_bandwidth": ("trial", [case.bandwidth for case in trials]),
         },
@@ -70,17 +75,15 @@ def measure_convergence(quick: bool) -> xr.Dataset:
 def _measure(case: MapCase, finest_elements: int) -> dict[str, Floats]:
     """Return the forces of one map, by the names of variables."""
     separation, height = separations(case), case.height(POINTS)
+    elements = np.array([by_elements(case.height(points), separation).numbers for points in (POINTS, finest_elements)])
     shaken = [height, *(height + noise * height.std() * _white(case, height.shape) for noise in NOISE)]
-
-    def of_elements(points: int) -> Floats:
-        return by_elements(case.height(points), separation, stiffness=False).force
 
     def of_hills(points: int, scales: int = USUAL_SCALES) -> Floats:
         return by_asperities(square(case.height(points)), separation, partial(hills_of, scales=scales), _PAIRS).force
 
     return {
-        "trial_force": of_elements(POINTS),
-        "trial_force_finest": of_elements(finest_elements),
+        "trial_force": elements[0, 0],
+        "trial_elements": elements,
         "trial_force_finest_grid": of_hills(FINEST),
         "trial_force_by_points": np.array([of_hills(points) for points in GRIDS]),
         "trial_force_by_scales": np.array([of_hills(POINTS, scales) for scales in SCALES]),

@@ -4,7 +4,9 @@ import numpy as np
 import xarray as xr
 
 from roughmdr.numerics.arguments import Floats
+from studies.hills.press import QUANTITIES
 
+WORDS = dict(zip(QUANTITIES, ("force", "contact area", "stiffness"), strict=True))
 RANGES = ((0.003, 0.01), (0.01, 0.05), (0.05, 0.2))
 """Of the contact fraction, over which errors are taken together."""
 

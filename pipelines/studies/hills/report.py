@@ -3,15 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from studies.hills.errors import RANGES, errors_of, groups, percent, rms, within
+from studies.hills.errors import RANGES, WORDS, errors_of, groups, percent, rms, within
 from studies.hills.measure import METHODS
 from studies.hills.press import QUANTITIES
 from studies.hills.report_convergence import report_convergence, report_reference
 from studies.hills.report_files import report_files
 from studies.hills.separations import POINTS
 from studies.study import table
-
-_WORDS = dict(zip(QUANTITIES, ("force", "contact area", "stiffness"), strict=True))
 
 
 def report(result: xr.Dataset) -> str:
@@ -93,7 +91,7 @@ def _best(name: str, own: xr.Dataset) -> str:
     quantities = "; ".join(
         f"{words} by {best(errors_of(own, quantity), methods)}, and of methods without a grid by "
         f"{best(errors_of(own, quantity), gridless)}"
-        for quantity, words in _WORDS.items()
+        for quantity, words in WORDS.items()
     )
     ranges = ", ".join(
         f"at {_in_words(share)} contact {best(within(errors_of(own), share), gridless)}" for share in RANGES
