@@ -1,10 +1,17 @@
 """Summits and hills of maps against boundary elements: python pipelines/hills.py."""
 
+from studies.hills.draw import draw, draw_convergence
 from studies.hills.measure import measure
-from studies.hills.report import draw, report
+from studies.hills.report import report
 from studies.study import Study
 
-STUDY = Study("hills", "Summits and hills of maps against boundary elements", measure, draw, report)
+STUDY = Study(
+    "hills",
+    "Summits and hills of maps against boundary elements",
+    measure,
+    {"hills": draw, "hills_convergence": draw_convergence},
+    report,
+)
 
 if __name__ == "__main__":
     STUDY.command()

@@ -7,15 +7,25 @@ import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
 from hills import STUDY
+from oracles.free_elements import FreeMap
+from studies.hills.convergence import FINEST, SCALES
+from studies.hills.errors import errors_of, errors_on_files, groups, rms, within
 from studies.hills.maps import MapCase
-from studies.hills.measure import METHODS
-from studies.hills.report import errors_of, groups, rms
+from studies.hills.measure import METHODS, PERSSON
+from studies.hills.measured_maps import FILES, FOLDER, FREE_METHODS, measure_files
+from studies.hills.press import QUANTITIES, by_elements, by_persson, square
+from studies.hills.report_convergence import by_noise, by_points, by_scales
+from studies.hills.report_files import report_files
+
+SHARED = Path(__file__).parents[3] / "shared" / "surfaces"
 
 
 @pytest.fixture(scope="module")
 def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("hills")) as made:
-        yield made
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv(FOLDER, raising=False)
+        with carried_out(STUDY, tmp_path_factory.mktemp("hills")) as made:
+            yield made
 
 
 def test_a_map_is_the_same_on_every_grid() -> None:
@@ -25,11 +35,106 @@ def test_a_map_is_the_same_on_every_grid() -> None:
 
 def test_hills_are_better_than_summits(studied: CarriedOut) -> None:
     for own in groups(studied.result).values():
-        errors = errors_of(own)
-        assert rms(errors.sel(solver="hills").to_numpy()) < 0.7 * rms(errors.sel(solver="summits in pairs").to_numpy())
+        for quantity in ("force", "stiffness"):
+            errors = errors_of(own, quantity)
+            hills, summits = (rms(errors.sel(solver=name)) for name in ("hills", "summits in pairs"))
+            assert hills < 0.7 * summits
+
+
+def test_every_method_has_errors_of_every_quantity(studied: CarriedOut) -> None:
+    for name, own in groups(studied.result).items():
+        for quantity in QUANTITIES:
+            found = {method: rms(errors_of(own, quantity).sel(solver=method)) for method in METHODS}
+            known = {method for method, error in found.items() if np.isfinite(error)}
+            assert known == set(METHODS) - (set(PERSSON) if name == "4:1" else set())
+            assert all(found[method] > 0.0 for method in known)
+
+
+def test_stiffness_is_minus_the_slope_of_the_force() -> None:
+    height = MapCase(0.8, 8, 11).height(4)
+    h = 1.2 * float(height.std())
+    nearby = h * (1.0 + np.array([0.05, 0.0, -0.05]))
+    for pressed in (by_elements(height, nearby), by_persson(square(height), nearby, 0.45)):
+        slope = (pressed.force[2] - pressed.force[0]) / (0.1 * h)
+        assert pressed.stiffness[0] < 1.02 * slope
+        assert pressed.stiffness[0] == pytest.approx(slope, rel=0.3)
+
+
+def test_theory_is_better_the_more_is_in_contact(studied: CarriedOut) -> None:
+    errors = errors_of(groups(studied.result)["isotropic"])
+    for name in PERSSON:
+        own = errors.sel(solver=name)
+        assert rms(within(own, (0.05, 0.2))) < 0.3 * rms(within(own, (0.003, 0.01)))
+    assert rms(within(errors.sel(solver=next(iter(PERSSON))), (0.05, 0.2))) < 0.1
+
+
+def test_the_error_falls_with_the_points_of_the_map(studied: CarriedOut) -> None:
+    found = by_points(studied.result)
+    for name in ("error", "lacking", "stated"):
+        values = found[name].to_numpy()
+        assert (np.diff(values[:4]) < 0.0).all(), name
+    lacking, stated = (found[name].sel(points=[2, 3, 4]).to_numpy() for name in ("lacking", "stated"))
+    np.testing.assert_allclose(stated, lacking, rtol=1.0)
+    assert abs(float(found["lacking"].sel(points=12))) < 0.002
+    assert f"against {FINEST} points" in studied.text
+
+
+def test_more_contact_radii_than_the_default_change_little(studied: CarriedOut) -> None:
+    force, of_scales = studied.result["trial_force_by_scales"], by_scales(studied.result)
+    assert list(of_scales["scales"].to_numpy()) == list(SCALES)
+    change = {n: rms(force.sel(scales=n) / force.sel(scales=40) - 1.0) for n in (5, 10, 20)}
+    assert change[5] > change[10] > change[20]
+    assert change[20] < 0.01
+
+
+def test_noise_moves_hills_less_than_summits(studied: CarriedOut) -> None:
+    moved = by_noise(studied.result)
+    assert (moved.sel(asperities="hills") < 0.8 * moved.sel(asperities="summits in pairs")).all()
+    assert (moved.diff("noise") > 0.0).all()
 
 
 def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
     for method in METHODS:
         assert f"| {method} |" in studied.text
-    assert (Path(studied.folder) / "hills.png").stat().st_size > 5000
+    for name in ("hills", "hills_convergence"):
+        assert (Path(studied.folder) / f"{name}.png").stat().st_size > 5000
+
+
+def test_the_elements_that_all_is_held_against_have_converged(studied: CarriedOut) -> None:
+    elements = studied.result["trial_elements"]
+    errors = elements.isel(grid=0) / elements.isel(grid=-1) - 1.0
+    for quantity, most in (("force", 0.01), ("stiffness", 0.05), ("contact_fraction", 0.1)):
+        assert 0.0 < rms(errors.sel(quantity=quantity)) < most, quantity
+
+
+def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
+    assert FOLDER in studied.text
+    assert "surface" not in studied.result.dims
+
+
+def test_a_sphere_alone_on_a_half_space() -> None:
+    """Hertz: F = 4/3 sqrt(R) d^1.5 and -dF/dh = 2 sqrt(R d), over E*."""
+    radius, depth, spacing = 4.0, 0.02, 0.01
+    x = spacing * (np.arange(80) - 39.5)
+    elements = FreeMap(-(x[:, None] ** 2 + x**2) / (2.0 * radius), spacing)
+    top = elements.height.max() + 2.0 * (0.5 * spacing) ** 2 / (2.0 * radius)
+    assert elements.press(top - depth) == pytest.approx(4.0 / 3.0 * np.sqrt(radius) * depth**1.5, rel=5e-3)
+    kept = elements.forces.copy()
+    assert elements.stiffness(top - depth, 0.05 * depth) == pytest.approx(2.0 * np.sqrt(radius * depth), rel=2e-2)
+    np.testing.assert_array_equal(elements.forces, kept)
+    assert elements.press(top + depth) == 0.0
+
+
+@pytest.mark.skipif(not (SHARED / FILES[0]).exists(), reason="the measured surfaces are not here")
+def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / FILES[0]).write_bytes((SHARED / FILES[0]).read_bytes())
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    found = measure_files(quick=True)
+    assert list(found["surface"].to_numpy()) == [FILES[0]]
+    errors = errors_on_files(found)
+    assert rms(errors.sel(surface_solver="hills")) < 0.7 * rms(errors.sel(surface_solver="summits in pairs"))
+    border = found["border_share"].to_numpy()
+    assert ((border > 0.0) & (border < 1.0)).all()
+    text = report_files(found)
+    assert all(f"| {FILES[0]} | {method} |" in text for method in FREE_METHODS)
+    assert "of the border lies" in text

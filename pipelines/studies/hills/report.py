@@ -1,93 +1,99 @@
-"""The study of hills: its table and its picture."""
-
-from typing import TYPE_CHECKING
+"""The report of the study of hills."""
 
 import numpy as np
 import xarray as xr
 
-from roughmdr.numerics.arguments import Floats
-from studies.hills.measure import METHODS, POINTS
+from studies.hills.errors import RANGES, WORDS, errors_of, groups, percent, rms, within
+from studies.hills.measure import METHODS
+from studies.hills.press import QUANTITIES
+from studies.hills.report_convergence import report_convergence, report_reference
+from studies.hills.report_files import report_files
+from studies.hills.separations import POINTS
 from studies.study import table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_COLOURS = dict(zip(METHODS, ("0.6", "#1b6ca8", "#c8553d", "#c2a5cf", "#9970ab", "#762a83"), strict=True))
-
-
-def errors_of(result: xr.Dataset, quantity: str = "force") -> xr.DataArray:
-    """Return relative errors over case, solver and fraction."""
-    true = result[quantity].sel(solver="fine elements", drop=True)
-    return result[quantity].drop_sel(solver="fine elements") / true - 1.0
-
-
-def rms(values: Floats) -> float:
-    """Return the root mean square of what is known."""
-    return float(np.sqrt(np.nanmean(np.square(values)))) if np.isfinite(values).any() else np.nan
-
-
-def groups(result: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return isotropic and anisotropic maps."""
-    ratio = result["anisotropy"].to_numpy()
-    found = {"isotropic": ratio == 1.0, "4:1": ratio > 1.0}
-    return {name: result.isel(case=np.flatnonzero(member)) for name, member in found.items() if member.any()}
 
 
 def report(result: xr.Dataset) -> str:
-    """Return errors and run times of each method."""
+    """Return errors and run times of each method, which of them is best where, and what the errors hang on."""
+    counts = ", ".join(f"{own.sizes['case']} {name}" for name, own in groups(result).items())
+    return "\n\n".join(
+        [
+            f"{counts} maps, {result.sizes['fraction']} separations from 0.3 to 20 % contact each, against boundary "
+            f"elements with {POINTS} points a shortest wave. The stiffness -dF/dh is held against theirs at "
+            f"{_stiffnesses(result)} of the separations, and is no part of the run times. {report_reference(result)}",
+            _table(result),
+            "The force by contact fraction, r.m.s.:",
+            _table_of_ranges(result),
+            *(_best(name, own) for name, own in groups(result).items()),
+            report_convergence(result),
+            report_files(result),
+        ]
+    )
+
+
+def _stiffnesses(result: xr.Dataset) -> int:
+    return int(result["stiffness"].sel(solver="fine elements").notnull().any("case").sum())
+
+
+def _table(result: xr.Dataset) -> str:
     rows = []
     for name, own in groups(result).items():
-        force, area = errors_of(own), errors_of(own, "contact_fraction")
-        for method in METHODS:
-            of_force, of_area = force.sel(solver=method).to_numpy(), area.sel(solver=method).to_numpy()
+        errors = {quantity: errors_of(own, quantity) for quantity in QUANTITIES}
+        for method in _methods_of(own):
+            force = errors["force"].sel(solver=method).to_numpy()
             seconds = own["seconds"].sel(solver=method).to_numpy()
             of_true = np.median(seconds / own["seconds"].sel(solver="fine elements").to_numpy())
             rows.append(
                 [
                     name,
                     method,
-                    f"{100 * rms(of_force):.1f} %",
-                    f"{100 * np.nanmean(of_force):+.1f} %",
-                    f"{100 * np.nanquantile(np.abs(of_force), 0.9):.1f} %",
-                    f"{100 * rms(of_area):.0f} %",
-                    f"{100 * np.isnan(of_force).mean():.0f} %",
+                    percent(rms(force)),
+                    f"{100 * np.nanmean(force):+.1f} %",
+                    percent(float(np.nanquantile(np.abs(force), 0.9))),
+                    percent(rms(errors["contact_fraction"].sel(solver=method)), 0),
+                    percent(rms(errors["stiffness"].sel(solver=method))),
+                    percent(float(np.isnan(force).mean()), 0),
                     f"{1e3 * np.median(seconds):.0f} ms",
                     f"{of_true:.2f}",
                 ]
             )
-    head = ["maps", "method", "force, rms", "mean", "90 % within", "area, rms", "no answer", "a path", "of fine"]
-    counts = ", ".join(f"{own.sizes['case']} {name}" for name, own in groups(result).items())
-    return (
-        f"{counts} maps, {result.sizes['fraction']} separations from 0.3 to 20 % contact each, against boundary "
-        f"elements with {POINTS} points a shortest wave.\n\n{table(head, rows)}"
+    head = ["maps", "method", "force, rms", "mean", "90 % within", "area, rms", "stiffness, rms", "no answer", "a path"]
+    return table([*head, "of fine"], rows)
+
+
+def _table_of_ranges(result: xr.Dataset) -> str:
+    rows = [
+        [name, method, *(percent(rms(within(errors_of(own).sel(solver=method), each))) for each in RANGES)]
+        for name, own in groups(result).items()
+        for method in _methods_of(own)
+    ]
+    return table(["maps", "method", *map(_in_words, RANGES)], rows)
+
+
+def _in_words(share: tuple[float, float]) -> str:
+    return f"{100 * share[0]:g} to {100 * share[1]:g} %"
+
+
+def _methods_of(own: xr.Dataset) -> list[str]:
+    """Return the methods that there are for maps of a kind."""
+    return [method for method in METHODS if np.isfinite(own["force"].sel(solver=method)).any()]
+
+
+def _best(name: str, own: xr.Dataset) -> str:
+    """Return in words which method is best for maps of a kind, of all and of those without a grid."""
+    methods = _methods_of(own)
+    gridless = [method for method in methods if not method.startswith("elements")]
+
+    def best(errors: xr.DataArray, among: list[str]) -> str:
+        found = {method: rms(errors.sel(solver=method)) for method in among}
+        least = min(found, key=found.__getitem__)
+        return f"{least} ({percent(found[least])})"
+
+    quantities = "; ".join(
+        f"{words} by {best(errors_of(own, quantity), methods)}, and of methods without a grid by "
+        f"{best(errors_of(own, quantity), gridless)}"
+        for quantity, words in WORDS.items()
     )
-
-
-def draw(result: xr.Dataset) -> "Figure":
-    """Draw the errors of the force over the contact fraction, and over the run time."""
-    from matplotlib.figure import Figure
-
-    parts = groups(result)
-    figure = Figure(figsize=(5.0 * (len(parts) + 1), 4.6), layout="constrained")
-    panels = figure.subplots(1, len(parts) + 1)
-    for panel, (name, own) in zip(panels, parts.items(), strict=False):
-        errors, fraction = errors_of(own), 100.0 * own["fraction"].to_numpy()
-        for method in METHODS[:3]:
-            each = 100.0 * errors.sel(solver=method).to_numpy()
-            low, middle, high = np.nanquantile(each, [0.1, 0.5, 0.9], axis=0)
-            panel.fill_between(fraction, low, high, color=_COLOURS[method], alpha=0.2, lw=0.0)
-            panel.semilogx(fraction, middle, color=_COLOURS[method], lw=2.0, label=method)
-        panel.axhline(0.0, color="k", lw=0.8)
-        panel.set(xlabel="contact fraction [%]", ylabel="error of the force [%]", title=f"{name}: median, 10 to 90 %")
-        panel.set_ylim(-45.0, 25.0)
-        panel.legend(fontsize=8)
-    own, panel = parts["isotropic"], panels[-1]
-    for method in METHODS:
-        seconds = own["seconds"].sel(solver=method).to_numpy()
-        by_case = [100.0 * rms(case) for case in errors_of(own).sel(solver=method).to_numpy()]
-        panel.loglog(1e3 * seconds, by_case, "o", color=_COLOURS[method], label=method, ms=5)
-    panel.set(
-        xlabel="run time of nine separations [ms]", ylabel="r.m.s. error of the force [%]", title="isotropic maps"
+    ranges = ", ".join(
+        f"at {_in_words(share)} contact {best(within(errors_of(own), share), gridless)}" for share in RANGES
     )
-    panel.legend(fontsize=8)
-    return figure
+    return f"Best on {name} maps, r.m.s.: {quantities}. Of methods without a grid the force is best {ranges}."

@@ -23,7 +23,7 @@ _WAVELENGTH = 6.6
 """Of the ratio of r.m.s. slope to r.m.s. Laplacian, which is wavelength/(2 pi) where all waves are equally long: 5 %
 more than 2 pi, as the sizes below were tuned with it (``pipelines/hills.py``)."""
 SCALES = 20
-"""Contact radii of a hill: 1.18 from one to the next."""
+"""Contact radii of a hill, unless told: 1.18 from one to the next."""
 SMALLEST, LARGEST = 0.04, 1.0
 """The first and the last of them, in wavelengths."""
 MIDDLE = 0.14
@@ -53,11 +53,12 @@ def wavelength(surface: HeightMap) -> float:
     return _WAVELENGTH * slope / math.sqrt(mean_square_laplacian(surface))
 
 
-def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
+def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> Ensemble:
     """Return the hills of a map on its summits: asperities with an MDR table each, of the same attributes.
 
-    Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory. SceneError
-    where no summit is a hill: where none falls from its top, as next to rounding.
+    Each contact of a hill is the ellipse of that stiffness which carries most, on the hill's own territory; ``scales``,
+    at least 2, is the number of their radii. SceneError where no summit is a hill: where none falls from its top, as
+    next to rounding.
 
     Attributes beside those of the summits: ``wavelength`` [m]; ``points_per_wave`` [1], along the coarser axis;
     ``resolution_error`` [1], of the force; ``area_share`` [1], the mean area of contacts over that of circles as stiff;
@@ -65,11 +66,11 @@ def find_hills(surface: HeightMap, summits: Ensemble) -> Ensemble:
     """
     length = wavelength(surface)
     spline = Spline.of(surface, length)
-    radius = np.geomspace(SMALLEST, LARGEST, SCALES)
+    radius = np.geomspace(SMALLEST, LARGEST, scales)
     points = points_of(radius)
     rows, columns = summits.positions["x"] / surface.dx - 0.5, summits.positions["y"] / surface.dy - 0.5
     count = summits.height.size
-    height, g, moved = np.empty(count), np.empty((count, SCALES)), np.empty((count, 2))
+    height, g, moved = np.empty(count), np.empty((count, scales)), np.empty((count, 2))
     kept, share = np.empty(count, dtype=np.bool_), np.empty(count)
     _measure(spline, rows, columns, radius, points, Hills(height, g, moved, share, kept))
     nx, ny = surface.height.shape

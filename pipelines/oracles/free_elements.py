@@ -1,0 +1,62 @@
+"""A rigid height map alone on an elastic half-space by boundary elements, without adhesion.
+
+ContactMechanics solves it as in ``boundary_elements``, with the Green's function of a half-space that does not repeat.
+Separations count from the undeformed plane. In the reduced problem the side of a point, the deepest overlap and E*
+are 1.
+"""
+
+import math
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+
+_RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
+_RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
+_MAX_ITERATIONS = 2000
+
+
+class FreeMap:
+    """Heights [m] on a grid of square cells of the side ``spacing`` [m], pressed into a half-space of E* = 1."""
+
+    def __init__(self, height: Floats, spacing: float) -> None:
+        from ContactMechanics import FreeFFTElasticHalfSpace
+
+        self.height, self.spacing = height, spacing
+        sides = tuple(float(points) for points in height.shape)
+        self._half_space = FreeFFTElasticHalfSpace(height.shape, 1.0, sides)
+        self.forces = np.zeros_like(height)
+        """[m2], of the cells at the last separation."""
+
+    def press(self, separation: float) -> float:
+        """Return the force [m2] at a separation [m]; NaN where none is found. It starts from the last forces."""
+        from ContactMechanics.Optimization import constrained_conjugate_gradients
+
+        deepest = float(self.height.max()) - separation
+        if deepest <= 0.0:
+            self.forces = np.zeros_like(self.height)
+            return 0.0
+        unit = deepest * self.spacing
+        start = np.pad(-self.forces / unit, [(0, points) for points in self.height.shape])  # as far as it computes
+        found = constrained_conjugate_gradients(
+            self._half_space,
+            self.height / deepest,
+            offset=-separation / deepest,
+            initial_forces=start if start.any() else None,
+            thermotol=_RTOL_FORCE,
+            pentol=_RTOL_OVERLAP,
+            forcetol=_RTOL_OVERLAP / self.height.size,
+            maxiter=_MAX_ITERATIONS,
+        )
+        if not found.success:
+            self.forces = np.zeros_like(self.height)
+            return math.nan
+        self.forces = found.jac * unit
+        return float(self.forces.sum())
+
+    def stiffness(self, separation: float, step: float) -> float:
+        """Return -dF/dh [m] by a central difference of ``step`` [m] each way; the forces stay as they are."""
+        kept = self.forces
+        nearer, farther = self.press(separation - step), self.press(separation + step)
+        self.forces = kept
+        return (nearer - farther) / (2.0 * step)

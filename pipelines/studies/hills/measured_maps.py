@@ -1,0 +1,111 @@
+"""Measured maps, which do not repeat: squares from their middle, held against boundary elements of a free half-space.
+
+The files are no part of the project; the environment variable ``ROUGHMDR_SURFACES`` names a folder that holds them.
+"""
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from oracles.contact_areas import by_perimeter
+from oracles.free_elements import FreeMap
+
+from roughmdr.ensemble.maps.detrend import remove_trend
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.hills.find import wavelength
+from roughmdr.ensemble.maps.read_map import read_map
+from roughmdr.ensemble.maps.resolution import hills_error
+from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.numerics.arguments import Floats
+from studies.hills.press import QUANTITIES, STIFFNESS_EACH, by_asperities, hills_of
+from studies.hills.separations import FRACTIONS
+from studies.study import named
+
+FOLDER = "ROUGHMDR_SURFACES"
+FILES = ("optical.nc", "afm_film.di")
+FREE_METHODS = ("summits", "summits in pairs", "hills")
+_ALONE = {"model": "pairwise", "boundary": "free"}
+_WAVES, _FEW_WAVES = 32, 12  # of the side of a square, at most; the latter in the reduced form
+_SEARCHED = 12  # separations, between which those of the fractions are found
+_DIFFERENCE = 0.01  # step of the separation, each way, over the deepest overlap
+
+
+def files() -> list[Path]:
+    """Return the measured maps that are here."""
+    folder = os.environ.get(FOLDER)
+    return [path for path in (Path(folder) / name for name in FILES) if path.exists()] if folder else []
+
+
+def middle_of(path: Path, waves: int) -> HeightMap:
+    """Return a square from the middle of a map, a quadratic removed from the whole."""
+    surface = read_map(path)
+    remove_trend(surface.height, "quadratic")
+    points = min(*surface.height.shape, round(waves * wavelength(surface) / surface.dx))
+    first, second = ((length - points) // 2 for length in surface.height.shape)
+    return surface._replace(height=surface.height[first : first + points, second : second + points].copy())
+
+
+def measure_files(quick: bool) -> xr.Dataset:
+    """Press the maps that are here; nothing where there are none."""
+    paths = files()
+    if not paths:
+        return xr.Dataset()
+    measured = [_measure(middle_of(path, _FEW_WAVES if quick else _WAVES)) for path in paths]
+    return xr.concat(measured, "surface").assign_coords(surface=[path.name for path in paths])
+
+
+def _measure(surface: HeightMap) -> xr.Dataset:
+    """Press one map by each method."""
+    separation = _separations(surface)
+    true, border = _by_free_elements(surface, separation)
+    found = [
+        by_asperities(surface, separation, find_summits, None),
+        by_asperities(surface, separation, find_summits, _ALONE),
+        by_asperities(surface, separation, hills_of, _ALONE),
+    ]
+    numbers, over = np.array([true, *(each.numbers for each in found)]), ("surface_solver", "fraction")
+    points, length = surface.height.shape[0], wavelength(surface)
+    return xr.Dataset(
+        {
+            **{f"surface_{name}": (over, numbers[:, i]) for i, name in enumerate(QUANTITIES)},
+            "border_share": ("fraction", border, named("share of the force within one wavelength of the border")),
+            "surface_points": ((), points, named("points a side")),
+            "surface_waves": ((), points * surface.dx / length, named("wavelengths a side")),
+            "surface_resolution_error": ((), hills_error(length / surface.dx)),
+        },
+        {"surface_solver": ["free elements", *FREE_METHODS]},
+    )
+
+
+def _separations(surface: HeightMap) -> Floats:
+    """Return separations [m] of the contact fractions."""
+    elements, top = FreeMap(surface.height, surface.dx), float(surface.height.max())
+    tried = top - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(surface.height))
+    fractions = []
+    for h in tried.tolist():
+        elements.press(h)
+        fractions.append(_contact_fraction(elements))
+    return np.asarray(np.interp(np.log(FRACTIONS), np.log(fractions), tried))
+
+
+def _by_free_elements(surface: HeightMap, separation: Floats) -> tuple[Floats, Floats]:
+    """Return the quantities [quantity, separation], and the share of the force next to the border."""
+    elements, top = FreeMap(surface.height, surface.dx), float(surface.height.max())
+    width = math.ceil(wavelength(surface) / surface.dx)
+    numbers, border = np.full((len(QUANTITIES), separation.size), np.nan), np.empty(separation.size)
+    for i, h in enumerate(separation.tolist()):
+        force = elements.press(h)
+        inside = float(elements.forces[width:-width, width:-width].sum())
+        numbers[:2, i] = force, _contact_fraction(elements)
+        if i % STIFFNESS_EACH == 0:
+            numbers[2, i] = elements.stiffness(h, _DIFFERENCE * (top - h))
+        border[i] = 1.0 - inside / force
+    return numbers, border
+
+
+def _contact_fraction(elements: FreeMap) -> float:
+    """Return that at the last separation; opposite sides of the map do not meet."""
+    padded = np.pad(elements.forces, 1)
+    return by_perimeter(padded) * padded.size / elements.forces.size
