@@ -26,7 +26,7 @@ _MAX_NOISE = 0.99  # share of the squared curvature above which no map tells how
 
 MAX_HILLS_ERROR = 0.05
 """Error of the force of hills by the resolution of their map above which there is a warning."""
-_HILLS = 6.4
+_HILLS = 10.0
 
 _MOST = 1.0 / math.sqrt(1.0 - _MAX_NOISE) - 1.0
 
@@ -79,8 +79,8 @@ def radius_uncertainty(attrs: Mapping[str, float | int | str]) -> float:
 def hills_error(points_per_wave: float) -> float:
     """Return by how much the force of hills is too low for want of points, relative to itself.
 
-    Measured on band-limited maps at 2 to 12 points a shortest wave: 10 % at 4.0 points a wavelength (``hills.find``),
-    6 % at 4.6, 4 % at 5.3, 2 % at 7 and 0.5 % at 11, the force between 0.3 and 20 % contact.
+    Measured on band-limited maps at 2 to 12 points a shortest wave, the force between 0.3 and 20 % contact, in the mean
+    (``pipelines/hills.py``): 10 to 13 % at 4.2 points a wavelength (``hills.find``), 4 to 5 % at 5.7, 2 % at 7.
     """
     return min(_HILLS / points_per_wave**3, 1.0)
 
