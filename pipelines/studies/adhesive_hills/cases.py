@@ -14,7 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.hills.maps import SIDE, MapCase
 from studies.hills.measure import POINTS, hills_of
 
-_SEARCHED = 100  # separations, among which that of the preload is found
+_SEARCHED = 0.05  # of the stretch: between separations, among which that of the preload is found
 
 
 class Law(NamedTuple):
@@ -62,10 +62,9 @@ class Adhesive:
     def path(self) -> Floats:
         """Return separations [m] from clear to the preload and back."""
         height = self.hills["height"].to_numpy()
-        clear = float(height.max()) + self.stretch
-        tried = np.linspace(clear, float(height.max()) - 4.0 * float(height.std()), _SEARCHED)
-        fraction = self.law(self.hills, tried).contact_fraction
-        deepest = tried[np.flatnonzero(fraction >= self.case.preload)[0]]
+        clear = deepest = float(height.max()) + self.stretch
+        while self.law(self.hills, np.array([clear, deepest])).contact_fraction[1] < self.case.preload:
+            deepest -= _SEARCHED * self.stretch
         loading = np.linspace(clear, deepest, self.case.steps)
         return np.concatenate([loading, loading[-2::-1]])
 

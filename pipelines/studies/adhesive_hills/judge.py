@@ -22,7 +22,7 @@ class Judged(NamedTuple):
     pull_off: float
     """The largest tension of unloading over that of boundary elements."""
     loss: float
-    """The energy lost over the cycle over that of boundary elements."""
+    """The energy lost over the cycle, over the pull-off force of boundary elements times the stretch of a contact."""
 
 
 def judge(case: xr.Dataset, source: str) -> Judged:
@@ -38,7 +38,7 @@ def judge(case: xr.Dataset, source: str) -> Judged:
         unloading=_rms(off[turn:][compared[turn:]]),
         area=_rms((area - true_area)[compared] / true_area.max()),
         pull_off=float(found[turn:].min() / true[turn:].min()),
-        loss=float(np.trapezoid(found, separation) / np.trapezoid(true, separation)),
+        loss=float(np.trapezoid(found, separation) / (true[turn:].min() * case["stretch"])),
     )
 
 

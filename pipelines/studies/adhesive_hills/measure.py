@@ -81,6 +81,7 @@ def _columns(cases: list[Case], adhesive: list[Adhesive]) -> dict[str, tuple[str
         "bandwidth": ([float(case.surface.bandwidth) for case in cases], "side over the shortest wave"),
         "anisotropy": ([case.surface.anisotropy for case in cases], "length of the waves along over across"),
         "jump_on": ([case.jump_on for case in cases], "jump-on radius over the wavelength"),
+        "stretch": ([one.stretch for one in adhesive], "square of the jump-on radius over the radius [m]"),
         "cells": (
             [one.cohesive_zone * case.points / SIDE for case, one in zip(cases, adhesive, strict=True)],
             "E* w/strength^2 over the spacing of the grid",

@@ -28,16 +28,17 @@ def report(result: xr.Dataset) -> str:
             f"{float(case['cells']):.1f}",
             f"{100.0 * float(case['lost_from']):.0f} %" if np.isfinite(case["lost_from"]) else "none to 15 %",
         ])  # fmt: skip
-        for source in (*METHODS, *ELEMENTS[1:]):
+        for source in (*METHODS, *ELEMENTS):
             found = judge(case, source)
             errors = [f"{100.0 * value:.0f} %" for value in found[:3]]
             rows.append([name_of(case), source, *errors, f"{found.pull_off:.2f}", f"{found.loss:.2f}"])
     head = ["map, jump-on radius", "source", "loading", "unloading", "area", "pull-off", "loss"]
     ends_head = ["map, jump-on radius", "largest contact", "pull-off over largest force", "zone over grid", "pairs end"]
-    return f"""Errors against adhesive boundary elements, r.m.s. from 0.3 % contact on, of the force over the largest and
-of the area over the largest; pull-off force and energy lost in the cycle over those of boundary elements. Maps by Hurst
-exponent, shortest wave over the side, and the jump-on radius over the wavelength. The Tabor number is 2; of the
-elements with the longer range it is {2.0 / LONGER:.1f}, on the coarse grid, which has 2/3 of the points a side:
+    return f"""Errors against adhesive boundary elements, r.m.s. from 0.3 % contact on, of the force and the area over
+their largest; pull-off force over that of boundary elements; energy lost in the cycle over the pull-off force of
+boundary elements times the stretch of a contact, a0²/R. Maps by Hurst exponent, shortest wave over the side, and
+jump-on radius a0 over the wavelength. The Tabor number is 2; that of elements with the longer range, on the coarse
+grid, which has 2/3 of the points a side, is {2.0 / LONGER:.1f}:
 
 {table(head, rows)}
 
