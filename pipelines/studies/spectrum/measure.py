@@ -14,7 +14,7 @@ HURST = (0.3, 0.5, 0.8)
 SHARES = (2.5, 2.0, 1.5, 1.0)
 """Separations over the r.m.s. height."""
 METHODS = ("nayak", "nayak in pairs", "summits in pairs", "hills in pairs", "boundary elements")
-REALIZATIONS, QUICK = 64, 6
+REALIZATIONS, QUICK = 64, 4
 _SIDE, _LONG, _SHORT = 1e-4, 5e-5, 6e-6
 _SLOPE = 1e-2  # small: nothing depends on it
 _PAIRS = {"model": "pairwise"}

@@ -90,7 +90,7 @@ def _what_would_be_lost(old: Labelled, plan: Plan, reusable: ReusableRows) -> st
         return f"{others} cell{'s' * (others > 1)} more"
     output = plan.scene.output
     names = [name for name in LAW_VARIABLES if name in old.variables or f"{name}_mean" in old.variables]
-    if unasked := [name for name in names if name not in output.variables]:
+    if unasked := [name for name in names if name not in plan.variables]:
         return ", ".join(unasked)
     if "realization" in old.sizes and output.keep == "statistics":
         return "the curves of its realisations"

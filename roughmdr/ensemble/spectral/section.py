@@ -117,7 +117,9 @@ class SpectrumAsperities(Source):
     def limited_to(self, count: int) -> "SpectrumAsperities":
         side = self.patch * math.sqrt(min(1.0, count / self.expected_count))
         patch = max(side, self.long_wave * math.sqrt(self.anisotropy))
-        return self.model_copy(update={"patch": patch}) if patch < self.patch else self
+        if not patch < self.patch:
+            return self
+        return self.model_validate({**self.model_dump(exclude_none=True), "patch": patch})
 
     def height_map(self, seed: int, realization: int) -> HeightMap:
         """Return the map of a realisation."""

@@ -14,7 +14,7 @@ from roughmdr.spectrum import Moments, SelfAffine
 class Waves(NamedTuple):
     """The waves of a spectrum on a square patch: one of each two opposite wave vectors 2 pi (i, j)/patch.
 
-    They are in the order of max(i, j), so that a spectrum with shorter waves begins with those of a spectrum without.
+    They are in the order of ``q``, so that a spectrum with shorter waves begins with those of a spectrum without.
     """
 
     patch: float  # [m]
@@ -39,7 +39,7 @@ class Waves(NamedTuple):
         density = spectrum(q)
         there = density > 0.0
         i, j, q, density = i[there], j[there], q[there], density[there]
-        order = np.lexsort((j, i, np.maximum(np.abs(i), j)))
+        order = np.lexsort((j, i, q))
         i, j, q, variance = i[order], j[order], q[order], 2.0 * unit * unit * density[order]
         if rms_slope is None:
             variance *= spectrum.moments.m0 / math.fsum(variance)

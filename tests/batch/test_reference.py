@@ -1,0 +1,202 @@
+"""[reference]: boundary elements beside the law of a scene, in results, statistics, lines and pictures."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from click.testing import CliRunner
+from oracles.boundary_elements import HeightMap
+from scenes import scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.ensemble.spectral.section import SpectrumAsperities
+
+SURFACE = {
+    "source": "spectrum",
+    "patch": "100 um",
+    "hurst": 0.8,
+    "long_wave": "50 um",
+    "short_wave": "10 um",
+    "rms_slope": 0.05,
+}
+CROWD = {
+    "source": "random",
+    "shape": "paraboloid",
+    "count": 40,
+    "patch": "200 um",
+    "radius": "50 um",
+    "height": {"distribution": "normal", "std": "0.3 um"},
+}
+ELEMENTS = {"model": "boundary_elements"}
+
+
+def of_spectrum(**changes: Any) -> dict[str, Any]:
+    table = {
+        "adhesion": None,
+        "asperities": SURFACE,
+        "interaction": {"model": "pairwise"},
+        "reference": ELEMENTS,
+        "path": {"separation": ["3 sigma", "2 sigma", "1.2 sigma"]},
+        "batch": {"realizations": 2},
+    }
+    return scene(**(table | changes))
+
+
+@pytest.fixture(scope="module")
+def result() -> xr.Dataset:
+    return rm.run(of_spectrum())
+
+
+def test_it_is_the_force_of_another_program_on_the_same_map(result: xr.Dataset) -> None:
+    section = SpectrumAsperities.model_validate({**SURFACE, "points": 16.0})
+    modulus = rm.effective_modulus("3 MPa", 0.49)
+    for realization in (0, 1):
+        height_map = section.height_map(7, realization)
+        solver = HeightMap(height_map.height, section.patch, modulus)
+        for step, h in enumerate(result["separation"].to_numpy()):
+            force, stated = (float(result[name][realization, step]) for name in ("reference_force", "reference_error"))
+            largest = float(result["reference_force"][realization].max())
+            assert abs(solver.press(h).force - force) <= stated * max(force, 0.01 * largest) + 1e-3 * force
+
+
+def test_hills_are_near_it(result: xr.Dataset) -> None:
+    loaded = result["reference_force"] > 0.02 * result["reference_force"].max()
+    off = (result["force"] / result["reference_force"] - 1.0).where(loaded)
+    assert float(abs(off).max()) < 0.1
+    assert (result["reference_points"] >= 16**2).all()
+    assert float(result["reference_error"].where(loaded).max()) <= 0.02
+
+
+def test_variables_beside_those_that_are_asked_for() -> None:
+    asked = ["contact_fraction", "pressure"]
+    found = rm.run(of_spectrum(output={"variables": asked, "keep": "statistics"}, reference={**ELEMENTS, "error": 0.1}))
+    curves = rm.run(of_spectrum(output={"variables": [*asked, "force"]}, reference={**ELEMENTS, "error": 0.1}))
+    for name in ("reference_force", "reference_pressure", "reference_contact_fraction", "reference_error"):
+        np.testing.assert_allclose(found[f"{name}_mean"], curves[name].mean("realization"), rtol=1e-12)
+    assert "reference_stiffness" not in curves
+    np.testing.assert_allclose(curves["reference_pressure"], curves["reference_force"] / 1e-8, rtol=1e-12)
+
+
+@pytest.mark.parametrize("boundary", ["periodic", "free"])
+def test_asperities_on_a_plane_are_pressed_as_the_surface_that_they_make(boundary: str) -> None:
+    interaction = {"model": "pairwise", "boundary": boundary}
+    path = {"separation": ["0.6 um", "0.3 um"]}
+    found = rm.run(scene(adhesion=None, asperities=CROWD, interaction=interaction, reference=ELEMENTS, path=path))
+    loaded = found["reference_force"] > 0.05 * found["reference_force"].max()
+    off = (found["force"] / found["reference_force"] - 1.0).where(loaded)
+    assert float(abs(off).max()) < 0.03
+    assert float(abs(off).mean()) < 0.01
+
+
+def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
+    without = rm.run(of_spectrum(reference=None))
+    np.testing.assert_array_equal(result["force"], without["force"])
+    assert "reference_force" not in without
+    assert "boundary elements: the scene has no [reference]" in without.attrs["left_out"]
+
+
+def test_the_same_bits_for_any_workers(result: xr.Dataset) -> None:
+    again = rm.run(of_spectrum(), workers=1)
+    for name in ("reference_force", "reference_contact_area", "reference_stiffness", "reference_error"):
+        np.testing.assert_array_equal(again[name], result[name])
+
+
+def test_a_result_without_its_reference_is_extended(tmp_path: Path) -> None:
+    out = tmp_path / "out.nc"
+    rm.run(of_spectrum(), out)
+    again = rm.run(of_spectrum(batch={"realizations": 3}), out)
+    assert again.sizes["realization"] == 3
+    assert np.isfinite(again["reference_force"]).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"adhesion": {"model": "jkr", "work": 1e-3}}, "reference: does not go with adhesion"),
+        ({"path": {"force": {"stop": "1 uN", "steps": 3}}}, "goes with path.separation, not with path.force"),
+        ({"reference": {"model": "boundary_elements", "error": 0.0}}, "at least 0.001"),
+        ({"reference": {}}, "reference.model"),
+        (
+            {"asperities": CROWD, "interaction": None, "batch": {"estimator": "expected"}},
+            "the reference presses single surfaces",
+        ),
+    ],
+)
+def test_what_has_no_reference_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(rm.SceneError) as refused:
+        rm.run(of_spectrum(**changes))
+    assert message in str(refused.value)
+
+
+def test_a_file_without_positions_or_with_hills_has_no_reference(tmp_path: Path) -> None:
+    hills = rm.generate(SURFACE, seed=1)
+    for changed, message in ((hills, "how their map looks"), (hills.drop_vars(["x", "y"]), "need x and y")):
+        changed.to_netcdf(tmp_path / "asperities.nc")
+        asperities = {"source": "file", "file": str(tmp_path / "asperities.nc")}
+        table = of_spectrum(asperities=asperities, interaction=None, batch=None)
+        with pytest.raises(rm.SceneError, match=message):
+            rm.run(table)
+
+
+def test_below_the_mean_height_there_is_no_reference_and_it_is_said() -> None:
+    table = of_spectrum(path={"separation": ["2 sigma", "-0.5 sigma"]}, interaction=None, batch=None)
+    with pytest.warns(rm.LimitWarning, match="no equilibrium at 1 steps"):
+        found = rm.run(table)
+    assert np.isnan(found["reference_force"][0, 1])
+    assert np.isfinite(found["reference_force"][0, 0])
+
+
+def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
+    file, out, picture = tmp_path / "scene.toml", tmp_path / "out.nc", tmp_path / "out.png"
+    file.write_text(tomli_w.dumps(of_spectrum()))
+
+    def command(*arguments: str) -> str:
+        done = CliRunner().invoke(main, list(arguments), catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+        return done.output
+
+    planned = command("plan", str(file))
+    assert "boundary elements beside each realisation, their grid right to 0.02" in planned
+    ran = command("run", str(file), "-o", str(out), "--quiet") + command("info", str(out))
+    assert "reference    boundary elements on up to" in ran
+    assert "advice       believe boundary elements, which press the map itself; hills in pairs" in ran
+    assert "reference    drawn" in command("plot", str(out), "-o", str(picture), "--with-reference")
+    assert picture.stat().st_size > 10_000
+    command("run", str(file), "-o", str(tmp_path / "two.nc"), "--quiet", "--set", "interaction.model=mean_field")
+    plain = tmp_path / "plain.nc"
+    file.write_text(tomli_w.dumps(of_spectrum(reference=None)))
+    told = command("run", str(file), "-o", str(plain))
+    assert "--set reference.model=boundary_elements" in told
+    assert "reference    not drawn" in command("plot", str(plain), "-o", str(picture), "--with-reference")
+
+
+@pytest.mark.parametrize(
+    ("changes", "advised"),
+    [
+        ({"reference": None}, "believe boundary elements first"),
+        ({"reference": None, "interaction": None}, 'or take asperities.model = "hills" with [interaction]'),
+        (
+            {"reference": None, "adhesion": {"model": "jkr", "work": 1e-6}},
+            "believe hills in pairs as far as they have values",
+        ),
+        ({"asperities": {**SURFACE, "hurst": 0.3, "points": 2.5}}, "too coarse or noisy for all three"),
+    ],
+)
+def test_advice_says_which_model_to_believe(changes: dict[str, Any], advised: str, tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(tomli_w.dumps(of_spectrum(**changes)))
+    done = CliRunner().invoke(main, ["plan", str(file)], catch_exceptions=False)
+    assert advised in done.output
+
+
+def test_the_error_is_relative_to_the_force_that_is_asked_for() -> None:
+    coarse, fine = (rm.run(of_spectrum(reference={**ELEMENTS, "error": each})) for each in (0.2, 0.005))
+    assert float(coarse["reference_points"].max()) < float(fine["reference_points"].max())
+    off = np.abs(coarse["reference_force"] / fine["reference_force"] - 1.0).fillna(0.0)  # out of contact
+    assert (off <= coarse["reference_error"] + fine["reference_error"]).all()
+    assert math.isclose(float(fine["force"][0, 2]), float(coarse["force"][0, 2]), rel_tol=0.0)

@@ -1,0 +1,36 @@
+"""The study of spectra: hills of maps are nearest to boundary elements, and it reports and draws all sources."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from carried_out import CarriedOut, carried_out
+from spectrum import STUDY
+from studies.spectrum.measure import METHODS
+from studies.spectrum.report import means
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
+    with carried_out(STUDY, tmp_path_factory.mktemp("spectrum")) as made:
+        yield made
+
+
+def test_hills_are_nearest(studied: CarriedOut) -> None:
+    off = np.abs(means(studied.result)[0])
+    assert float(off.sel(solver="hills in pairs").max()) < 0.06
+    for other in ("nayak", "summits in pairs"):
+        assert float(off.sel(solver="hills in pairs").mean()) < 0.5 * float(off.sel(solver=other).mean())
+
+
+def test_differences_on_the_same_maps_have_small_errors(studied: CarriedOut) -> None:
+    error = means(studied.result)[1]
+    assert float(error.sel(solver="hills in pairs").max()) < 0.3 * float(error.sel(solver="nayak").min())
+    assert np.isfinite(error.sel(solver=list(METHODS[:-1]))).all()
+
+
+def test_it_reports_each_source_and_draws(studied: CarriedOut) -> None:
+    for method in METHODS[:-1]:
+        assert f"| {method} |" in studied.text
+    assert (Path(studied.folder) / "spectrum.png").stat().st_size > 5000
