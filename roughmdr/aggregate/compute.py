@@ -84,6 +84,7 @@ def compute(
         ensemble.validity_limits(radius),
         np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" else 0.0,
         ensemble.resolution_error,
+        ensemble.border_error,
         ensemble.origin,
         _overlap(ensemble, radius),
     )

@@ -110,6 +110,7 @@ def _law(
         ensemble.validity_limits(found.radius),
         np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
         resolution_error=ensemble.resolution_error,
+        border_error=ensemble.border_error,
         origin=ensemble.origin,
         overlap=found.overlap_share,
         coupling_error=found.error,

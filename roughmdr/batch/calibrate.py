@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import seconds
+from roughmdr.batch.costs import law_seconds, reference_bytes, reference_seconds
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
@@ -52,9 +52,15 @@ class _Time(NamedTuple):
 def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
     """Return the cost of one run of a cell, in about ``budget`` seconds; at least a small part is run.
 
-    An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``.
-    RoughmdrError where the cell cannot be computed.
+    An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``, as is
+    that of a reference. RoughmdrError where the cell cannot be computed.
     """
+    cost = _measure_law(cell, estimator, variables, budget)
+    return cost._replace(seconds=cost.seconds + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
+
+
+def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
+    """Return the cost of the law of one run of a cell."""
     if estimator == "expected" or cell.scene.needs_positions:
         return _in_proportion(cell, estimator, variables, budget)
     count = max(1, math.ceil(cell.scene.asperities.expected_count))
@@ -76,7 +82,7 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     least = run_part(1, 1)
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, *sizes[size + 1]), len(sizes), budget)
     taken = _Time(*np.mean(times, axis=0).tolist())
-    least_known = seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
+    least_known = law_seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
     whole = max(scaled(taken, size, count, cell.steps), least_known)
     return Cost(whole, memory * count / sizes[size][0], *sizes[size])
 
@@ -93,7 +99,7 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
         Cell(cell.scene.model_copy(update={"asperities": section}), _thinned(cell, steps))
         for section, (_, steps) in zip(sections, sizes, strict=True)
     ]
-    foreseen = [seconds(part, estimator) for part in (*parts, cell)]
+    foreseen = [law_seconds(part, estimator) for part in (*parts, cell)]
     if _MARGIN * foreseen[0] > budget:
         return Cost(foreseen[-1], 0.0)
 

@@ -26,11 +26,9 @@ _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 # With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
 _GRID_STEP = 1.2  # of boundary elements, should they be needed
-_REFERENCE_STEP, _REFERENCE_POINT, _ALONE = (
-    5e-3,
-    3e-6,
-    4.0,
-)  # of a reference, all its grids together
+_REFERENCE_STEP, _REFERENCE_POINT = 5e-3, 3e-6  # of a reference: a separation, and a point there on all its grids
+_ALONE, _REFERENCE_BYTES = 4.0, 160  # so many times more points around a surface that stands alone; bytes of a point
+_FIND_HILL = 2e-3  # of a hill, where each realisation has a map of its own
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
 _PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB
@@ -39,7 +37,12 @@ _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in me
 
 
 def seconds(cell: Cell, estimator: str) -> float:
-    """Return about how long one run takes [s]."""
+    """Return about how long one run takes [s], with its reference."""
+    return law_seconds(cell, estimator) + reference_seconds(cell)
+
+
+def law_seconds(cell: Cell, estimator: str) -> float:
+    """Return about how long the law of one run takes [s]."""
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
@@ -51,7 +54,9 @@ def seconds(cell: Cell, estimator: str) -> float:
         tables = _TABLES_DUGDALE_PROFILE if dugdale and not simple else _TABLES
         return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
-    begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0) + _reference_seconds(cell)
+    begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
+    if section.shape_name == "mdr_table" and section.is_random:
+        begin += section.expected_count * _FIND_HILL
     if cell.scene.needs_positions:
         return begin + section.expected_count * _DRAW + paired_seconds(cell)
     return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
@@ -71,14 +76,23 @@ def paired_seconds(cell: Cell) -> float:
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
-def _reference_seconds(cell: Cell) -> float:
+def reference_seconds(cell: Cell) -> float:
     """Return about how long the reference of a realisation takes [s]; 0 where none is asked for."""
-    reference = cell.scene.reference
-    if reference is None:
+    if cell.scene.reference is None:
         return 0.0
-    points = first_points(cell.scene.asperities.expected_count, reference.error) ** 2
-    step = _REFERENCE_STEP + _REFERENCE_POINT * points * (1.0 if cell.scene.repeats else _ALONE)
-    return np.unique(cell.path.separation).size * step
+    return np.unique(cell.path.separation).size * (_REFERENCE_STEP + _REFERENCE_POINT * _reference_points(cell))
+
+
+def reference_bytes(cell: Cell) -> float:
+    """Return the memory [byte] of the reference of a realisation; 0 where none is asked for."""
+    return 0.0 if cell.scene.reference is None else _REFERENCE_BYTES * _reference_points(cell)
+
+
+def _reference_points(cell: Cell) -> float:
+    """Return the points of a grid of the error asked for, with those around a surface that stands alone."""
+    assert cell.scene.reference is not None
+    points = first_points(cell.scene.asperities.expected_count, cell.scene.reference.error) ** 2
+    return points if cell.scene.repeats else _ALONE * points
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

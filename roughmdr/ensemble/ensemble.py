@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _SIDES = ("patch", "patch_x", "patch_y")
 _FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
-_OF_HILLS = ("resolution_error", "area_share", "anisotropy")
+_OF_HILLS = ("resolution_error", "border_error", "area_share", "anisotropy")
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,11 @@ class Ensemble:
         if self.origin == "hills":
             return float(self.attrs.get("resolution_error", 0.0))
         return min(_FORCE_PER_RADIUS * float(self.attrs.get("radius_uncertainty", 0.0)), 1.0)
+
+    @property
+    def border_error(self) -> float:
+        """The relative error of the force by hills that the border of their map cuts [1]."""
+        return float(self.attrs.get("border_error", 0.0))
 
     @property
     def anisotropy(self) -> float:

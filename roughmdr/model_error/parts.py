@@ -24,6 +24,7 @@ PARTS = {
     "profile_end_error": "contacts beyond the end of their profile",
     "adhesion_range_error": "JKR, where adhesion reaches further than it supposes",
     "resolution_error": "a map that does not resolve its summits or hills",
+    "border_error": "hills that the border of a map cuts, which are left out",
 }
 """The parts of the model error, by their names in results."""
 
@@ -36,6 +37,8 @@ class Assumptions(NamedTuple):
     """About the error of JKR's force of all contacts [N]; 0 where it is not used."""
     resolution_error: float = 0.0
     """The relative error of the force that the resolution of a map causes."""
+    border_error: float = 0.0
+    """The relative error of the force by hills that the border of a map cuts."""
     origin: Origin = "asperities"
     """Where the asperities come from."""
     overlap: float = math.nan
@@ -86,6 +89,7 @@ class ModelError(NamedTuple):
             "profile_end_error": limits.end_error,
             "adhesion_range_error": min(assumptions.jkr_error / largest, 1.0) if largest > 0.0 else 0.0,
             "resolution_error": assumptions.resolution_error,
+            "border_error": assumptions.border_error,
         }
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)

@@ -66,7 +66,8 @@ def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
     """Yield what [reference] adds."""
     reference = plan.scene.reference
     if reference is not None:
-        yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g}"
+        yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g};"
+        yield "", "where contacts are few and small it is finer, and takes longer, than was foreseen here"
 
 
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:

@@ -161,7 +161,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
         return done.output
 
     planned = command("plan", str(file))
-    assert "boundary elements beside each realisation, their grid right to 0.02" in planned
+    assert "boundary elements beside each realisation, their grid right to 0.02;" in planned
     ran = command("run", str(file), "-o", str(out), "--quiet") + command("info", str(out))
     assert "reference    boundary elements on up to" in ran
     assert "advice       believe boundary elements, which press the map itself; hills in pairs" in ran

@@ -277,3 +277,16 @@ def test_what_is_said_of_hills(map_file: Path, tmp_path: Path) -> None:
     cut = CliRunner().invoke(main, ["generate", str(tmp_path / "hills.toml"), "--cutoffs", "20 um"])
     assert cut.exit_code == 0, cut.output
     assert "none" in cut.output
+
+
+def test_hills_at_the_border_of_a_map_that_ends_are_an_error() -> None:
+    height = rough(3)
+    inside, alone = hills_of(height), hills_of(height, periodic=False)
+    length = float(alone.attrs["wavelength"])
+    assert inside.attrs["border_error"] == 0.0
+    assert alone.attrs["border_error"] == pytest.approx(4.0 * length / SIDE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        law = rm.load_separation(alone, separation=float(alone.height.max()) * 0.5, **PAIRS)
+    assert float(law.border_error) == alone.attrs["border_error"]
+    assert float(law.model_error) >= float(law.border_error)

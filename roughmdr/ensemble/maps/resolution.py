@@ -85,6 +85,16 @@ def hills_error(points_per_wave: float) -> float:
     return min(_HILLS / points_per_wave**3, 1.0)
 
 
+def border_error(wavelength: float, side_x: float, side_y: float) -> float:
+    """Return by how much the force of the hills of a map that ends is too low for those whose tops lie beyond its
+    border, lengths in one unit: the share of a strip of one wavelength.
+
+    Against boundary elements of a profilometer map, 0.3 to 20 % contact, 8 to 27 % were missing where this is 28 %, and
+    15 to 34 % where it is 24 %, at light contact; of a film 9 % where it is 12 % (``pipelines/hills.py``).
+    """
+    return min(2.0 * wavelength * (side_x + side_y) / (side_x * side_y), 1.0)
+
+
 def hills_verdict(attrs: Mapping[str, float | int | str]) -> str:
     """Return in words how well a map resolves its hills."""
     points, error = float(attrs["points_per_wave"]), float(attrs["resolution_error"])

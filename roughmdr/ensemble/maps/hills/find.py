@@ -12,7 +12,7 @@ from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
 from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
 from roughmdr.ensemble.maps.hills.table import fill_table, points_of
 from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
-from roughmdr.ensemble.maps.resolution import hills_error
+from roughmdr.ensemble.maps.resolution import border_error, hills_error
 from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
@@ -61,8 +61,8 @@ def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> E
     next to rounding.
 
     Attributes beside those of the summits: ``wavelength`` [m]; ``points_per_wave`` [1], along the coarser axis;
-    ``resolution_error`` [1], of the force; ``area_share`` [1], the mean area of contacts over that of circles as stiff;
-    ``anisotropy`` [1], the ratio of the r.m.s. slopes across and along the ridges.
+    ``resolution_error`` and ``border_error`` [1], of the force; ``area_share`` [1], the mean area of contacts over that
+    of circles as stiff; ``anisotropy`` [1], the ratio of the r.m.s. slopes across and along the ridges.
     """
     length = wavelength(surface)
     spline = Spline.of(surface, length)
@@ -108,11 +108,13 @@ def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> N
 def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, float | int | str]:
     """Return what is known of all hills of a map, by the names of attributes."""
     points = length / max(surface.dx, surface.dy)
+    side_x, side_y = (n * spacing for n, spacing in zip(surface.height.shape, (surface.dx, surface.dy), strict=True))
     return {
         "asperity_model": "hills",
         "wavelength": length,
         "points_per_wave": points,
         "resolution_error": hills_error(points),
+        "border_error": 0.0 if surface.periodic else border_error(length, side_x, side_y),
         "area_share": float(np.mean(share)),
         "anisotropy": slope_ratio(surface),
     }
