@@ -36,7 +36,7 @@ def with_reference(
     law: LoadSeparation, scene: Scene, separation: Floats, realization: int, ensemble: Ensemble
 ) -> LoadSeparation:
     """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
-    from roughmdr.elements.refine import largest_error, solve_to_error
+    from roughmdr.elements.refine import errors, solve_to_error
     from roughmdr.elements.surface import surface_of_asperities, surface_of_map
 
     assert scene.reference is not None
@@ -55,7 +55,7 @@ def with_reference(
     columns = (force, area, count, slope, force / patch, area / patch, np.minimum(relative, 1.0))
     values = dict(zip(REFERENCE_VARIABLES, columns, strict=True))
     reference = {name: np.where(solved, values[name], math.nan) for name in reference_variables(law.variables)}
-    remarks = _remarks(largest_error(found), scene.reference.error, found.shape, int(np.sum(~solved)))
+    remarks = _remarks(float(errors(found).max()), scene.reference.error, found.shape, int(np.sum(~solved)))
     return law._replace(
         variables=law.variables | reference,
         reference_points=float(math.prod(found.shape)),
@@ -66,8 +66,10 @@ def with_reference(
 def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> list[str]:
     """Return how far boundary elements fall short."""
     lines = []
-    if error > asked:
-        nx, ny = shape
+    nx, ny = shape
+    if math.isinf(error):
+        lines.append(f"reference: {nx} x {ny} points miss the contacts; none of its forces is right")
+    elif error > asked:
         lines.append(f"reference: {nx} x {ny} points give the force to {error:.2g} only; {asked:g} was asked for")
     if lost:
         lines.append(

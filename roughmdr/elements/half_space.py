@@ -90,9 +90,9 @@ class BoundaryElements:
     def _starts(self, overlap: Floats) -> Iterator[Floats]:
         """Yield the last pressures, and such as the overlap, each to the best scale."""
         for pressure in (self.pressure, overlap.clip(0.0)):
-            work = float(np.vdot(pressure, np.where(pressure > 0.0, overlap, 0.0)))
+            work = _dot(pressure, np.where(pressure > 0.0, overlap, 0.0))
             if work > 0.0:
-                yield np.asarray(pressure * (work / float(np.vdot(pressure, self._displaced(pressure)))))
+                yield np.asarray(pressure * (work / _dot(pressure, self._displaced(pressure))))
 
     def _solve(self, overlap: Floats, pressure: Floats) -> Floats | None:
         """Return the pressures that undo the overlap; None where they are not found."""
@@ -103,11 +103,11 @@ class BoundaryElements:
             rest = np.where(loaded, gap, 0.0)
             if max(float(np.abs(rest).max()), -float(gap.min())) <= _RESIDUAL:
                 return pressure
-            square = float(np.vdot(rest, rest))
+            square = _dot(rest, rest)
             direction = rest + (square / before * np.where(loaded, direction, 0.0) if before > 0.0 else 0.0)
-            curvature = float(np.vdot(direction, self._displaced(direction)))
+            curvature = _dot(direction, self._displaced(direction))
             flat = not curvature > 0.0  # the loaded cells are at rest, and others overlap
-            step = self._cell_stiffness if flat else float(np.vdot(rest, direction)) / curvature
+            step = self._cell_stiffness if flat else _dot(rest, direction) / curvature
             pressure = np.maximum(pressure - step * direction, 0.0)
             hit = (pressure == 0.0) & (gap < 0.0)
             pressure[hit] -= step * gap[hit]
@@ -139,6 +139,11 @@ class BoundaryElements:
         area = (cells - _EDGE_SHARE * edges)[1:] * self.cell_area
         radius_sum = math.fsum(np.sqrt(area / math.pi).tolist())
         return Patches(count, math.fsum(area.tolist()), radius_sum)
+
+
+def _dot(a: Floats, b: Floats) -> float:
+    """Return the sum of the products; a BLAS would share it among threads, and its bits depend on their number."""
+    return float(np.einsum("ij,ij->", a, b))
 
 
 def _of_waves(shape: tuple[int, ...], cell: Floats) -> Floats:

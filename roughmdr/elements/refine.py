@@ -8,8 +8,8 @@ from roughmdr.elements.path import GridPath, solve_on_grid
 from roughmdr.elements.surface import Surface, grid_shape
 from roughmdr.numerics.arguments import Floats
 
-LARGEST_GRID = 2048
-"""Points along the side of a square: some 20 s a step."""
+LARGEST_GRID = 1024
+"""Points along the side of a square: some 10 s a step."""
 LIGHT = 0.01
 """Of the largest force of the path: forces below count as so much where errors are held against the one asked for."""
 _PER_SUMMIT, _FIRST_ERROR = 9.0, 0.02
@@ -27,22 +27,36 @@ def solve_to_error(
 ) -> GridPath:
     """Return the totals at separations [m], on a grid by which the force is off by at most ``error`` [1].
 
-    It ends with ``LARGEST_GRID`` whatever the error.
+    It ends with ``LARGEST_GRID`` whatever the error. Where the error was largest, and at the lowest separation, finer
+    grids are tried before the whole path is solved again.
     """
+
+    def on(points: float, separation: Floats, *, stiffness: bool) -> GridPath:
+        shape = grid_shape(surface.sides, points)
+        return solve_on_grid(surface, separation, effective_modulus, shape, stiffness=stiffness)
+
     points = first_points(surface.tops.size, error)
     while True:
-        shape = grid_shape(surface.sides, points)
-        found = solve_on_grid(surface, separation, effective_modulus, shape, stiffness=stiffness)
-        off = largest_error(found)
-        if off <= error or points >= LARGEST_GRID:
+        found = on(points, separation, stiffness=stiffness)
+        off = errors(found)
+        if off.max() <= error or points >= LARGEST_GRID:
             return found
-        finer = min(max((off / error) ** (1.0 / _ORDER), _FEWEST), _FASTEST)
-        points = min(finer * points, LARGEST_GRID)
+        tried = separation[[int(np.argmax(off)), int(np.argmin(separation))]]
+        while off.max() > error and points < LARGEST_GRID:
+            with np.errstate(over="ignore"):
+                finer = np.clip((off.max() / error) ** (1.0 / _ORDER), _FEWEST, _FASTEST)
+            points = min(float(finer) * points, LARGEST_GRID)
+            off = errors(on(points, tried, stiffness=False))
 
 
-def largest_error(found: GridPath) -> float:
-    """Return the largest error of the force along a path, over the force, or over ``LIGHT`` of the largest one."""
-    solved = [step for step in found.steps if math.isfinite(step.error)]
-    force, error = (np.array([getattr(step, name) for step in solved]) for name in ("force", "error"))
-    largest = float(force.max(initial=0.0))
-    return float(np.max(error / np.maximum(force, LIGHT * largest))) if largest > 0.0 else 0.0
+def errors(found: GridPath) -> Floats:
+    """Return the error of the force at each step of a path, over the force, or over ``LIGHT`` of the largest one.
+
+    It is infinite where the grid finds no force along the path but may have missed one, and 0 where there is no
+    equilibrium.
+    """
+    error = np.array([step.error for step in found.steps])
+    force = np.where(np.isfinite(error), [step.force for step in found.steps], 0.0)
+    error = np.where(np.isfinite(error), error, 0.0)
+    scale = np.maximum(force, LIGHT * float(force.max(initial=0.0)))
+    return np.asarray(np.divide(error, scale, out=np.where(error > 0.0, np.inf, 0.0), where=scale > 0.0))

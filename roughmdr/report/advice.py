@@ -7,6 +7,8 @@ from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR
 from roughmdr.schema.toml_text import parse_toml
 
 _OF_MAPS = ("surface", "spectrum")
+_USELESS = 0.3
+"""Error by the resolution of a map beyond which no model of it is to be believed."""
 _HILLS = "hills in pairs are within 3 % r.m.s. of them from 0.3 to 20 % contact, 6 % where waves are four times as long"
 _SUMMITS = "summits are 14 % off in pairs and 32 % alone, since their flanks are no paraboloids"
 _TO_HILLS = 'take asperities.model = "hills" with [interaction] model = "pairwise"'
@@ -25,16 +27,16 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
     source = asperities["source"]
     model = asperities.get("model", "summits" if source == "surface" else "hills")
     coupled = table.get("interaction", {}).get("model") == "pairwise"
-    yield "advice", _which(table, model, coupled)
-    if resolution_error > MAX_HILLS_ERROR:
-        finer = (
-            "raise asperities.points" if source == "spectrum" else "a finer map, or a cutoff of measured noise, helps"
-        )
-        yield (
-            "",
-            f"but the map itself is too coarse or noisy for all three, by about {100.0 * resolution_error:.2g} % here: "
-            f"{finer}",
-        )
+    which = _which(table, model, coupled)
+    if resolution_error <= MAX_HILLS_ERROR:
+        yield "advice", which
+        return
+    finer = "raise asperities.points" if source == "spectrum" else "a finer map or a cutoff of known noise helps"
+    coarse = f"the map is too coarse or noisy for summits, hills and boundary elements alike: {finer}"
+    if resolution_error > _USELESS:
+        yield "advice", f"believe none of them as they are; {coarse}"
+        return
+    yield "advice", f"{coarse}; as far as it goes, {which}"
 
 
 def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
@@ -51,7 +53,7 @@ def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
         return f"believe boundary elements, which press the map itself; {_HILLS}; {_SUMMITS}"
     ask = "ask for them with --set reference.model=boundary_elements"
     if model == "hills" and coupled:
-        return f"believe boundary elements first, which press the map itself ({ask}): {_HILLS}"
+        return f"believe boundary elements most, which press the map itself ({ask}); {_HILLS}"
     return f"believe boundary elements, which press the map itself ({ask}), or {_TO_HILLS}: {_HILLS}; {_SUMMITS}"
 
 

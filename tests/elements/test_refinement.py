@@ -7,7 +7,7 @@ import pytest
 
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.elements.path import GridPath, solve_on_grid
-from roughmdr.elements.refine import LARGEST_GRID, first_points, largest_error, solve_to_error
+from roughmdr.elements.refine import LARGEST_GRID, errors, first_points, solve_to_error
 from roughmdr.elements.surface import grid_shape, surface_of_asperities, surface_of_map
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap
@@ -89,7 +89,7 @@ def test_the_error_asked_for_is_met(periodic: bool, error: float) -> None:
     fine = solve_on_grid(surface, path, 1e9, (420, 420), stiffness=False)
     force, true = (np.array([step.force for step in each.steps]) for each in (found, fine))
     stated = np.array([step.error for step in found.steps]) / force
-    assert largest_error(found) <= error
+    assert errors(found).max() <= error
     assert (np.abs(force / true - 1.0) <= stated + 1e-3).all()
     assert found.shape[0] < 420
 
@@ -118,5 +118,20 @@ def test_asperities_that_stand_alone_end_beyond_their_contacts() -> None:
 
 def test_light_forces_are_held_against_the_largest() -> None:
     steps = [Step(force=1.0, error=0.01), Step(force=1e-4, error=1e-4), Step(error=math.inf)]
-    assert largest_error(GridPath(steps, (16, 16))) == pytest.approx(0.01)
-    assert largest_error(GridPath([Step()], (16, 16))) == 0.0
+    np.testing.assert_allclose(errors(GridPath(steps, (16, 16))), [0.01, 0.01, 0.0])
+    np.testing.assert_array_equal(errors(GridPath([Step()], (16, 16))), [0.0])
+    np.testing.assert_array_equal(errors(GridPath([Step(error=1e-9)], (16, 16))), [np.inf])
+
+
+def test_contacts_between_the_points_of_a_coarse_grid_are_found() -> None:
+    """Paraboloids far apart: the first grid has no point in contact."""
+    x, y = (5e-5 * (np.array(at) + 0.5) for at in ((1, 5, 9, 13, 17), (2, 12, 6, 18, 9)))
+    sparse = Ensemble("paraboloid", np.zeros(5), {"radius": np.full(5, 5e-5)}, 1e-6, {"x": x, "y": y}, {"patch": 1e-3})
+    surface = surface_of_asperities(sparse, -1e-6, periodic=True)
+    coarse = solve_on_grid(surface, np.array([-1e-6]), 1e9, grid_shape(surface.sides, 20), stiffness=False)
+    assert errors(coarse).max() == np.inf
+    found = solve_to_error(surface, np.array([0.5e-6, -0.5e-6, -1e-6]), 1e9, 0.2, stiffness=False)
+    assert errors(found).max() <= 0.2
+    for step, depth in zip(found.steps[1:], (0.5e-6, 1e-6), strict=True):
+        hertz = 5.0 * 4.0 / 3.0 * 1e9 * math.sqrt(5e-5) * depth**1.5
+        assert abs(step.force - hertz) <= step.error + 0.03 * hertz  # 3 % by the images
