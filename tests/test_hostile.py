@@ -305,7 +305,7 @@ def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None
     [
         ("hurst", 0.8, "unknown key; it can be correlation, count, density"),
         ("source", "RANDOM", "not available; did you mean 'random'?"),
-        ("source", "nonsens", "not available; it can be random, nayak, surface, file"),
+        ("source", "nonsens", "not available; it can be random, nayak, spectrum, surface, file"),
         ("Shape", "cone", "unknown key; did you mean 'shape'?"),
     ],
 )

@@ -45,6 +45,13 @@ BASES: dict[str, dict[str, Any]] = {
         },
         "path": {"separation": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 10}, "unload": True},
     },
+    "a reference": {
+        **{key: value for key, value in SCENE.items() if key != "adhesion"},
+        "asperities": {**ASPERITIES, "count": 50, "patch": "0.3 mm"},
+        "reference": {"model": "boundary_elements", "error": 0.5},
+        "path": {"separation": ["1 sigma", "0.5 sigma"]},
+        "batch": {},
+    },
     "cones": {
         **SCENE,
         "material": {"effective_modulus": "4 MPa"},
@@ -64,6 +71,23 @@ BASES: dict[str, dict[str, Any]] = {
     "moments": {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", "m0": "1 um^2", "m2": 0.02, "m4": 5e9}},
     **{
         name: {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", **_WAVES, name: amplitude}}
+        for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
+    },
+    **{
+        f"a spectrum by its {name}": {
+            **SCENE,
+            "asperities": {
+                "source": "spectrum",
+                "model": "summits",
+                "patch": "0.2 mm",
+                **_WAVES,
+                "short_wave": "10 um",
+                name: amplitude,
+                "anisotropy": 2.0,
+                "points": 5.0,
+            },
+            "batch": {},
+        }
         for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
     },
     "adhesion by its strength": {

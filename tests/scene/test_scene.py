@@ -137,7 +137,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
             ({"path": {"separation": ["1e999 sigma"]}}, "expected a finite number"),
             ({"path": {"separation": [0], "unload": "yes"}}, "path.unload"),
         ({"asperities": {"source": "surface"}, "batch": None}, "asperities.file: is missing"),
-        ({"asperities": {}}, "asperities.source: is missing; it can be file, nayak, random, surface"),
+        ({"asperities": {}}, "asperities.source: is missing; it can be file, nayak, random, spectrum, surface"),
         ({"asperities": {**SCENE["asperities"], "height": "1 um"}}, "cannot be given in sigma"),
         (
             {"asperities": {**{k: v for k, v in SCENE["asperities"].items() if k != "radius"}, "shape": "power_law",

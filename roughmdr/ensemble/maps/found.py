@@ -22,13 +22,13 @@ def check_shape(model: Model, shape: str | None) -> None:
         raise EntryError("shape", shape, f"is not that of model = {model!r}: {own}; leave it out")
 
 
-def summits_on(surface: HeightMap, noise: float) -> Ensemble:
+def summits_on(surface: HeightMap, noise: float, detrend: str) -> Ensemble:
     """Return the summits of a map that stand out by more than ``noise`` [m], with the statistics of the map.
 
-    RoughmdrError where there are none, or where no float holds their radii.
+    RoughmdrError where there are none, after a trend was removed by ``detrend``, or where no float holds their radii.
     """
     if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
-        raise RoughmdrError("the map has no summit: it is flat, but for rounding")
+        raise RoughmdrError(f"the map has no summit: with detrend {detrend!r} it is flat, but for rounding")
     with np.errstate(over="ignore", under="ignore"):  # refused below
         summits = find_summits(surface, noise)
     radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
@@ -47,12 +47,13 @@ def asperities_on(
     attrs: dict[str, float | int | str] | None = None,
 ) -> Ensemble:
     """Return the summits or hills of a map, with its statistics and further ``attrs``; a warning calls it ``name``."""
-    found = summits_on(surface, noise)
+    attrs = {"detrend": "none", **(attrs or {})}
+    found = summits_on(surface, noise, str(attrs["detrend"]))
     if model == "hills":
         from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler
 
         found = find_hills(surface, found)
-    all_attrs = {**found.attrs, **(attrs or {})}
+    all_attrs = {**found.attrs, **attrs}
     if model == "hills":
         text = hills_warning(name, all_attrs)
     else:

@@ -68,7 +68,7 @@ class SurfaceAsperities(FromFile):
             self._remove_trend(surface)
             attrs: dict[str, float | int | str] = {"rms_height_raw": raw, "detrend": trend}
             if self.cutoff is not None:
-                uncut = summits_on(surface, noise).attrs
+                uncut = summits_on(surface, noise, trend).attrs
                 attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
                 remove_short_waves(surface, self.cutoff)
             return asperities_on(surface, noise, self.model, Path(self.file).name, attrs)

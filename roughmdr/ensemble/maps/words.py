@@ -15,7 +15,7 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
 
     kept = "periodic" if attrs["periodic"] else "not periodic"
     heights = f"r.m.s. height {length('rms_height')}"
-    if "detrend" in attrs:
+    if "rms_height_raw" in attrs:
         kept += f", detrended: {attrs['detrend']}"
         heights = f"r.m.s. height {length('rms_height_raw')} as measured, {length('rms_height')} of it kept"
     slopes = f"r.m.s. slope {attrs['rms_slope']:.3g}"
