@@ -74,7 +74,7 @@ def test_the_error_falls_with_the_points_of_the_map(studied: CarriedOut) -> None
         values = found[name].to_numpy()
         assert (np.diff(values[:4]) < 0.0).all(), name
     lacking, stated = (found[name].sel(points=[2, 3, 4]).to_numpy() for name in ("lacking", "stated"))
-    np.testing.assert_allclose(stated, lacking, rtol=1.0)
+    assert ((stated > 0.8 * lacking) & (stated < 3.0 * lacking)).all()  # as on the maps that it was measured on
     assert abs(float(found["lacking"].sel(points=12))) < 0.002
     assert f"against {FINEST} points" in studied.text
 

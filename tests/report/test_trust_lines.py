@@ -17,7 +17,7 @@ from roughmdr.report.trust import trust_lines
 
 NUMBERS = {
     "model_error": 0.3, "interaction_error": 0.28, "slope_error": 0.02, "profile_end_error": 0.0,
-    "adhesion_range_error": 0.0, "resolution_error": 0.0, "largest_contact_fraction": 0.035,
+    "adhesion_range_error": 0.0, "resolution_error": 0.0, "border_error": 0.0, "largest_contact_fraction": 0.035,
     "trusted_separation": 1.1e-6, "overlap_fraction": 0.05,
 }  # fmt: skip
 NONE = dict.fromkeys(NUMBERS, math.nan)
