@@ -6,7 +6,7 @@ the deformed half-space. In the reduced problem the patch, the deepest overlap a
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from roughmdr.numerics.arguments import Floats
 
 _RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
 _RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
-_MAX_ITERATIONS = 1000  # next to full contact; elsewhere some 50
+_MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50
 
 
 class Pressed(NamedTuple):
@@ -50,25 +50,35 @@ class HeightMap:
         The force is infinite from the mean height on: no half-space whose mean plane stays fits in. It starts from the
         pressures of the last call: call it with separations in order. OutOfRange where it does not converge.
         """
-        from ContactMechanics.Optimization import constrained_conjugate_gradients
-
         deepest = float(self.height.max()) - separation
         if deepest <= 0.0:
             return Pressed(0.0, 0.0)
         if separation <= float(self.height.mean()):
             return Pressed(math.inf, self.size**2)
-        found = constrained_conjugate_gradients(
-            self._half_space,
-            self.height / deepest,
-            offset=-separation / deepest,
-            initial_forces=-self._forces / deepest if self._forces.any() else None,
-            thermotol=_RTOL_FORCE,
-            pentol=_RTOL_OVERLAP,
-            forcetol=_RTOL_OVERLAP / self.height.size,
-            maxiter=_MAX_ITERATIONS,
-        )
-        if not found.success:
+        found = forces_of_cells(self._half_space, self.height / deepest, separation / deepest, self._forces / deepest)
+        if found is None:
             raise OutOfRange(f"separation is {separation:g} m: boundary elements do not converge")
-        self._forces = found.jac * deepest
+        self._forces = found * deepest
         force = self.effective_modulus * self.size * float(self._forces.sum())
         return Pressed(force, float(np.mean(self._forces > 0.0)) * self.size**2)
+
+
+def forces_of_cells(half_space: Any, height: Floats, separation: float, start: Floats) -> Floats | None:
+    """Return the forces of the cells of a reduced problem, from a ``start`` like them; None where none are found.
+
+    ``half_space`` is one of ContactMechanics, whose grid may be larger than the map.
+    """
+    from ContactMechanics.Optimization import constrained_conjugate_gradients
+
+    around = [(0, grid - points) for grid, points in zip(half_space.nb_domain_grid_pts, height.shape, strict=True)]
+    found = constrained_conjugate_gradients(
+        half_space,
+        height,
+        offset=-separation,
+        initial_forces=np.pad(-start, around) if start.any() else None,
+        thermotol=_RTOL_FORCE,
+        pentol=_RTOL_OVERLAP,
+        forcetol=_RTOL_OVERLAP / height.size,
+        maxiter=_MAX_ITERATIONS,
+    )
+    return np.asarray(found.jac) if found.success else None

@@ -9,11 +9,8 @@ import math
 
 import numpy as np
 
+from oracles.boundary_elements import forces_of_cells
 from roughmdr.numerics.arguments import Floats
-
-_RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
-_RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
-_MAX_ITERATIONS = 2000
 
 
 class FreeMap:
@@ -30,28 +27,16 @@ class FreeMap:
 
     def press(self, separation: float) -> float:
         """Return the force [m2] at a separation [m]; NaN where none is found. It starts from the last forces."""
-        from ContactMechanics.Optimization import constrained_conjugate_gradients
-
         deepest = float(self.height.max()) - separation
         if deepest <= 0.0:
             self.forces = np.zeros_like(self.height)
             return 0.0
         unit = deepest * self.spacing
-        start = np.pad(-self.forces / unit, [(0, points) for points in self.height.shape])  # as far as it computes
-        found = constrained_conjugate_gradients(
-            self._half_space,
-            self.height / deepest,
-            offset=-separation / deepest,
-            initial_forces=start if start.any() else None,
-            thermotol=_RTOL_FORCE,
-            pentol=_RTOL_OVERLAP,
-            forcetol=_RTOL_OVERLAP / self.height.size,
-            maxiter=_MAX_ITERATIONS,
-        )
-        if not found.success:
+        found = forces_of_cells(self._half_space, self.height / deepest, separation / deepest, self.forces / unit)
+        if found is None:
             self.forces = np.zeros_like(self.height)
             return math.nan
-        self.forces = found.jac * unit
+        self.forces = found * unit
         return float(self.forces.sum())
 
     def stiffness(self, separation: float, step: float) -> float:

@@ -175,13 +175,14 @@ def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], Loadin
 
 
 def _check_asperities_read(cell: Scene) -> None:
-    """SceneError where asperities that are read, not drawn, lack what their interaction needs."""
-    if cell.asperities.is_random:
+    """SceneError where asperities that are read, not drawn, lack what their interaction or the reference needs."""
+    if cell.asperities.is_random or (cell.reference is None and cell.interaction_model is None):
         return
+    ensemble = cell.asperities.ensemble(cell.seed, 0)
     if cell.reference is not None:
-        check_surface(cell, cell.asperities.ensemble(cell.seed, 0))
+        check_surface(cell, ensemble)
     if cell.interaction_model is not None:
-        check_placed(cell.asperities.ensemble(cell.seed, 0), cell.interaction_model)
+        check_placed(ensemble, cell.interaction_model)
 
 
 def _left_out(scene: Scene) -> Iterator[str]:

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.elements.union_map import union_map
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.height_map import HeightMap, filled
+from roughmdr.ensemble.maps.height_map import HeightMap, spline_coefficients, spline_mode
 from roughmdr.errors import SceneError
 from roughmdr.interaction.buried import reach
 from roughmdr.interaction.placed import sides_of
@@ -70,12 +70,10 @@ def surface_of_asperities(ensemble: Ensemble, lowest: float, *, periodic: bool) 
 
 def surface_of_map(surface: HeightMap, tops: Floats, *, periodic: bool) -> Surface:
     """Return a height map, between its points its cubic spline; summits at ``tops`` [m]."""
-    from scipy.ndimage import map_coordinates, spline_filter
+    from scipy.ndimage import map_coordinates
 
-    known, height = np.isfinite(surface.height), filled(surface)
-    mode: Literal["grid-wrap", "mirror"] = "grid-wrap" if surface.periodic else "mirror"
-    coefficients = spline_filter(height, order=3, mode=mode)
-    counts = height.shape
+    known, coefficients = np.isfinite(surface.height), spline_coefficients(surface)
+    counts, mode = known.shape, spline_mode(surface)
 
     def on_grid(shape: tuple[int, int], _: float) -> Floats:
         rows, columns = ((np.arange(n) + 0.5) * (count / n) - 0.5 for n, count in zip(shape, counts, strict=True))

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR
+from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.toml_text import parse_toml
 
 _OF_MAPS = ("surface", "spectrum")
@@ -58,5 +59,6 @@ def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
 
 
 def _adhesive(table: dict[str, Any]) -> bool:
-    adhesion = table.get("adhesion", {})
-    return bool(adhesion) and adhesion.get("work") not in (0, 0.0)
+    """Return whether a scene has a work of adhesion above 0."""
+    work = table.get("adhesion", {}).get("work", 0.0)
+    return Quantity("J/m^2", at_least=0.0)(work) > 0.0

@@ -5,10 +5,6 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from roughmdr.elements.settings import DEFAULT_ERROR as DEFAULT_REFERENCE_ERROR
-from roughmdr.elements.settings import LEAST_ERROR as LEAST_REFERENCE_ERROR
-from roughmdr.elements.settings import MOST_ERROR as MOST_REFERENCE_ERROR
-from roughmdr.elements.settings import Reference
 from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import DEFAULT_ERROR as DEFAULT_SOLVER_ERROR
 from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Boundary, Interaction, Model
@@ -18,6 +14,7 @@ from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumbe
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
 
 _MAX_REALIZATIONS = 1_000_000_000
+_REFERENCE_ERRORS = 1e-3, 0.5
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, at_most=0.5))]
 
@@ -106,13 +103,8 @@ class ReferenceSection(Section):
 
     model: Literal["boundary_elements"]
     error: Annotated[
-        float, BeforeValidator(Quantity("1", at_least=LEAST_REFERENCE_ERROR, at_most=MOST_REFERENCE_ERROR))
-    ] = DEFAULT_REFERENCE_ERROR
-
-    @property
-    def reference(self) -> Reference:
-        """The reference with its parameters."""
-        return Reference(self.error)
+        float, BeforeValidator(Quantity("1", at_least=_REFERENCE_ERRORS[0], at_most=_REFERENCE_ERRORS[1]))
+    ] = 0.02
 
 
 def _check_variable(value: object) -> object:

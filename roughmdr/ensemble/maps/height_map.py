@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -78,14 +78,22 @@ def _rms(parts: Iterable[Floats]) -> float:
     return math.sqrt(total / count) if count else 0.0
 
 
-def filled(surface: HeightMap) -> Floats:
-    """Return the heights; undefined points have that of the nearest point that is defined."""
-    from scipy.ndimage import distance_transform_edt
+def spline_mode(surface: HeightMap) -> Literal["grid-wrap", "mirror"]:
+    """Return how the spline of a map goes on beyond its edges, as scipy.ndimage calls it."""
+    return "grid-wrap" if surface.periodic else "mirror"
+
+
+def spline_coefficients(surface: HeightMap) -> Floats:
+    """Return the coefficients [m] of the cubic B-splines of a map at its points, shape (x, y).
+
+    Undefined points take the height of the nearest that is defined.
+    """
+    from scipy.ndimage import distance_transform_edt, spline_filter
 
     height = surface.height
-    if surface.defined == height.size:
-        return height
-    where = distance_transform_edt(
-        ~np.isfinite(height), (surface.dx, surface.dy), return_distances=False, return_indices=True
-    )
-    return np.asarray(height[tuple(where)])
+    if surface.defined < height.size:
+        where = distance_transform_edt(
+            ~np.isfinite(height), (surface.dx, surface.dy), return_distances=False, return_indices=True
+        )
+        height = height[tuple(where)]
+    return np.asarray(spline_filter(height, order=3, mode=spline_mode(surface)))

@@ -6,9 +6,9 @@ from where it rises the territory of a neighbour begins, and so much and as much
 
 import math
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-from roughmdr.ensemble.maps.height_map import HeightMap, filled
+from roughmdr.ensemble.maps.height_map import HeightMap, spline_coefficients
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -35,15 +35,7 @@ class Spline(NamedTuple):
     @classmethod
     def of(cls, surface: HeightMap, wavelength: float) -> "Spline":
         """Return the spline of a map; undefined points take the height of the nearest that is defined."""
-        from scipy.ndimage import spline_filter
-
-        mode: Literal["grid-wrap", "mirror"] = "grid-wrap" if surface.periodic else "mirror"
-        return cls(
-            spline_filter(filled(surface), order=3, mode=mode),
-            surface.dx / wavelength,
-            surface.dy / wavelength,
-            surface.periodic,
-        )
+        return cls(spline_coefficients(surface), surface.dx / wavelength, surface.dy / wavelength, surface.periodic)
 
 
 class Territory(NamedTuple):
