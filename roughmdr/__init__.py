@@ -25,8 +25,8 @@ if TYPE_CHECKING:
         Unfinished,
     )
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
+    from roughmdr.pictures.plot import plot
     from roughmdr.report.info import info
-    from roughmdr.report.picture import plot
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
     from roughmdr.schema.material import effective_modulus
@@ -65,7 +65,7 @@ _ROOMS = {
     ),
     "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
     "report.info": ("info",),
-    "report.picture": ("plot",),
+    "pictures.plot": ("plot",),
     "runner.run": ("run",),
     "scene": ("Scene",),
     "schema.material": ("effective_modulus",),

@@ -280,6 +280,7 @@ PULL_OFF = PULL_OFF_NUMBERS | _declare(
 
 RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | _declare(
     ("realization_count", "1", "number of realizations of the statistics"),
+    ("nominal_area", "m2", "nominal area of the surface, or of its patch"),
     ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
     ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
     ("accuracy_method", "1", "how the cell was computed", ESTIMATORS),

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import mean_and_error
-from roughmdr.numerics.arguments import Floats
 from roughmdr.result import layout
+from roughmdr.result.means import mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 
@@ -32,7 +31,7 @@ def describe_pull_off(result: Labelled, not_known: str) -> Iterator[tuple[str, s
         yield "" if number else "pull-off", f"{line:<{width}}  {layout.cell_label(result, cell)}".rstrip()
     if len(cells) > _MAX_CELLS:
         yield "", f"... and {len(cells) - _MAX_CELLS} more cells"
-    contacts = _mean_and_error(result, "pull_off_contacts")[0].ravel()
+    contacts = mean_of(result, "pull_off_contacts")[0].ravel()
     if (few := contacts[contacts < _FEW]).size:
         counted = f"{few.min():.2g}" if few.size == 1 else f"{few.min():.2g} to {few.max():.2g}"
         share = f" in {few.size} of {len(cells)} cells" if len(cells) > 1 else ""
@@ -58,27 +57,19 @@ def _describe_cell(result: Labelled, cell: tuple[int, ...]) -> str:
         return ""
     if not having:
         return f"none: {'the unloading ends' if runs == 1 else f'all {runs} unloadings end'} in contact"
-    force, error = (float(values[cell]) for values in _mean_and_error(result, "pull_off_force"))
+    force, error = (float(values[cell]) for values in mean_of(result, "pull_off_force"))
     without = f"; {runs - having} of {runs} unloadings end in contact and have none" if having < runs else ""
     if force == 0.0:
         return f"0 N: contacts part without tension{without}"
     text = format_quantity(force, "N", error=error)
     if "pull_off_pressure_of_mean" in result.variables:
-        text += f", {format_quantity(float(_mean_and_error(result, 'pull_off_pressure')[0][cell]), 'Pa')}"
+        text += f", {format_quantity(float(mean_of(result, 'pull_off_pressure')[0][cell]), 'Pa')}"
     of_mean = float(result.variables["pull_off_force_of_mean"].values[cell])
     if runs > 1:
         text += (
             "; the mean law has none" if math.isnan(of_mean) else f"; of the mean law {format_quantity(of_mean, 'N')}"
         )
     return text + without
-
-
-def _mean_and_error(result: Labelled, name: str) -> tuple[Floats, Floats]:
-    """Return the mean of a number of the pull-offs and its standard error, over the cells; NaN where none has it."""
-    if f"{name}_mean" in result.variables:
-        return result.variables[f"{name}_mean"].values, result.variables[f"{name}_sem"].values
-    values = result.variables[name].values
-    return mean_and_error(values, np.isfinite(values))
 
 
 def _runs(result: Labelled) -> NDArray[np.int64]:

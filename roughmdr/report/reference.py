@@ -1,25 +1,22 @@
-"""The reference of a result: how far its force is off that by boundary elements, and their law over a picture."""
+"""The reference of a result: how far its force is off that by boundary elements."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from roughmdr.batch.moments import mean_and_error
 from roughmdr.elements.refine import LIGHT
-from roughmdr.numerics.arguments import Floats
-from roughmdr.report.plots import REFERENCE, Overlay, OverlayLine
-from roughmdr.result.layout import cells_of, controlled_values, done_of
+from roughmdr.result.means import holds, mean_of
 from roughmdr.storage.labelled import Labelled
-
-_ABSENT = "the result holds no reference; run its scene with --set reference.model=boundary_elements"
 
 
 def reference_lines(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield how far the mean force is off the reference, where that bears at least ``LIGHT`` of the largest force."""
-    name = next((each for each in ("force", "pressure") if _holds(result, each)), None)
+    name = next(
+        (each for each in ("force", "pressure") if holds(result, each) and holds(result, f"reference_{each}")), None
+    )
     if name is None:
         return
-    force, reference, error = (_mean(result, each) for each in (name, f"reference_{name}", "reference_error"))
+    force, reference, error = (mean_of(result, each)[0] for each in (name, f"reference_{name}", "reference_error"))
     points = float(np.nanmax(result.variables["reference_points"].values))
     largest = np.nanmax(reference, axis=-1, initial=0.0)[..., None]
     told = (reference > 0.0) & (reference >= LIGHT * largest) & np.isfinite(force)
@@ -41,29 +38,3 @@ def _percent(share: float, sign: str = "") -> str:
     """Return a share in per cent with about two digits."""
     value = 100.0 * share
     return f"{value:{sign}.0f}" if abs(value) >= 9.95 else f"{value:{sign}.2g}"
-
-
-def overlay_reference(result: Labelled, names: list[str]) -> Overlay:
-    """Return the mean law by boundary elements of each cell, in those of the variables that the result has of it."""
-    given = [name for name in names if _holds(result, name)]
-    if not given:
-        return Overlay([], [f"not drawn: {_ABSENT}"])
-    separation = controlled_values(result)
-    lines = [
-        OverlayLine(REFERENCE, name, number, separation[cell], _mean(result, f"reference_{name}")[cell])
-        for name in given
-        for number, cell in enumerate(cells_of(result))
-    ]
-    return Overlay(lines, ["drawn"])
-
-
-def _holds(result: Labelled, name: str) -> bool:
-    """Return whether a result has a variable beside that of its reference."""
-    return any({f"{name}{end}", f"reference_{name}{end}"} <= set(result.variables) for end in ("", "_mean"))
-
-
-def _mean(result: Labelled, name: str) -> Floats:
-    """Return the mean of a variable over the realisations that were computed, over swept keys and step."""
-    if f"{name}_mean" in result.variables:
-        return result.variables[f"{name}_mean"].values
-    return mean_and_error(result.variables[name].values, done_of(result))[0]

@@ -26,7 +26,13 @@ _OPTIONAL_TEXTS = ("accuracy", "warnings", "versions", "checksum")
 _REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
 _KINDS = {"f": "floating-point numbers", "i": "whole numbers", "text": "texts"}
 _KIND_OF = {float: "f", int: "i", str: "text"}
-_CELL_KINDS = {"realization_count": "f", "accuracy_reached": "f", "accuracy_method": "i", "cell_key": "text"}
+_CELL_KINDS = {
+    "realization_count": "f",
+    "nominal_area": "f",
+    "accuracy_reached": "f",
+    "accuracy_method": "i",
+    "cell_key": "text",
+}
 """Kind of each variable over cells: NumPy's, or text."""
 _STATISTICS = ("mean", "sem", "min", "max")
 _BRANCHES = ("loading", "unloading")

@@ -15,8 +15,8 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.pictures.overlay import overlay_theory
 from roughmdr.report.cutoffs import pressure_at
-from roughmdr.report.overlay import overlay_theory
 from roughmdr.scene import read
 from roughmdr.spectrum import SelfAffine
 

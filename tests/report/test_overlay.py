@@ -14,7 +14,7 @@ from scipy import stats
 import roughmdr as rm
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.cli import main
-from roughmdr.report.overlay import Overlay, overlay_expected, overlay_theory
+from roughmdr.pictures.overlay import Overlay, overlay_expected, overlay_theory
 from roughmdr.scene import read
 from roughmdr.spectrum import SelfAffine
 

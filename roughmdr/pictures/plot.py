@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from roughmdr.errors import LimitWarning
+from roughmdr.pictures.law import draw, format_of, save
+from roughmdr.pictures.reference import overlay_reference
 from roughmdr.report.given import given_result
-from roughmdr.report.plots import draw, format_of, save
-from roughmdr.report.reference import overlay_reference
 from roughmdr.result.layout import asked_variables
 from roughmdr.storage.files import check_writable
 from roughmdr.storage.labelled import Labelled
@@ -123,7 +123,7 @@ def draw_result(
     names = asked_variables(result, variables)
     overlays = [("reference", overlay_reference(result, names))] if with_reference else []
     if with_expected or with_theory:
-        from roughmdr.report.overlay import overlay_expected, overlay_theory, plan_of_result
+        from roughmdr.pictures.overlay import overlay_expected, overlay_theory, plan_of_result
 
         plan = plan_of_result(file, result)
         overlays += [("expected", overlay_expected(plan, names))] if with_expected else []

@@ -1,0 +1,25 @@
+"""roughmdr info: tell what a result contains."""
+
+from pathlib import Path
+
+import click
+
+from roughmdr.cli.invocation import warn_if_changed
+from roughmdr.cli.options import FILE
+from roughmdr.report.terminal import Command, print_text
+
+
+@click.command(cls=Command)
+@click.argument("result", type=FILE)
+@click.option("--cells", is_flag=True, help="List the cells of the sweep: status, time, errors, remarks.")
+def info(result: Path, cells: bool) -> None:
+    """Tell what RESULT contains.
+
+    Prints sizes, the pull-off force with its error, run time, seed, versions and the scene.
+    """
+    from roughmdr.report.info import describe
+    from roughmdr.storage.result_file import read_result
+
+    data = read_result(result)
+    warn_if_changed(result, data)
+    print_text(describe(data, result, cells=cells))

@@ -1,0 +1,29 @@
+"""roughmdr plan: tell what a run will do."""
+
+from pathlib import Path
+
+import click
+
+from roughmdr.cli.options import FILE, changes_option, workers_option
+from roughmdr.report.terminal import Command, print_text
+
+
+@click.command(cls=Command)
+@click.argument("scene", type=FILE)
+@changes_option
+@workers_option
+def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
+    """Tell what a run of SCENE will do.
+
+    Prints the number of runs and tasks, time and memory, and what is left out and why. Nothing is computed.
+    """
+    from roughmdr.report.summary import describe_plan
+    from roughmdr.scene import read
+
+    validated = read(scene, changes)
+    from roughmdr.batch.estimate import estimate
+    from roughmdr.batch.foresee import foresee_cells
+    from roughmdr.batch.plan import make_plan
+
+    planned = make_plan(validated)
+    print_text(describe_plan(planned, estimate(planned, workers), foresee_cells(planned), workers))
