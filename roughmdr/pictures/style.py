@@ -44,7 +44,7 @@ class Scale(NamedTuple):
         if text[:1] == "u":
             text = f"µ{text[1:]}"
         text = text.replace("^2", "²")
-        label = name.replace("_", " ")
+        label = name.replace("_", " ").replace("pull off", "pull-off")
         return cls(size, f"{label} [{text}]" if text else label)
 
     def __call__(self, values: ArrayLike) -> Floats:

@@ -116,7 +116,7 @@ def format_quantity(value: float, unit: str, *, to: float | None = None, error: 
 
 
 def axis_unit(largest: float, unit: str) -> tuple[float, str]:
-    """Return the unit for numbers up to ``largest``, in SI and in ``unit``: its size in SI, and its name with prefix."""
+    """Return the unit of an axis for numbers up to ``largest`` in ``unit``: its size in SI, and its name."""
     spelled = _SPELLED.get(unit, unit)
     if spelled == DIMENSIONLESS:
         return 1.0, ""
