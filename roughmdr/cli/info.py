@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.invocation import warn_if_changed
+from roughmdr.cli.invocation import warn_of
 from roughmdr.cli.options import FILE
 from roughmdr.report.terminal import Command, print_text
 
@@ -21,5 +21,5 @@ def info(result: Path, cells: bool) -> None:
     from roughmdr.storage.result_file import read_result
 
     data = read_result(result)
-    warn_if_changed(result, data)
+    warn_of(result, data.integrity_fault())
     print_text(describe(data, result, cells=cells))

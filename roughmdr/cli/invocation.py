@@ -6,14 +6,10 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from roughmdr.report.terminal import print_text
-
-if TYPE_CHECKING:
-    from roughmdr.storage.labelled import Labelled
 
 
 @contextmanager
@@ -32,7 +28,7 @@ def command_line() -> str:
     return f"roughmdr {shlex.join(sys.argv[1:])}".encode("utf-8", "replace").decode()
 
 
-def warn_if_changed(file: Path, result: "Labelled") -> None:
-    """Print a warning if the numbers in a file cannot be trusted."""
-    if fault := result.integrity_fault():
-        print_text(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
+def warn_of(file: Path, doubt: str) -> None:
+    """Print why the numbers in a file cannot be trusted, unless they can."""
+    if doubt:
+        print_text(f"roughmdr: {click.format_filename(file)}: {doubt}", err=True)

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from roughmdr.cli.invocation import warn_of
 from roughmdr.cli.options import FILE, OUTPUT, fresh_option
 from roughmdr.report.terminal import Command, print_text
 
@@ -41,8 +42,10 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | Non
     options["variables"] = tuple(options["variables"])
     options["select"] = dict(_pair("--select", each) for each in options["select"])
     options["at"] = {} if at is None else dict([_pair("--at", at)])
+    source = drawable(file)
+    warn_of(file, source.doubt)
     with styled(style):
-        picture = draw_request(drawable(file), Request(**options))
+        picture = draw_request(source, Request(**options))
         for title, remark in picture.remarks:
             print_text(f"{title:<12} {remark}")
         save(picture.figure, output)

@@ -1,5 +1,6 @@
 """The curves of a result that a picture shows: each variable in each cell, over one loading or unloading."""
 
+import warnings
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -117,8 +118,15 @@ def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
     width = 1 if len(values) >= _FEW else _ROBUST
     padded = np.pad(values, ((0, 0), (width // 2, width // 2)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=1)
-    low, middle, high = np.nanquantile(windows, [_BAND[0], 0.5, _BAND[1]], axis=(0, 2))
+    low, middle, high = quantiles(windows, [_BAND[0], 0.5, _BAND[1]], axis=(0, 2))
     return middle, low, high
+
+
+def quantiles(values: Floats, shares: list[float], axis: int | tuple[int, ...]) -> Floats:
+    """Return quantiles of the numbers that there are; NaN where there are none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return np.asarray(np.nanquantile(values, shares, axis=axis))
 
 
 def _runs(result: Labelled, name: str) -> Floats:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.curves import Curve, Quantity
+from roughmdr.pictures.curves import Curve, Quantity, quantiles
 from roughmdr.pictures.style import Scale
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _draw_bands(ax: "Axes", curve: Curve, colour: str, scales: tuple[Scale, Scal
         shown = len(curve.runs)
         if shown > _MAX_RUNS:
             shown = _SOME_RUNS
-            low, high = np.nanquantile(curve.runs, _MOST, axis=0)
+            low, high = quantiles(curve.runs, list(_MOST), axis=0)
             ax.fill_between(x, scale(low), scale(high), color=colour, alpha=0.12, lw=0, zorder=1)
         some = np.unique(np.linspace(0, len(curve.runs) - 1, shown).astype(int))
         lines = ax.plot(x_scale(curve.runs_x[some]).T, scale(curve.runs[some]).T, color=colour, lw=0.3, alpha=0.25)
@@ -116,7 +116,7 @@ def _visible(panel: Panel) -> Floats:
     if panel.quantity.variable != "stiffness" and panel.cells <= MAX_NAMED:
         shown += [edge for curve in panel.curves for edge in (curve.low, curve.high)]
     if panel.cells == 1 and panel.quantity.variable != "stiffness":
-        shown += [np.quantile(curve.runs, _MOST, axis=0).ravel() for curve in panel.curves if len(curve.runs)]
+        shown += [quantiles(curve.runs, list(_MOST), axis=0).ravel() for curve in panel.curves if len(curve.runs)]
     values = _joined(shown)
     return values if values.size else np.zeros(1)
 

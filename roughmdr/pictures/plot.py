@@ -83,6 +83,8 @@ def plot(
     names = (variables,) if isinstance(variables, str) else tuple(variables)
     request = Request(kind, names, **options)
     source = drawable(result)
+    if source.doubt:
+        warnings.warn(f"{source.file}: {source.doubt}", UserWarning, stacklevel=2)
     if out is not None:
         check_picture(Path(out), [] if source.file is None else [source.file], fresh=fresh)
     with styled(style):

@@ -1,7 +1,6 @@
 """A picture that is asked for: of which data, and how it is to be drawn."""
 
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -26,6 +25,11 @@ class Drawable(NamedTuple):
     content: Content
     data: Labelled
     file: Path | None
+
+    @property
+    def doubt(self) -> str:
+        """Why the numbers of a result in a file cannot be trusted; empty if they can."""
+        return self.data.integrity_fault() if self.content == "result" and self.file is not None else ""
 
 
 class Picture(NamedTuple):
@@ -62,10 +66,7 @@ class Request:
 
 
 def drawable(source: "str | Path | xr.Dataset") -> Drawable:
-    """Return data to draw from a file or a Dataset: a result, an ensemble, or a fit; StoreError if it is none.
-
-    A UserWarning tells where the numbers of a result cannot be trusted.
-    """
+    """Return data to draw from a file or a Dataset: a result, an ensemble, or a fit; StoreError if it is none."""
     if isinstance(source, str | os.PathLike):
         file = Path(source)
         try:
@@ -83,8 +84,6 @@ def drawable(source: "str | Path | xr.Dataset") -> Drawable:
             place = f"{file}: not a result as roughmdr writes it"
         if fault := find_fault(data):
             raise StoreError(f"{place}: {fault}")
-        if file is not None and (fault := data.integrity_fault()):
-            warnings.warn(f"{file}: {fault}", UserWarning, stacklevel=3)
     return Drawable(content, data, file)
 
 
