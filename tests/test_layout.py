@@ -38,8 +38,7 @@ LINES = (
     ("batch",),
     ("result",),
     ("runner",),
-    ("report",),
-    ("pictures",),
+    ("report", "pictures"),
     ("cli",),
     ("__main__",),
 )

@@ -10,6 +10,7 @@ from roughmdr.cli.info import info
 from roughmdr.cli.new import new
 from roughmdr.cli.plan import plan
 from roughmdr.cli.plot import plot
+from roughmdr.cli.report import report
 from roughmdr.cli.run import run
 from roughmdr.report.terminal import Group
 
@@ -23,5 +24,5 @@ def main() -> None:
     """
 
 
-for command in (generate, info, new, plan, plot, run):
+for command in (generate, info, new, plan, plot, report, run):
     main.add_command(command)

@@ -72,30 +72,33 @@ def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
 
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
+    left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
+    return _format_table([*summary_lines(result, elapsed), *_indent("left out", left_out_lines)])
+
+
+def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tuple[str, str]]:
+    """Yield what a result holds: names, empty where the line before goes on, and texts."""
     attrs = result.attrs
     realizations, steps = layout.realizations_of(result), result.sizes["step"]
     time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
     if elapsed is not None:
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
-    lines = [
-        ("computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"),
-        ("variables", ", ".join(layout.stored_variables(result))),
-        *_indent("path", attrs.get("path", "").splitlines()),
-        *_indent("map", attrs.get("map", "").splitlines()),
-        *describe_pull_off(result, _NOT_KNOWN),
-        *_avalanches(result),
-        *_contacts_at_ends(result),
-        *trust_of_result(result),
-        *advice_lines(attrs["scene"], _resolution_error(result)),
-        *reference_lines(result),
-        *_adhesion(result),
-        *_indent("accuracy", attrs.get("accuracy", "").splitlines()),
-        *_indent("failed", describe_failed(result).splitlines()),
-        *_indent("warning", attrs.get("warnings", "").splitlines()),
-        _numerical_error(result),
-        ("run time", time),
-    ]
-    return _format_table([*lines, *_indent("left out", attrs["left_out"].splitlines() if left_out else ())])
+    yield "computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"
+    yield "variables", ", ".join(layout.stored_variables(result))
+    yield from _indent("path", attrs.get("path", "").splitlines())
+    yield from _indent("map", attrs.get("map", "").splitlines())
+    yield from describe_pull_off(result, _NOT_KNOWN)
+    yield from _avalanches(result)
+    yield from _contacts_at_ends(result)
+    yield from trust_of_result(result)
+    yield from advice_lines(attrs["scene"], _resolution_error(result))
+    yield from reference_lines(result)
+    yield from _adhesion(result)
+    yield from _indent("accuracy", attrs.get("accuracy", "").splitlines())
+    yield from _indent("failed", describe_failed(result).splitlines())
+    yield from _indent("warning", attrs.get("warnings", "").splitlines())
+    yield _numerical_error(result)
+    yield "run time", time
 
 
 def _resolution(cell: "Foreseen") -> float:

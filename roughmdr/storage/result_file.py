@@ -16,7 +16,8 @@ from roughmdr.storage.result_validation import find_fault
 
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 _MAGIC_BYTES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
-_SVG_HEAD = 4096  # bytes, within which an SVG has its root element
+_ROOTS = {"svg": b"<svg", "html": b"<!doctype html"}
+_HEAD = 4096  # bytes, within which a text has its root element
 
 
 def provenance(title: str, command: str) -> dict[str, str]:
@@ -56,7 +57,7 @@ def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
 
 
 def check_same_kind(path: Path, kind: str) -> None:
-    """Raise StoreError if there is a file at ``path`` that is no ``kind``: "png", "pdf", "svg" or "ensemble"."""
+    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html or ensemble."""
     if not path.exists():
         return
     same = False
@@ -66,9 +67,9 @@ def check_same_kind(path: Path, kind: str) -> None:
     else:
         try:
             with path.open("rb") as file:
-                head = file.read(_SVG_HEAD)
+                head = file.read(_HEAD)
         except OSError as error:
             raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
-        same = b"<svg" in head if kind == "svg" else head.startswith(_MAGIC_BYTES[kind])
+        same = _ROOTS[kind] in head if kind in _ROOTS else head.startswith(_MAGIC_BYTES[kind])
     if not same:
         raise StoreError(f"{path}: exists already and is no {kind}: give another output, or --fresh to replace it")

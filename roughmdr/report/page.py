@@ -1,0 +1,141 @@
+"""A result as one self-contained page of HTML: figures, errors, scene and provenance, in light and dark."""
+
+import base64
+import io
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from roughmdr.pictures.kinds import draw_request
+from roughmdr.pictures.request import Drawable, Request
+from roughmdr.pictures.style import styled
+from roughmdr.report.error_table import error_rows
+from roughmdr.report.given import given_result
+from roughmdr.report.summary import describe_cells, summary_lines
+from roughmdr.result.layout import cells_of, stored_variables, swept_sizes
+from roughmdr.schema.wording import escape_controls
+from roughmdr.storage.files import check_ending, check_writable, replace_atomically
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_file import check_same_kind
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_TEMPLATE = "page.html"
+_DPI = 140
+_DARK = "dark_background"
+_LEFT = ("variables", "left out", "warning")  # parts of the summary that have a place of their own
+
+
+class _Figure(NamedTuple):
+    """A picture twice, each as PNG in base64, and in words for those who cannot see it."""
+
+    words: str
+    light: str
+    dark: str
+
+
+def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: bool = False) -> None:
+    """Write a result as one page of HTML that needs no other file.
+
+    It holds the scene, pictures, the pull-off, the errors, run time, what was left out, where the numbers come from,
+    how to run the scene again and what to cite; it is legible on narrow and wide screens, light and dark.
+
+    Parameters
+    ----------
+    result : path or xarray.Dataset
+        A result file, or what ``run`` returned.
+    out : path
+        The page to write: .html. A page that is there already is replaced.
+    fresh : bool, optional
+        Whether to replace a file of any kind at ``out``.
+
+    Raises
+    ------
+    StoreError
+        Where there is no such result, no run was computed, or ``out`` cannot be written or must not be replaced.
+    """
+    data, file = given_result(result)
+    path = Path(out)
+    check_page(path, file, fresh=fresh)
+    text = page_of(data, file)
+    with replace_atomically(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
+    """Raise StoreError unless a page can be written to ``path``; with ``fresh`` it may replace a file of any kind."""
+    check_writable(path, [] if file is None else [file])
+    check_ending(path, "report", [".html", ".htm"])
+    if not fresh:
+        check_same_kind(path, "html")
+
+
+def page_of(result: Labelled, file: Path | None) -> str:
+    """Return the page of a result that was read, from ``file`` unless that is None.
+
+    StoreError if no run was computed.
+    """
+    from importlib.resources import files
+
+    from jinja2 import Environment
+
+    attrs = result.attrs
+    template = Environment(autoescape=True).from_string(files(__package__).joinpath(_TEMPLATE).read_text("utf-8"))
+    return template.render(
+        title=escape_controls(attrs["title"]),
+        made=f"{attrs['source']}, seed {attrs['seed']}",
+        doubt="" if file is None else result.integrity_fault(),
+        warnings=attrs.get("warnings", "").splitlines(),
+        summary=list(_summary(result)),
+        figures=list(_figures(Drawable("result", result, file))),
+        errors=list(error_rows(result)),
+        cells=describe_cells(result) if len(cells_of(result)) > 1 else "",
+        left_out=[line.partition(": ")[::2] for line in attrs["left_out"].splitlines()],
+        file="out.nc" if file is None else shlex.quote(file.name),
+        scene=attrs["scene"].strip(),
+        origin=[("made by", attrs["packages"]), ("history", attrs["history"]), ("checksum", attrs.get("checksum", ""))],
+        citations=attrs.get("references", ""),
+    )
+
+
+def _summary(result: Labelled) -> Iterator[tuple[str, list[str]]]:
+    """Yield the lines of the summary, those that go on under the name that they began with."""
+    name, lines = "", list[str]()
+    for title, text in summary_lines(result):
+        if title and lines:
+            yield name, lines
+            lines = []
+        name = title or name
+        if name not in _LEFT:
+            lines.append(text)
+    if lines:
+        yield name, lines
+
+
+def _figures(source: Drawable) -> Iterator[_Figure]:
+    """Yield the pictures: of a sweep its number, then each variable over the path."""
+    swept = [size for size in swept_sizes(source.data).values() if size > 1]
+    if swept:
+        yield _figure(source, Request("sweep"), "the sweep")
+    for name in stored_variables(source.data):
+        yield _figure(source, Request("law", (name,)), f"{name.replace('_', ' ')} over the path")
+
+
+def _figure(source: Drawable, request: Request, words: str) -> _Figure:
+    pictures = []
+    for style in (None, _DARK):
+        with styled(style):
+            figure = draw_request(source, request).figure
+            figure.suptitle("")
+            pictures.append(_png(figure))
+    return _Figure(words, *pictures)
+
+
+def _png(figure: "Figure") -> str:
+    content = io.BytesIO()
+    options: dict[str, Any] = {"format": "png", "dpi": _DPI, "transparent": True}
+    figure.savefig(content, **options)
+    return base64.b64encode(content.getvalue()).decode()
