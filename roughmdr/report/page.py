@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _TEMPLATE = "page.html"
 _DPI = 140
 _DARK = "dark_background"
+_MAX_LINES = 8  # under one name of the summary
 _LEFT = ("variables", "left out", "warning")  # parts of the summary that have a place of their own
 
 
@@ -103,16 +104,18 @@ def page_of(result: Labelled, file: Path | None) -> str:
 
 def _summary(result: Labelled) -> Iterator[tuple[str, list[str]]]:
     """Yield the lines of the summary, those that go on under the name that they began with."""
-    name, lines = "", list[str]()
+    lines: dict[str, list[str]] = {}
+    name = ""
     for title, text in summary_lines(result):
-        if title and lines:
-            yield name, lines
-            lines = []
         name = title or name
         if name not in _LEFT:
-            lines.append(text)
-    if lines:
-        yield name, lines
+            lines.setdefault(name, []).append(text)
+    for name, texts in lines.items():
+        more = len(texts) - _MAX_LINES
+        yield (
+            name,
+            [*texts[:_MAX_LINES], f"... and {more} more lines, which roughmdr info prints"] if more > 0 else texts,
+        )
 
 
 def _figures(source: Drawable) -> Iterator[_Figure]:

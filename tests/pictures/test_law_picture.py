@@ -1,0 +1,191 @@
+"""Pictures of laws: the numbers in them, how they are told apart, and that they can be read."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+from legible import assert_legible, unit_of
+from scenes import ASPERITIES, scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.pictures.style import BRANCH_COLOURS
+from roughmdr.storage.labelled import Labelled
+
+FEW = {**ASPERITIES, "count": 100}
+CLEAR = {"separation": {"start": "clear", "stop": {"contact_fraction": 0.02}, "steps": 40}, "unload": True}
+LONG = "A title that is much longer than any picture is wide, " * 4
+
+
+@pytest.fixture(scope="module")
+def result() -> xr.Dataset:
+    return rm.run(scene(asperities=FEW, path=CLEAR, title=LONG))
+
+
+@pytest.fixture(scope="module")
+def without_adhesion() -> xr.Dataset:
+    return rm.run(scene(asperities=FEW, path=CLEAR, adhesion=None))
+
+
+def line(figure: Any, panel: int, branch: str) -> np.ndarray:
+    """The thick line of a branch in a panel, in SI."""
+    lines = [each for each in figure.axes[panel].get_lines() if each.get_color() == BRANCH_COLOURS[branch]]
+    units = unit_of(figure.axes[panel].get_xlabel()), unit_of(figure.axes[panel].get_ylabel())
+    return np.asarray(max(lines, key=lambda each: each.get_linewidth()).get_xydata()) * units
+
+
+def test_the_mean_is_drawn_in_the_unit_of_the_axis(result: xr.Dataset) -> None:
+    figure = rm.plot(result, variables="force")
+    assert figure.axes[0].get_ylabel() == "force [mN]"
+    assert figure.axes[0].get_xlabel() == "separation [µm]"
+    loading = result.isel(step=result.branch == "loading")
+    drawn = line(figure, 0, "loading")
+    np.testing.assert_allclose(drawn[:, 0], loading.separation, rtol=1e-12)
+    np.testing.assert_allclose(drawn[:, 1], loading.force.mean("realization"), rtol=1e-9, atol=1e-15)
+    assert_legible(figure)
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_a_variable_over_another_and_per_area(keep: str) -> None:
+    output = {"variables": ["force", "contact_area", "contact_count"], "keep": keep}
+    made = rm.run(scene(asperities=FEW, output=output))
+    figure = rm.plot(made, variables="contact_area", x="force", per_area=True)
+    assert [figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()] == ["pressure [kPa]", "contact fraction"]
+    mean = made if keep == "statistics" else made.mean("realization")
+    force, area = (mean.get(f"{name}_mean", mean.get(name)) for name in ("force", "contact_area"))
+    loading = (made.branch == "loading").values
+    drawn = line(figure, 0, "loading")
+    np.testing.assert_allclose(drawn[:, 0], force[loading] / made.nominal_area, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(drawn[:, 1], area[loading] / made.nominal_area, rtol=1e-9, atol=1e-15)
+    counts = rm.plot(made, variables="contact_count", per_area=True)
+    assert counts.axes[0].get_ylabel() == "contacts per area [/mm²]"
+
+
+def test_an_exponential_law_has_a_logarithmic_axis_and_one_with_tension_none(
+    result: xr.Dataset, without_adhesion: xr.Dataset
+) -> None:
+    assert rm.plot(without_adhesion, variables="force").axes[0].get_yscale() == "log"
+    assert rm.plot(without_adhesion, variables="force", log=False).axes[0].get_yscale() == "linear"
+    assert rm.plot(result, variables="force").axes[0].get_yscale() == "linear"
+    assert rm.plot(result, variables="force", log=True).axes[0].get_yscale() == "log"
+
+
+def test_the_pull_off_is_marked_where_it_is(result: xr.Dataset) -> None:
+    figure = rm.plot(result, variables="force")
+    (marks,) = figure.axes[0].containers
+    (x,), (y,) = marks.lines[0].get_data()
+    np.testing.assert_allclose(x, 1e6 * result.pull_off_separation.mean(), rtol=1e-9)
+    np.testing.assert_allclose(y, 1e3 * result.pull_off_force.mean(), rtol=1e-9)
+    assert "pull-off" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_separations_beyond_trust_are_grey_and_the_legend_says_so() -> None:
+    deep = rm.run(scene(asperities=FEW, batch=None))
+    figure = rm.plot(deep, variables="force")
+    assert "contact beyond the range of trust" in [text.get_text() for text in figure.legends[0].get_texts()]
+    spans = [patch.get_x() + patch.get_width() for patch in figure.axes[0].patches if hasattr(patch, "get_width")]
+    np.testing.assert_allclose(spans, [1e6 * deep.trusted_separation.max()], rtol=1e-9)
+
+
+def test_the_stiffness_where_contacts_detach_is_a_median_with_a_band() -> None:
+    made = rm.run(scene(asperities=FEW, batch={"realizations": 40}))
+    drawn = line(rm.plot(made, variables="stiffness"), 0, "unloading")
+    unloading = made.isel(step=made.branch == "unloading")
+    np.testing.assert_allclose(drawn[:, 1], unloading.stiffness.median("realization"), rtol=1e-9)
+    assert np.abs(np.diff(drawn[:, 1])).max() < np.abs(unloading.stiffness.mean("realization").diff("step")).max()
+
+
+def test_many_realisations_are_a_band_and_some_lines(result: xr.Dataset) -> None:
+    many = xr.concat([result] * 7, "realization", data_vars="minimal", coords="minimal", compat="override")
+    few, crowd = (len(rm.plot(each, variables="force").axes[0].get_lines()) for each in (result, many))
+    assert crowd < few + 20
+    assert len(rm.plot(many, variables="force").axes[0].collections) > len(
+        rm.plot(result, variables="force").axes[0].collections
+    )
+
+
+@pytest.mark.parametrize("count", [3, 12])
+def test_few_cells_are_named_and_more_have_a_colour_bar(count: int) -> None:
+    sweep = {"adhesion.work": {"linspace": ["10 mJ/m^2", "90 mJ/m^2"], "num": count}}
+    made = rm.run(scene(asperities=FEW, batch={"realizations": 2}, sweep=sweep))
+    figure = rm.plot(made, kind="law", variables="force")
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    bars = [ax.get_ylabel() for ax in figure.axes if ax.get_ylabel().startswith("adhesion work")]
+    assert (len(labels), bars) == ((3, []) if count == 3 else (0, ["adhesion work [mJ/m²]"]))
+    assert_legible(figure)
+
+
+def test_many_cells_of_several_keys_are_drawn_along_one_and_select_chooses() -> None:
+    sweep = {"adhesion.work": [0.01, 0.02, 0.05], "asperities.height.std": {"linspace": [1e-6, 2e-6], "num": 4}}
+    made = rm.run(scene(asperities=FEW, batch={"realizations": 2}, sweep=sweep))
+    figure = rm.plot(made, kind="law", variables="force")
+    assert "adhesion_work = 20 mJ/m^2; select chooses other cells" in figure.get_suptitle()
+    chosen = rm.plot(made, kind="law", variables="force", select={"adhesion.work": "50 mJ/m^2"})
+    by_hand = rm.plot(made.sel(adhesion_work=0.05), variables="force")
+    for one, other in zip(chosen.axes[0].get_lines(), by_hand.axes[0].get_lines(), strict=True):
+        np.testing.assert_array_equal(one.get_xydata(), other.get_xydata())
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_one_result_gives_the_same_file(result: xr.Dataset, tmp_path: Path, suffix: str) -> None:
+    for name in ("a", "b"):
+        rm.plot(result, tmp_path / f"{name}.{suffix}", variables="force")
+    assert (tmp_path / f"a.{suffix}").read_bytes() == (tmp_path / f"b.{suffix}").read_bytes()
+
+
+def test_a_style_changes_the_picture_and_is_left_behind(result: xr.Dataset) -> None:
+    from matplotlib import rcParams
+
+    before = dict(rcParams)
+    dark = rm.plot(result, variables="force", style="dark_background", with_expected=True)
+    assert dark.get_facecolor() == (0.0, 0.0, 0.0, 1.0)
+    assert dict(rcParams) == before
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"kind": "swep"}, "did you mean 'sweep'"),
+        ({"style": "dark_backgrund"}, "did you mean 'dark_background'"),
+        ({"x": "forse"}, "did you mean 'force'"),
+        ({"at": {"force": 1.0}}, "at does not go with kind 'law'"),
+        ({"select": {"adhesion.work": 0.05}}, "is not swept"),
+        ({"x": "force", "with_expected": True}, "they are over separation"),
+    ],
+)
+def test_options_that_are_refused(result: xr.Dataset, options: dict[str, Any], says: str) -> None:
+    with pytest.raises(rm.StoreError, match=says):
+        rm.plot(result, **options)
+
+
+def test_a_result_without_an_area_has_nothing_per_area(result: xr.Dataset) -> None:
+    with pytest.raises(rm.StoreError, match="no nominal_area"):
+        rm.plot(result.drop_vars("nominal_area"), per_area=True)
+
+
+def test_a_picture_loads_no_more_numbers_than_it_draws_and_the_command_makes_it(tmp_path: Path) -> None:
+    made = rm.run(scene(asperities=FEW, batch={"realizations": 3}), tmp_path / "out.nc")
+    done = CliRunner().invoke(
+        main,
+        ["plot", str(tmp_path / "out.nc"), "-o", str(tmp_path / "a.svg"), "--variable", "stiffness", "--x", "force"],
+    )
+    assert done.exit_code == 0, done.output
+    rm.plot(made, tmp_path / "b.svg", variables="stiffness", x="force")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        {"force": {"stop": "0.2 mN", "steps": 20}, "unload": True},
+        {"remote": {"stop": "0 um", "steps": 20}, "machine_stiffness": "1 kN/m", "unload": True},
+        {"preload": "0.2 mN", "steps": 20, "unload": True},
+    ],
+)
+def test_paths_of_machines_are_drawn(path: dict[str, Any]) -> None:
+    made = rm.run(scene(asperities=FEW, batch={"realizations": 4}, path=path))
+    assert_legible(rm.plot(made))
+    assert Labelled.of(made).sizes["step"] in (40, 41)
