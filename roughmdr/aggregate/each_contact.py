@@ -32,7 +32,7 @@ class EachContact(NamedTuple):
     @property
     def active(self) -> NDArray[np.bool_]:
         """Which asperities touch the flat, or are attracted by it."""
-        return (self.radius > 0.0) | (self.force != 0.0)
+        return np.asarray((self.radius > 0.0) | (self.force != 0.0))
 
 
 def contacts_at(
@@ -74,7 +74,8 @@ def _turning_points(separation: Floats) -> Floats:
     """Return the first separation of a path, those where it turns back, and the last: all that contacts remember."""
     moved = separation[np.append(True, np.diff(separation) != 0.0)]
     rises = np.diff(moved) > 0.0
-    return moved[np.concatenate([[True], rises[1:] != rises[:-1], np.full(min(rises.size, 1), True)])]
+    kept = np.concatenate([[True], rises[1:] != rises[:-1], np.full(min(rises.size, 1), True)])
+    return np.asarray(moved[kept])
 
 
 def _independent(
