@@ -200,7 +200,7 @@ def _notes(now: Snapshot, frame: Frame, others: int, *, needed: bool) -> list[st
     count, total = int(np.count_nonzero(on)), float(contacts.force.sum())
     numbers = f"{count} of {ensemble.height.size} asperities in contact, together {text(total, 'N')}"
     if ensemble.origin == "hills":
-        numbers += "; of hills the circles that are as stiff"
+        numbers += "; hills: circles as stiff"
     least, drawn = frame.min_radius, []
     if count:
         small = int(np.count_nonzero(contacts.radius[on] < least))
