@@ -37,6 +37,8 @@ class Coupled(NamedTuple):
     steps: list[Step]
     radius: Floats
     """The contact radius [m] of each asperity where the flat is closest."""
+    force: Floats
+    """The force [N] of each there."""
     visits: int
 
 
@@ -106,11 +108,12 @@ def solve_path(
             x = state.x
             rate = (x[: before.size] - before) / (last - h) if math.isfinite(last) else np.full(before.size, np.nan)
             moved, last = rate, h
-    radius = np.zeros_like(ensemble.height)
+    radius, force = np.zeros_like(ensemble.height), np.zeros_like(ensemble.height)
     if state is not None:
-        touching = state.contacts.load > 0.0
-        radius[candidates.kept[: state.x.size]] = np.where(touching, state.contacts.radius, 0.0) * length
-    return Coupled([steps[i] for i in index.ravel()], radius, visits)
+        load, kept = state.contacts.load, candidates.kept[: state.x.size]
+        radius[kept] = np.where(load > 0.0, state.contacts.radius, 0.0) * length
+        force[kept] = math.pi * effective_modulus * length * length * load
+    return Coupled([steps[i] for i in index.ravel()], radius, force, visits)
 
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:

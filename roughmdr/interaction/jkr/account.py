@@ -26,7 +26,9 @@ class Adhering(NamedTuple):
     separation: Floats
     """[m] at each step; inf where a dead load has pulled the flat off, NaN where there is no equilibrium."""
     radius: Floats
-    """The contact radius [m] of each asperity where the flat is closest."""
+    """The contact radius [m] of each asperity where the flat is closest, or at the step asked for."""
+    force: Floats
+    """The force [N] of each there."""
     visits: int
     avalanches: list[Avalanche]
     """In SI."""
@@ -36,15 +38,21 @@ class Adhering(NamedTuple):
 
 
 class Account:
-    """The totals of the contacts of a front so far; E* [Pa], of ``total`` asperities with those that are buried."""
+    """The totals of the contacts of a front so far; E* [Pa], of ``total`` asperities with those that are buried.
 
-    def __init__(self, front: Front, modulus: float, total: int, names: set[str], *, rises: bool) -> None:
+    Radius and force of each are kept where the flat is closest, or at step number ``at``.
+    """
+
+    def __init__(
+        self, front: Front, modulus: float, total: int, names: set[str], *, rises: bool, at: int | None = None
+    ) -> None:
         self._front, self._modulus, self._names = front, modulus, names
         self._length = front.placed.length
         self.energy_unit = modulus * self._length**3
         """Of energies in units of the patch [J]."""
         self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
-        self._radius, self._closest = np.zeros(total), math.inf
+        self._radius, self._force = np.zeros(total), np.zeros(total)
+        self._at, self._closest = at, math.inf
         self._tension = Tension() if rises else None
         self.dissipated = self.machine_dissipated = 0.0
         """By the avalanches, and by the jumps of the machine beside them [J]."""
@@ -71,16 +79,25 @@ class Account:
         self._steps.append(self._totals(state))
         self._separation.append(separation)
         self._parted |= rises and not state.inside.any()
-        if state.separation < self._closest:
-            self._closest = state.separation
-            kept = self._front.placed.kept[: state.t.size]
+        closer = state.separation < self._closest
+        self._closest = min(state.separation, self._closest)
+        if closer if self._at is None else len(self._steps) - 1 == self._at:
+            kept, force = self._front.placed.kept[: state.t.size], math.pi * self._modulus * self._length**2
             self._radius[kept] = np.where(state.inside, state.contacts.radius, 0.0) * self._length
+            self._force[kept] = np.where(state.inside, state.load, 0.0) * force
 
     def result(self) -> Adhering:
         """Return all of it."""
         separation, visits = np.array(self._separation), self._front.problem.natural.size * len(self._steps)
         return Adhering(
-            self._steps, separation, self._radius, visits, self._avalanches, self._pull_off(), self._crowding()
+            self._steps,
+            separation,
+            self._radius,
+            self._force,
+            visits,
+            self._avalanches,
+            self._pull_off(),
+            self._crowding(),
         )
 
     def _totals(self, state: State) -> Step:

@@ -21,15 +21,17 @@ def solve_path(
     work: float,
     interaction: Interaction,
     names: set[str],
+    at: int | None = None,
 ) -> Adhering:
     """Return adhesive contacts at separations [m] of a flat that comes from infinity; w [J/m2].
 
-    The stiffness and the energy are computed where ``names`` asks for them. Errors as ``interaction.solve``.
+    The stiffness and the energy are computed where ``names`` asks for them; each contact is told where the flat is
+    closest, or at step number ``at``. Errors as ``interaction.solve``.
     """
     placed = Placed(ensemble, effective_modulus, interaction)
     front = Front(placed, effective_modulus, work, float(separation.min()) / placed.length)
     rises = np.diff(separation, prepend=np.inf) > 0.0
-    account = Account(front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()))
+    account = Account(front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at)
     state = front.parted(max(float(separation[0]) / placed.length, front.top + _ABOVE))
     try:
         for h, up in zip(separation.tolist(), rises.tolist(), strict=True):

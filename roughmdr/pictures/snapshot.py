@@ -1,0 +1,129 @@
+"""The contacts of one realisation of a result at one step, computed again from the scene that the result holds."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate.each_contact import EachContact, contacts_at
+from roughmdr.ensemble import Ensemble
+from roughmdr.errors import StoreError
+from roughmdr.loading.path import branches
+from roughmdr.numerics.arguments import Floats
+from roughmdr.result.layout import cell_label, cells_of, control_of, controlled_values, estimator_of, method_of
+from roughmdr.scene import Scene, read
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.units import format_quantity
+from roughmdr.schema.wording import short_repr
+from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import DONE, SEPARATION
+
+_RTOL = 1e-6  # of the largest force of a realisation, by which that of the contacts may be off
+_FAR = 1e3  # depths of the path above it: there no contact is left
+
+
+class Snapshot(NamedTuple):
+    """The asperities of a realisation and their contacts at a step."""
+
+    scene: Scene
+    """Of the cell alone."""
+    ensemble: Ensemble
+    contacts: EachContact
+    separation: float
+    """[m]."""
+    place: str
+    """Cell, realisation, step and separation, in words."""
+
+    @classmethod
+    def of(
+        cls,
+        result: Labelled,
+        file: Path | None,
+        *,
+        cell: tuple[int, ...] | None = None,
+        realization: int = 0,
+        step: int | None = None,
+        placed: bool,
+    ) -> "Snapshot":
+        """Return the contacts at a step, by default the first at which the flat is closest, in a cell, by default the
+        first; ``file`` is that of the result, if any, and ``placed`` asperities have positions.
+
+        StoreError where there is no such cell, realisation or step, where it was not computed from asperities, or where
+        these are not those of the result; SceneError where its scene cannot be read again.
+        """
+        cells = cells_of(result)
+        cell = cells[0] if cell is None else cell
+        if cell not in cells:
+            last = ", ".join(map(str, cells[-1]))
+            raise StoreError(f"cell is {short_repr(cell)}; it must be an index of the swept keys, up to ({last})")
+        _check_realization(result, cell, realization)
+        path = _separations(result, cell, realization)
+        step = int(np.nanargmin(path)) if step is None else step
+        if not 0 <= step < path.size:
+            raise StoreError(f"step is {step}; the path of the result has steps 0 to {path.size - 1}")
+        if np.isnan(path[step]):
+            raise StoreError(f"step is {step}, at which there is no separation: the load has pulled the flat off")
+        scene = read(file or parse_toml(result.attrs["scene"])).cells[cells.index(cell)]
+        method = method_of(result, cell) or estimator_of(result)
+        if method == "expected":
+            raise StoreError(
+                "the result is an expected law, which has no asperities; run its scene with batch.estimator = 'sampled'"
+            )
+        ensemble = scene.asperities.ensemble(
+            scene.seed, realization, stratified=method == "stratified", with_positions=placed or scene.needs_positions
+        )
+        above = np.nanmax(path) + _FAR * (np.ptp(path[np.isfinite(path)]) + abs(np.nanmax(path)))
+        contacts = contacts_at(
+            ensemble,
+            np.where(np.isnan(path), above, path),
+            step,
+            effective_modulus=scene.effective_modulus,
+            adhesion=scene.adhesion_model,
+            interaction=scene.interaction_model,
+        )
+        _check_force(result, (*cell, realization), step, float(contacts.force.sum()))
+        branch = branches(np.where(np.isnan(path), above, path))[step]
+        where = f"realisation {realization}, step {step} of {path.size} ({branch}), separation {text(path[step], 'm')}"
+        label = cell_label(result, cell)
+        return cls(scene, ensemble, contacts, float(path[step]), f"{label}, {where}" if label else where)
+
+
+def text(value: float, unit: str) -> str:
+    """Return a quantity in words, as pictures have it."""
+    return format_quantity(value, unit).replace(" u", " µ").replace("^2", "²")
+
+
+def _check_realization(result: Labelled, cell: tuple[int, ...], realization: int) -> None:
+    """Raise StoreError unless a realisation of a cell was computed."""
+    status = result.variables["status"]
+    kept = "realization" in status.dims
+    count = result.sizes["realization"] if kept else int(result.variables["realization_count"].values[cell])
+    if not 0 <= realization < count:
+        raise StoreError(f"realization is {realization}; the result has realisations 0 to {count - 1}")
+    if status.values[(*cell, realization) if kept else cell] != DONE:
+        raise StoreError(f"realization is {realization}, which was not computed in this cell")
+
+
+def _separations(result: Labelled, cell: tuple[int, ...], realization: int) -> Floats:
+    """Return the separation at each step [m]; NaN where a load has pulled the flat off."""
+    if control_of(result) == SEPARATION.name:
+        return np.array(controlled_values(result)[cell])
+    if SEPARATION.name not in result.variables:
+        raise StoreError(
+            f"the result has {control_of(result)} for its path, and not the separations of each realisation; "
+            "run its scene with output.keep = 'curves'"
+        )
+    return np.array(result.variables[SEPARATION.name].values[(*cell, realization)])
+
+
+def _check_force(result: Labelled, run: tuple[int, ...], step: int, force: float) -> None:
+    """Raise StoreError where contacts have another force than the result, unless that is by boundary elements."""
+    grid = result.variables.get("grid_points")
+    if "force" not in result.variables or (grid is not None and grid.values[run] > 0.0):
+        return
+    curve = result.variables["force"].values[run]
+    if not abs(force - curve[step]) <= _RTOL * np.nanmax(np.abs(curve)):
+        raise StoreError(
+            f"the asperities of the scene have a force of {text(force, 'N')} at step {step}, the result has "
+            f"{text(curve[step], 'N')}: their file, or the code, has changed since; run the scene again"
+        )
