@@ -40,6 +40,7 @@ LINES = (
     ("runner",),
     ("report",),
     ("pictures",),
+    ("analysis",),
     ("cli",),
     ("__main__",),
 )
@@ -90,6 +91,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
                 "report/",
                 "result/",
                 "pictures/",
+                "analysis/",
             ],
         ),
         ("netCDF4", ["storage/"]),
