@@ -6,6 +6,8 @@ Everything listed in ``__all__`` is loaded when it is first used, so that what i
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from roughmdr.analysis.register import register
+
 if TYPE_CHECKING:
     from roughmdr import spectrum, theory
     from roughmdr.aggregate import load_separation
@@ -111,6 +113,8 @@ __all__ = [
     "tabor",
     "theory",
 ]
+
+register()
 
 
 def __getattr__(name: str) -> Any:

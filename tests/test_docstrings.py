@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import roughmdr as rm
+from roughmdr.analysis.accessor import Analysis
 
 ROOMS = ("aggregate", "asperity", "errors", "fields", "schema", "spectrum", "theory")
 """The rooms whose public names are described in sections."""
@@ -70,6 +71,21 @@ def test_the_examples_run(name: str) -> None:
         said: list[str] = []
         runner.run(example, out=said.append)
         assert not runner.failures, "".join(said)
+
+
+def test_the_examples_of_the_accessor_run() -> None:
+    """Those of its methods use ``result``, which that of the class has computed."""
+    found = {example.name: example for example in doctest.DocTestFinder().find(Analysis, "Analysis", globs={})}
+    methods = {name for name in vars(Analysis) if not name.startswith("_")}
+    assert {name.removeprefix("Analysis.") for name, each in found.items() if each.examples} == {*methods, "Analysis"}
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)
+    said: list[str] = []
+    of_class = found.pop("Analysis")
+    runner.run(of_class, out=said.append, clear_globs=False)
+    for example in found.values():
+        example.globs |= of_class.globs
+        runner.run(example, out=said.append)
+    assert not runner.failures, "".join(said)
 
 
 def test_the_signature_is_short() -> None:

@@ -38,7 +38,7 @@ LINES = (
     ("batch",),
     ("result",),
     ("runner",),
-    ("report", "pictures"),
+    ("report", "analysis", "pictures"),  # what is told, found and shown of a result
     ("cli",),
     ("__main__",),
 )
@@ -89,6 +89,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
                 "report/",
                 "result/",
                 "pictures/",
+                "analysis/",
             ],
         ),
         ("netCDF4", ["storage/"]),

@@ -8,7 +8,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
-from roughmdr.pictures.style import BRANCH_COLOURS, colours, hide_unused, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
 from roughmdr.result.layout import cell_label, cells_of, control_of, done_of, method_of
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled

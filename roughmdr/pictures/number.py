@@ -78,10 +78,10 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
         ((place, value),) = request.at.items()
         if place not in _PLACES:
             raise StoreError(f"at is {place!r}, which is none{suggestion(place, list(_PLACES))}")
-        from roughmdr.analysis.accessor import Accessor
+        from roughmdr.analysis.interpolation import at_value
 
         try:
-            found = Labelled.of(getattr(Accessor(result.to_xarray()), f"at_{place}")(value))
+            found = Labelled.of(at_value(result.to_xarray(), place, value, "loading"))
         except RoughmdrError as refused:
             raise StoreError(f"at {place} = {value}: {refused}") from None
         mean, error = mean_of(found, name)

@@ -1,6 +1,6 @@
 """The scene: its sections together, what must agree between them, and what follows from them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +11,7 @@ from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
 from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
@@ -24,8 +25,11 @@ from roughmdr.scene.sections import (
 )
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.faults import mismatch
+from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.schema.units import format_quantity
+from roughmdr.schema.wording import printable
 
 _NEGLIGIBLE = 0.01  # of the required error
 
@@ -73,6 +77,28 @@ class Scene(Section):
         scene = cls.model_validate(table | (validated or {}))
         scene._table, scene._file, scene._cells = table, file, cells
         return scene
+
+    def __repr__(self) -> str:
+        return listing(self._lines())
+
+    def _repr_html_(self) -> str:
+        return html_listing(self._lines())
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Yield the scene in a few lines."""
+        yield "scene", printable(self.title)
+        yield "asperities", asperities_in_words(self.asperities)
+        yield "material", f"effective modulus {format_quantity(self.effective_modulus, 'Pa')}"
+        work = format_quantity(self.work, "J/m^2")
+        yield "adhesion", "none" if self.adhesion is None else f"{self.adhesion.model}, work {work}"
+        if self.interaction is not None:
+            yield "interaction", self.interaction.model
+        yield "path", path_in_words(self.path)
+        for axis in self.sweep.axes:
+            yield "sweep", f"{axis.key} {axis_in_words(axis)}"
+        cells, realizations = len(self.cells), self.batch.realizations
+        of_cells = f"{cells} cells x " if cells > 1 else ""
+        yield "runs", f"{of_cells}{realizations} realisation{'s' * (realizations > 1)}, seed {self.seed}"
 
     def located(self, error: SceneError, cell: str = "") -> SceneError:
         """Return an error that was found after validation with the places of its faults, and the swept values."""

@@ -1,0 +1,1 @@
+"""Analysis of results and ensembles as Datasets: the accessor ``ds.roughmdr``."""

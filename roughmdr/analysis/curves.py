@@ -1,0 +1,134 @@
+"""The curves of a result as a Dataset: which they are, over which path, and those that follow from others."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.errors import StoreError
+from roughmdr.schema.wording import short_repr, suggestion
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, REFERENCE_VARIABLES, SEPARATION, STEP_COORDINATES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+BRANCHES = ("loading", "unloading")
+_PER_AREA = {"pressure": "force", "contact_fraction": "contact_area"}
+_NEEDED = "ds.roughmdr needs a result as roughmdr.run or load_separation returns it"
+
+
+def is_ensemble(dataset: "xr.Dataset") -> bool:
+    """Return whether a dataset holds asperities, as ``roughmdr.generate`` returns them."""
+    return "asperity" in dataset.dims and "height" in dataset and "shape" in dataset.attrs
+
+
+def is_result(dataset: "xr.Dataset") -> bool:
+    """Return whether a dataset holds curves over the steps of a path."""
+    return "branch" in dataset.coords and bool(_controls(dataset)) and bool(curves_of(dataset))
+
+
+def check_result(dataset: "xr.Dataset") -> None:
+    """Raise StoreError unless a dataset is a result."""
+    if is_ensemble(dataset):
+        raise StoreError(f"{_NEEDED}; this is an ensemble of asperities")
+    if not is_result(dataset):
+        names = short_repr(sorted(map(str, dataset.variables)))
+        expected = "curves over step, such as force, with the coordinates branch and separation (or another control)"
+        raise StoreError(f"{_NEEDED}, with {expected}; this dataset has the variables {names}")
+
+
+def control_of(dataset: "xr.Dataset") -> str:
+    """Return the quantity that the path controls."""
+    return _controls(dataset)[0]
+
+
+def keeps_statistics(dataset: "xr.Dataset") -> bool:
+    """Return whether a result holds statistics over realisations in place of their curves."""
+    return any(f"{name}_mean" in dataset and "step" in dataset[f"{name}_mean"].dims for name in LAW_VARIABLES)
+
+
+def curves_of(dataset: "xr.Dataset") -> list[str]:
+    """Return the variables with a curve, or a mean curve, over the steps; those of references included."""
+    suffix = "_mean" if keeps_statistics(dataset) else ""
+    names = (f"{name}{suffix}" for name in LAW_VARIABLES)
+    return [name for name in names if name in dataset.data_vars and "step" in dataset[name].dims]
+
+
+def curve(dataset: "xr.Dataset", name: str, role: str) -> "xr.DataArray":
+    """Return a variable over the steps, or its mean, computed from another where the result does not hold it.
+
+    StoreError, naming the argument by its ``role``, where it holds neither.
+    """
+    for held in (name, f"{name}_mean"):
+        if held in dataset.variables and "step" in dataset[held].dims:
+            return alone(whole(dataset[held]))
+    if name in _PER_AREA and "nominal_area" in dataset:
+        total = curve(dataset, _PER_AREA[name], role)
+        return (total / alone(dataset["nominal_area"])).assign_attrs(CURVE_VARIABLES[name].attrs)
+    if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
+        total = curve(dataset, "pressure", role) * alone(dataset["nominal_area"])
+        return total.assign_attrs(CURVE_VARIABLES[name].attrs)
+    held_names = [each.removesuffix("_mean") for each in curves_of(dataset)]
+    allowed = list(dict.fromkeys([*held_names, control_of(dataset)]))
+    if name in _PER_AREA and "nominal_area" not in dataset and _holds(dataset, _PER_AREA[name]):
+        raise StoreError(f"{role} is {name!r}; it needs the variable nominal_area, which this result does not hold")
+    if name in LAW_VARIABLES:
+        raise StoreError(f"{role} is {name!r}, which this result does not hold; it holds {', '.join(allowed)}")
+    raise StoreError(f"{role} is {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
+
+
+def separation_of(dataset: "xr.Dataset") -> "xr.DataArray":
+    """Return the separation [m] over the steps, a coordinate or a variable."""
+    return curve(dataset, SEPARATION.name, "separation")
+
+
+def alone(array: "xr.DataArray") -> "xr.DataArray":
+    """Return an array with no coordinates over the steps, which may bear the name of a new dimension."""
+    over_steps = [name for name, each in array.coords.items() if "step" in each.dims]
+    return array.drop_vars(over_steps)
+
+
+def whole(array: "xr.DataArray") -> "xr.DataArray":
+    """Return an array with its steps in one chunk, if it is in chunks."""
+    return array if array.chunks is None else array.chunk(step=-1)
+
+
+def is_reference(name: str) -> bool:
+    """Return whether a curve is of the reference by boundary elements."""
+    return name.removesuffix("_mean") in REFERENCE_VARIABLES
+
+
+class Legs:
+    """The legs of a path: stretches of steps on one branch, each from the turning point before it."""
+
+    def __init__(self, dataset: "xr.Dataset", branch: str) -> None:
+        """Take the steps of a branch; StoreError where that is none, or the path has none of it."""
+        if branch not in BRANCHES:
+            raise StoreError(f"branch is {branch!r}; it must be {' or '.join(map(repr, BRANCHES))}")
+        branches = dataset["branch"].to_numpy().astype(str)
+        self.wanted: NDArray[np.bool_] = branches == branch
+        """Whether each step is on the branch."""
+        turns = branches[1:] != branches[:-1]
+        self.start: NDArray[np.int64] = np.maximum.accumulate(
+            np.concatenate([[0], np.where(turns, np.arange(turns.size), 0)])
+        )
+        """The step at which the leg of each step begins: the last before the turning point."""
+        ends = np.append(turns, True)
+        ends[0] = True
+        self.ends: NDArray[np.bool_] = ends
+        """Whether each step is the first of the path, or the last of a leg."""
+        if not self.wanted.any():
+            raise StoreError(f"branch is {branch!r}; the path of this result has no {branch}")
+
+    def without_every_other(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the steps that are kept when every other is left out, in both ways; the ends of legs always are."""
+        even = np.arange(self.ends.size) % 2 == 0
+        return np.flatnonzero(even | self.ends), np.flatnonzero(~even | self.ends)
+
+
+def _holds(dataset: "xr.Dataset", name: str) -> bool:
+    return any(each in dataset.variables and "step" in dataset[each].dims for each in (name, f"{name}_mean"))
+
+
+def _controls(dataset: "xr.Dataset") -> list[str]:
+    return [name for name in STEP_COORDINATES if name in dataset.coords and "step" in dataset[name].dims]

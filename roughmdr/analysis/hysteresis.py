@@ -1,0 +1,75 @@
+"""The energy of a loop: the work of loading, that regained on unloading, and what is lost."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, curve, separation_of, whole
+from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_NAMES = {
+    "work_of_loading": "work done on the asperities while loading, from -force d(separation)",
+    "work_of_unloading": "work regained from the asperities while unloading, from force d(separation)",
+    "energy_lost": "work of loading less that of unloading: what the loop loses where the path ends as it began",
+}
+_HELD = ("dissipated_energy", "machine_dissipated_energy")
+_MISSING = "no value where a step has no force or no separation, as where a dead load has pulled the flat off"
+
+
+def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
+    """Return the energies [J] of the loop with their errors; the errors of the mean loop for statistics."""
+    import xarray as xr
+
+    check_result(dataset)
+    force, separation = alone(curve(dataset, "force", "hysteresis")), alone(separation_of(dataset))
+    loading, unloading = (Legs(dataset, branch).wanted[1:] for branch in BRANCHES)
+    energies = xr.apply_ufunc(
+        _energies,
+        force,
+        separation,
+        kwargs={"loading": loading, "unloading": unloading},
+        input_core_dims=[["step"], ["step"]],
+        output_core_dims=[[]] * 6,
+        dask="parallelized",
+        output_dtypes=[np.float64] * 6,
+    )
+    found: dict[str, xr.DataArray] = {}
+    for (name, long_name), value, error in zip(_NAMES.items(), energies[::2], energies[1::2], strict=True):
+        attrs = {"units": "J", "long_name": long_name, "ancillary_variables": f"{name}_interpolation_error"}
+        found[name] = value.assign_attrs(attrs)
+        about = {"units": "J", "long_name": f"interpolation error of the {name.replace('_', ' ')}"}
+        found[f"{name}_interpolation_error"] = error.assign_attrs(about)
+    for name in (*_HELD, *(f"{each}_mean" for each in _HELD)):
+        if name in dataset:
+            found[name] = alone(whole(dataset[name]).isel(step=-1)).assign_attrs(dataset[name].attrs)
+    titled = {"title": dataset.attrs["title"]} if "title" in dataset.attrs else {}
+    return xr.Dataset(found, attrs=titled | {"comment": _MISSING})
+
+
+def _energies(
+    force: Floats, separation: Floats, *, loading: NDArray[np.bool_], unloading: NDArray[np.bool_]
+) -> tuple[Floats, ...]:
+    """Return the work of loading, of unloading, and their difference, each followed by its error.
+
+    By the trapezoid rule. To leave a step out takes away the triangle that it makes with its neighbours; the error is
+    the sum of those of every other step, each by its magnitude, so that jumps do not cancel.
+    """
+    force, separation = np.broadcast_arrays(force, separation)
+    work = 0.5 * (force[..., 1:] + force[..., :-1]) * np.diff(separation, axis=-1)
+    rise, run = np.diff(force, axis=-1), np.diff(separation, axis=-1)
+    triangle = np.abs(0.5 * (run[..., :-1] * rise[..., 1:] - run[..., 1:] * rise[..., :-1]))
+    done, error = [], []
+    for branch, sign in ((loading, -1.0), (unloading, 1.0)):
+        inner = branch[:-1] & branch[1:]
+        done.append(sign * _sum(work, branch))
+        every_other = np.arange(inner.size) % 2 == 0
+        error.append(np.maximum(_sum(triangle, inner & every_other), _sum(triangle, inner & ~every_other)))
+    return done[0], error[0], done[1], error[1], done[0] - done[1], error[0] + error[1]
+
+
+def _sum(values: Floats, chosen: NDArray[np.bool_]) -> Floats:
+    return np.asarray(values[..., chosen].sum(axis=-1))

@@ -1,0 +1,81 @@
+"""All variables of a result where its curves first reach a force, a pressure, a contact fraction or a separation."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.analysis.brackets import Steps, find_brackets, interpolate
+from roughmdr.analysis.curves import Legs, alone, check_result, control_of, curve, curves_of, separation_of, whole
+from roughmdr.schema.arguments import check_values
+from roughmdr.variables import LAW_VARIABLES, SEPARATION
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_BRACKET = ("_way", "_part")
+_IN_JUMPS = ("contact_count", "dissipated_energy", "machine_dissipated_energy")
+"""Curves that are constant between jumps."""
+
+
+def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -> "xr.Dataset":
+    """Return all curves, and the separation, where that of ``name`` first reaches ``values`` on a branch."""
+    import xarray as xr
+
+    check_result(dataset)
+    units = (LAW_VARIABLES | {SEPARATION.name: SEPARATION})[name].units
+    wanted = check_values(name, values, units)
+    legs = Legs(dataset, branch)
+    reached = alone(curve(dataset, name, f"at_{name}"))
+    points = xr.DataArray(np.atleast_1d(wanted), dims=name)
+    brackets = xr.apply_ufunc(
+        find_brackets,
+        reached,
+        points,
+        kwargs={"ways": Steps.ways(legs)},
+        input_core_dims=[["step"], [name]],
+        output_core_dims=[[name, *_BRACKET]],
+        dask="parallelized",
+        output_dtypes=[np.float64],
+        dask_gufunc_kwargs={"output_sizes": dict(zip(_BRACKET, (3, 3), strict=True))},
+    )
+    found: dict[str, xr.DataArray] = {}
+    for label, array in _curves(dataset, name).items():
+        value, error = xr.apply_ufunc(
+            interpolate,
+            array,
+            brackets,
+            kwargs={"in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
+            input_core_dims=[["step"], [name, *_BRACKET]],
+            output_core_dims=[[name], [name]],
+            dask="parallelized",
+            output_dtypes=[np.float64, np.float64],
+        )
+        attrs = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
+        about = {"long_name": f"interpolation error of the {attrs['long_name']}"}
+        found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
+        found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
+    coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
+    result = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
+    return result if np.ndim(wanted) else result.isel({name: 0})
+
+
+def _curves(dataset: "xr.Dataset", name: str) -> "dict[str, xr.DataArray]":
+    """Return the separation and all curves but those of ``name`` itself."""
+    curves = {each: alone(whole(dataset[each])) for each in curves_of(dataset)}
+    control = control_of(dataset)
+    if control in dataset.coords:
+        curves = {control: curve(dataset, control, "control"), **curves}
+    if SEPARATION.name not in curves and f"{SEPARATION.name}_mean" not in curves:
+        curves = {SEPARATION.name: separation_of(dataset), **curves}
+    return {each: array for each, array in curves.items() if each.removesuffix("_mean") != name}
+
+
+def _attributes(dataset: "xr.Dataset", name: str, branch: str) -> dict[str, str]:
+    """Return the attributes of what was found."""
+    missing = f"no value where the {branch} never reaches the {name.replace('_', ' ')}, or from steps without a value"
+    about = {
+        "branch": branch,
+        "comment": f"where it is first reached, by linear interpolation between steps; {missing}",
+    }
+    return {key: dataset.attrs[key] for key in ("title",) if key in dataset.attrs} | about

@@ -1,0 +1,73 @@
+"""The pull-off of each cell of a result, with its standard error."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.analysis.curves import check_result
+from roughmdr.batch.moments import mean_and_error
+from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MEANS = {
+    "force": "pull_off_force",
+    "separation": "pull_off_separation",
+    "contacts": "pull_off_contacts",
+    "pressure": "pull_off_pressure",
+    "contact_fraction": "pull_off_contact_fraction",
+}
+_AS_THEY_ARE = {"count": "pull_off_count", "force_of_mean": "pull_off_force_of_mean"}
+_COMMENT = (
+    "over the realisations whose unloading does not end in contact: count; no value where there is none, and no "
+    "standard error of one"
+)
+
+
+def pull_off(dataset: "xr.Dataset") -> "xr.Dataset":
+    """Return the pull-off over the swept keys; StoreError where the path has no unloading."""
+    import xarray as xr
+
+    check_result(dataset)
+    if not (dataset["branch"] == "unloading").any():
+        raise StoreError("this result has no pull-off: its path has no unloading")
+    if "pull_off_force" not in dataset and "pull_off_force_mean" not in dataset:
+        raise StoreError("this result has no pull-off: it was made by a version that did not store any")
+    found: dict[str, xr.DataArray] = {}
+    for name, stored in _MEANS.items():
+        if stored in dataset or f"{stored}_mean" in dataset:
+            mean, error = _mean_and_error(dataset, stored)
+            found[name] = mean
+            if name == "force":
+                about = {"units": "N", "long_name": "standard error of the mean pull-off force"}
+                found["force_sem"] = error.assign_attrs(about)
+    found |= {name: dataset[stored] for name, stored in _AS_THEY_ARE.items() if stored in dataset}
+    return xr.Dataset(found, attrs={"comment": _COMMENT}).drop_dims("step", errors="ignore")
+
+
+def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr.DataArray]":
+    """Return the mean of a number over the realisations that have it, and its standard error."""
+    import xarray as xr
+
+    if f"{name}_mean" in dataset:
+        return dataset[f"{name}_mean"], dataset[f"{name}_sem"]
+    each = dataset[name]
+    if "realization" not in each.dims:
+        return each, xr.full_like(each, np.nan)
+    each = each if each.chunks is None else each.chunk(realization=-1)
+    mean, error = xr.apply_ufunc(
+        _over_realizations,
+        each,
+        input_core_dims=[["realization"]],
+        output_core_dims=[[], []],
+        dask="parallelized",
+        output_dtypes=[np.float64] * 2,
+    )
+    attrs = each.attrs | {"long_name": f"mean of the {each.attrs['long_name']}"}
+    return mean.assign_attrs(attrs), error
+
+
+def _over_realizations(values: Floats) -> tuple[Floats, Floats]:
+    return mean_and_error(values, np.isfinite(values))

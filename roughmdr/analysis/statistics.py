@@ -1,0 +1,163 @@
+"""The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import tomli_w
+from numpy.typing import NDArray
+
+from roughmdr.analysis.cells import of_cells
+from roughmdr.analysis.curves import check_result, control_of, curves_of, keeps_statistics
+from roughmdr.batch.moments import moments_of
+from roughmdr.errors import StoreError
+from roughmdr.loading.path import LoadingPath
+from roughmdr.numerics.arguments import Floats
+from roughmdr.scene import Scene
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.variables import DONE, PULL_OFF, REMOTE, RUN_DIAGNOSTICS, RUN_VARIABLES, SEPARATION, TRAVEL
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_NAMES = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
+_INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
+_OVER_CELLS = ("pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area")
+_OF_CURVES = ("cell_key", "remark")
+"""Coordinates that describe the runs whose curves were kept."""
+
+
+def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
+    """Return mean, standard error, least and greatest over the realisations of each curve, and the rest merged."""
+    import xarray as xr
+
+    check_result(dataset)
+    if keeps_statistics(dataset):
+        raise StoreError("statistics needs the curves of realisations; this result has their statistics already")
+    if "status" not in dataset or "realization" not in dataset["status"].dims:
+        raise StoreError("statistics needs the dimension realization, and status; this result has none")
+    done = (dataset["status"] == DONE).compute()
+    found: dict[str, xr.DataArray] = {}
+    for name in curves_of(dataset):
+        found |= _statistics(dataset, name, done)
+    for name in PULL_OFF:
+        if name in dataset and "realization" in dataset[name].dims:
+            found |= _statistics(dataset, name, dataset[name].notnull())
+    found |= {name: dataset[name] for name in _OVER_CELLS if name in dataset}
+    counted = xr.full_like(done.any("realization"), dataset.sizes["realization"], dtype=np.float64)
+    found["realization_count"] = dataset.get("realization_count", counted).assign_attrs(
+        RUN_VARIABLES["realization_count"].attrs
+    )
+    for name, declared in RUN_DIAGNOSTICS.items():
+        if name in dataset.data_vars:
+            found[name] = _reduced(dataset[name], declared.merge)
+    attrs = {name: value for name, value in dataset.attrs.items() if name != "checksum"}
+    if "scene" in attrs:
+        table: dict[str, Any] = parse_toml(attrs["scene"])
+        table["output"] = {**table.get("output", {}), "keep": "statistics"}
+        attrs["scene"] = tomli_w.dumps(table)
+    over_steps = {name: each for name, each in dataset.coords.items() if "realization" not in each.dims}
+    return (
+        xr.Dataset(found, attrs=attrs)
+        .drop_vars(_OF_CURVES, errors="ignore")
+        .assign_coords({name: each for name, each in over_steps.items() if name not in _OF_CURVES})
+    )
+
+
+def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "dict[str, xr.DataArray]":
+    """Return the statistics of a variable over the realisations that are counted."""
+    import xarray as xr
+
+    array = dataset[name]
+    if array.chunks is not None:
+        array = array.chunk({"realization": -1, **({"step": "auto"} if "step" in array.dims else {})})
+        counted = counted if counted.chunks is None else counted.chunk(realization=-1)
+    found = xr.apply_ufunc(
+        _moments,
+        array,
+        counted,
+        input_core_dims=[["realization"], ["realization"]],
+        output_core_dims=[[]] * len(_NAMES),
+        dask="parallelized",
+        output_dtypes=[np.float64] * len(_NAMES),
+    )
+    parts = dict(zip(_NAMES, found, strict=True))
+    attrs = {
+        statistic: {**array.attrs, "long_name": f"{said} of {_article(name)}{array.attrs['long_name']}"}
+        for statistic, said in _NAMES.items()
+    }
+    attrs["mean"]["ancillary_variables"] = f"{name}_sem"
+    if name == "stiffness" and (known := _has_variance(dataset)) is not None:
+        parts["sem"] = parts["sem"].where(known)
+        attrs["sem"]["comment"] = _INFINITE_VARIANCE
+    return {f"{name}_{statistic}": part.assign_attrs(attrs[statistic]) for statistic, part in parts.items()}
+
+
+def _article(name: str) -> str:
+    return "the " if name in PULL_OFF else ""
+
+
+def _moments(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
+    """Return the statistics of values [..., realization], of which some count in each cell."""
+    shape = values.shape[:-1]
+    cells = np.broadcast_to(counted, values.shape)
+    if cells.all():
+        return _four(np.moveaxis(values, -1, 0))
+    found = tuple(np.full(shape, math.nan) for _ in _NAMES)
+    for cell in np.ndindex(shape):
+        if cells[cell].any():
+            for part, value in zip(found, _four(values[cell][cells[cell]]), strict=True):
+                part[cell] = value
+    return found
+
+
+def _four(values: Floats) -> tuple[Floats, ...]:
+    moments = moments_of(values)
+    return moments.mean, moments.standard_error, moments.minimum, moments.maximum
+
+
+def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
+    """Return where the stiffness has a finite variance; None where it has one everywhere.
+
+    It has none where adhesive contacts may be at their detachment, unless they hang on something that gives way.
+    """
+    import xarray as xr
+
+    control = control_of(dataset)
+    if control not in (SEPARATION.name, TRAVEL.name) or REMOTE.name in dataset:
+        return None
+    sign = 1.0 if control == SEPARATION.name else -1.0
+
+    def at_detachment(values: Floats) -> NDArray[np.bool_]:
+        return LoadingPath.along(sign * values, unload=False, adhesive=True).at_detachment()
+
+    at = xr.apply_ufunc(
+        at_detachment,
+        dataset[control].compute(),
+        input_core_dims=[["step"]],
+        output_core_dims=[["step"]],
+        vectorize=True,
+    )
+    without = at & (of_cells(dataset, _work, "statistics") > 0.0)
+    return ~without if bool(without.any()) else None
+
+
+def _work(scene: Scene) -> float:
+    return scene.work
+
+
+def _reduced(array: "xr.DataArray", rule: str) -> "xr.DataArray":
+    """Return a diagnostic merged over the realisations."""
+    import xarray as xr
+
+    array = array if array.chunks is None else array.chunk(realization=-1)
+    merged: xr.DataArray = xr.apply_ufunc(
+        getattr(np, rule).reduce,
+        array,
+        kwargs={"axis": -1},
+        input_core_dims=[["realization"]],
+        keep_attrs=True,
+        dask="parallelized",
+        output_dtypes=[array.dtype],
+    )
+    return merged
