@@ -10,7 +10,7 @@ import pytest
 
 import roughmdr as rm
 
-ROOMS = ("aggregate", "asperity", "errors", "fields", "schema", "spectrum", "theory")
+ROOMS = ("aggregate", "asperity", "errors", "fields", "fitting", "schema", "spectrum", "theory")
 """The rooms whose public names are described in sections."""
 SECTIONS = ("Parameters", "Returns", "Raises", "References", "Examples")
 
