@@ -11,6 +11,7 @@ from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import format_quantity
 
 _ALIKE = 0.99  # correlation
 _WIDE = math.log(2.0)  # of x: half a 95 % interval, a factor of two or so much of the scale
@@ -68,12 +69,17 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
         error = 100.0 * float(known.deviation_of(combination))
         product = " * ".join(_power(each.key, float(power)) for each, power in zip(pair, exponents, strict=True))
         return f"{text}; it determines {product}, to {error:.2g} %"
-    if not any(parameter.logarithmic for parameter in pair) and pair[0].unit == pair[1].unit:
-        weights = best / [parameter.scale for parameter in pair]
-        ratio = float(weights[1] / weights[0])
-        part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
-        return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
-    return text
+    if any(parameter.logarithmic for parameter in pair):
+        power, exponent = (0, 1) if pair[0].logarithmic else (1, 0)
+        decay = float(pair[exponent].scale * best[power] / best[exponent])
+        length = format_quantity(decay, pair[exponent].unit)
+        return f"{text}; it determines {names[power]} * exp({names[exponent]} / {length})"
+    if pair[0].unit != pair[1].unit:
+        return text
+    weights = best / [parameter.scale for parameter in pair]
+    ratio = float(weights[1] / weights[0])
+    part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
+    return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
 
 
 def _best_known(influence: Floats) -> Floats:

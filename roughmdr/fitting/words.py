@@ -12,6 +12,13 @@ def describe_fit(fit: Labelled) -> str:
     return "\n".join(f"{name:<12} {text}" for name, text in _lines(fit))
 
 
+def describe_parameters(fit: Labelled) -> list[str]:
+    """Return a line for each parameter, with its standard error and its 95 % interval."""
+    keys = parameter_keys(fit)
+    widest = max(map(len, keys))
+    return [f"{key:<{widest}}  {_with_interval(fit, key.replace('.', '_'))}" for key in keys]
+
+
 def parameter_keys(fit: Labelled) -> list[str]:
     """Return the keys of the fitted parameters."""
     return list(map(str, fit.coordinates["parameter_name"].values))
@@ -19,9 +26,8 @@ def parameter_keys(fit: Labelled) -> list[str]:
 
 def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
     keys = parameter_keys(fit)
-    widest = max(map(len, keys))
-    for i, key in enumerate(keys):
-        yield "" if i else "fitted", f"{key:<{widest}}  {_with_interval(fit, key.replace('.', '_'))}"
+    for i, line in enumerate(describe_parameters(fit)):
+        yield "" if i else "fitted", line
     yield "intervals", "± one standard error; in parentheses 95 %"
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
