@@ -1,36 +1,60 @@
 """roughmdr plot: draw a result."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
-from roughmdr.cli.invocation import warn_if_changed
 from roughmdr.cli.options import FILE, OUTPUT, fresh_option
 from roughmdr.report.terminal import Command, print_text
 
 
 @click.command(cls=Command)
-@click.argument("result", type=FILE)
+@click.argument("file", type=FILE)
 @click.option("-o", "--output", type=OUTPUT, required=True, help="Picture to write: .png, .pdf or .svg.")
-@click.option("--variable", "variables", multiple=True, help="Variable to draw; repeatable. Default: all.")
+@click.option("--kind", metavar="KIND", help="law, sweep, map, asperity, convergence or fit. Default: what fits FILE.")
+@click.option("--variable", "variables", multiple=True, help="Variable to draw; of a law repeatable. Default: all.")
+@click.option("--x", metavar="NAME", help="Of a law: variable to draw over. Of a sweep: swept key along the axis.")
+@click.option("--per-area", is_flag=True, help="Divide by the nominal area.")
+@click.option("--log/--linear", default=None, help="Logarithmic axis or not. Default: where a law is exponential.")
+@click.option("--at", metavar="QUANTITY=VALUE", help='Of a sweep: where on the loading, as "force=1 mN".')
+@click.option("--select", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one value of a key; repeatable.")
+@click.option("--step", type=click.IntRange(min=0), help="Of a map or an asperity: step, from 0.")
+@click.option("--realization", type=click.IntRange(min=0), help="Of a map or an asperity: realisation, from 0.")
 @click.option("--with-expected", is_flag=True, help="Also draw the expected law of the scene.")
 @click.option("--with-theory", is_flag=True, help="Also draw the theory curves that apply to the scene.")
-@click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that RESULT holds.")
+@click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that FILE holds.")
+@click.option("--style", metavar="STYLE", help="Style of matplotlib: its name or file.")
 @fresh_option
-def plot(result: Path, output: Path, variables: tuple[str, ...], fresh: bool, **overlays: bool) -> None:
-    """Draw the load-separation law in RESULT.
+def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | None, **options: Any) -> None:
+    """Draw what FILE holds: a result, asperities or a fit.
 
-    An existing picture of the same format is replaced, since RESULT draws it again.
+    Of a result the law is drawn, or, of a sweep of many cells, the pull-off against what was swept. An existing picture
+    of the same format is replaced, since FILE draws it again.
     """
-    from roughmdr.pictures.law import save
-    from roughmdr.pictures.plot import check_picture, draw_result
-    from roughmdr.storage.result_file import read_result
+    from roughmdr.pictures.kinds import draw_request
+    from roughmdr.pictures.plot import check_picture
+    from roughmdr.pictures.request import Request, drawable
+    from roughmdr.pictures.style import save, styled
 
-    check_picture(output, [result], fresh=fresh)
-    data = read_result(result)
-    warn_if_changed(result, data)
-    picture = draw_result(data, variables, result, **overlays)
-    for title, remark in picture.remarks:
-        print_text(f"{title:<12} {remark}")
-    save(picture.figure, output)
+    check_picture(output, [file], fresh=fresh)
+    options["variables"] = tuple(options["variables"])
+    options["select"] = dict(_pair("--select", each) for each in options["select"])
+    options["at"] = {} if at is None else dict([_pair("--at", at)])
+    with styled(style):
+        picture = draw_request(drawable(file), Request(**options))
+        for title, remark in picture.remarks:
+            print_text(f"{title:<12} {remark}")
+        save(picture.figure, output)
     print_text(f"picture      {click.format_filename(output)}")
+
+
+def _pair(option: str, text: str) -> tuple[str, object]:
+    """Read KEY=VALUE, a number or a text."""
+    key, equals, value = map(str.strip, text.partition("="))
+    if not (key and equals and value):
+        raise click.UsageError(f"{option} {text}: expected KEY=VALUE")
+    try:
+        return key, float(value)
+    except ValueError:
+        return key, value

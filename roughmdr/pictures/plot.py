@@ -1,17 +1,15 @@
-"""A result drawn, with the expected law and theory curves over it where they are asked for."""
+"""A picture of a file or a dataset, written and returned."""
 
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import LimitWarning
-from roughmdr.pictures.law import draw, format_of, save
-from roughmdr.pictures.reference import overlay_reference
-from roughmdr.report.given import given_result
-from roughmdr.result.layout import asked_variables
+from roughmdr.pictures.kinds import draw_request
+from roughmdr.pictures.request import Request, drawable
+from roughmdr.pictures.style import format_of, save, styled
 from roughmdr.storage.files import check_writable
-from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import check_same_kind
 
 if TYPE_CHECKING:
@@ -19,41 +17,42 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Picture(NamedTuple):
-    """A figure, and remarks on the curves over it: which they are, and whether they are drawn, and if not why."""
-
-    figure: "Figure"
-    remarks: list[tuple[str, str]]
-
-
 def plot(
     result: "str | Path | xr.Dataset",
     out: str | Path | None = None,
     *,
+    kind: str | None = None,
     variables: str | Iterable[str] = (),
-    with_expected: bool = False,
-    with_theory: bool = False,
-    with_reference: bool = False,
+    style: str | None = None,
     fresh: bool = False,
+    **options: Any,
 ) -> "Figure":
-    """Draw the load-separation law of a result, as ``roughmdr plot`` does.
+    """Draw a result, an ensemble or a fit, as ``roughmdr plot`` does.
 
     A LimitWarning says which curve was asked for and cannot be drawn, and why.
 
     Parameters
     ----------
     result : path or xarray.Dataset
-        A result file, or what ``run`` returned.
+        A result file, or what ``run`` returned; of asperities, what ``generate`` did; of a fit, what ``fit`` did.
     out : path, optional
         The picture to write: .png, .pdf or .svg. One of the same format that is there already is replaced.
+    kind : {"law", "sweep", "map", "asperity", "convergence", "fit"}, optional
+        Which question it answers; unless given the law, of a sweep of many cells the sweep, of asperities the map.
     variables : str or iterable of str, optional
-        Those to draw; all that the result holds unless given.
-    with_expected, with_theory : bool, optional
-        Whether to draw the expected law of the scene, and the theory curves that apply to it, as well.
-    with_reference : bool, optional
-        Whether to draw the law by boundary elements that the result holds beside its own.
+        Those to draw: of a law all that the result holds unless given, of a sweep one, the pull-off force.
+    style : str, optional
+        A style of matplotlib: its name or file.
     fresh : bool, optional
         Whether to replace a file of any kind at ``out``.
+    **options
+        Of a law: ``x``, the variable to draw over; ``per_area``, whether to divide by the nominal area; ``log``,
+        whether the axis is logarithmic; ``with_expected``, ``with_theory`` and ``with_reference``, whether to draw the
+        expected law of the scene, the theory curves that apply to it, and the law by boundary elements that the
+        result holds. Of a sweep: ``x``, the swept key along the axis; ``per_area``; ``log``; ``at``, a dictionary such
+        as ``{"force": "1 mN"}`` of where on the loading the variable is taken. Of both and others: ``select``, a
+        dictionary such as ``{"adhesion.work": "50 mJ/m^2"}`` of the part of a sweep. Of a map and an asperity: ``step``
+        and ``realization``, both counted from 0.
 
     Returns
     -------
@@ -63,8 +62,8 @@ def plot(
     Raises
     ------
     StoreError
-        Where there is no such result or variable, no run was computed, or ``out`` cannot be written or must not be
-        replaced.
+        Where there is no such result, variable or option, no run was computed, or ``out`` cannot be written or must
+        not be replaced.
     SceneError
         Where a curve over the result is asked for and its scene cannot be read again.
 
@@ -81,18 +80,18 @@ def plot(
     >>> [axes.get_ylabel() for axes in rm.plot(result, variables=["force", "contact_count"]).axes]
     ['force [mN]', 'contact count']
     """
-    data, file = given_result(result)
+    names = (variables,) if isinstance(variables, str) else tuple(variables)
+    request = Request(kind, names, **options)
+    source = drawable(result)
     if out is not None:
-        check_picture(Path(out), [] if file is None else [file], fresh=fresh)
-    names = [variables] if isinstance(variables, str) else list(variables)
-    figure, remarks = draw_result(
-        data, names, file, with_expected=with_expected, with_theory=with_theory, with_reference=with_reference
-    )
-    for title, remark in remarks:
-        if "not drawn" in remark:
-            warnings.warn(f"{title}: {remark}", LimitWarning, stacklevel=2)
-    if out is not None:
-        save(figure, Path(out))
+        check_picture(Path(out), [] if source.file is None else [source.file], fresh=fresh)
+    with styled(style):
+        figure, remarks = draw_request(source, request)
+        for title, remark in remarks:
+            if "not drawn" in remark:
+                warnings.warn(f"{title}: {remark}", LimitWarning, stacklevel=2)
+        if out is not None:
+            save(figure, Path(out))
     return figure
 
 
@@ -105,28 +104,3 @@ def check_picture(path: Path, inputs: Iterable[Path], *, fresh: bool) -> None:
     kind = format_of(path)
     if not fresh:
         check_same_kind(path, kind)
-
-
-def draw_result(
-    result: Labelled,
-    variables: Iterable[str],
-    file: Path | None,
-    *,
-    with_expected: bool,
-    with_theory: bool,
-    with_reference: bool = False,
-) -> Picture:
-    """Return the picture of a result that was read, from ``file`` unless that is None; all variables if none is named.
-
-    Errors as in ``plot``.
-    """
-    names = asked_variables(result, variables)
-    overlays = [("reference", overlay_reference(result, names))] if with_reference else []
-    if with_expected or with_theory:
-        from roughmdr.pictures.overlay import overlay_expected, overlay_theory, plan_of_result
-
-        plan = plan_of_result(file, result)
-        overlays += [("expected", overlay_expected(plan, names))] if with_expected else []
-        overlays += [("theory", overlay_theory(plan, names))] if with_theory else []
-    lines = [line for _, overlay in overlays for line in overlay.lines]
-    return Picture(draw(result, names, lines), [(title, text) for title, each in overlays for text in each.remarks])

@@ -1,6 +1,6 @@
 """The law by boundary elements over a picture of the result that holds it."""
 
-from roughmdr.pictures.law import REFERENCE, Overlay, OverlayLine
+from roughmdr.pictures.lines import REFERENCE, Overlay, OverlayLine
 from roughmdr.result.layout import cells_of, controlled_values
 from roughmdr.result.means import holds, mean_of
 from roughmdr.storage.labelled import Labelled

@@ -115,6 +115,17 @@ def format_quantity(value: float, unit: str, *, to: float | None = None, error: 
     return text if spelled == DIMENSIONLESS else f"{text} {prefixed}"
 
 
+def axis_unit(largest: float, unit: str) -> tuple[float, str]:
+    """Return the unit of an axis for numbers up to ``largest`` in ``unit``: its size in SI, and its name."""
+    spelled = _SPELLED.get(unit, unit)
+    if spelled == DIMENSIONLESS:
+        return 1.0, ""
+    power = _POWERS.get(spelled, 1)
+    exponent = _exponent(abs(largest), power)
+    slash = "/" if spelled.startswith("/") else ""
+    return 10.0 ** (exponent * power), f"{slash}{_SHOWN[exponent]}{spelled.removeprefix('/')}"
+
+
 def _exponent(value: float, power: int) -> int:
     """Return the exponent of the prefix, raised to ``power``, by which a value is from 1 to 1000, or to 1000^power."""
     if not 0.0 < value < math.inf:

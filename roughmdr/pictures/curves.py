@@ -1,0 +1,147 @@
+"""The curves of a result that a picture shows: each variable in each cell, over one loading or unloading."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.result.layout import abscissa_of, control_of, controlled_values, done_of, stored_variables, swept_sizes
+from roughmdr.result.means import mean_of
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.wording import suggestion
+from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import LAW_VARIABLES
+
+_PER_AREA = {
+    "force": ("pressure", "Pa"),
+    "contact_area": ("contact fraction", "1"),
+    "contact_count": ("contacts per area", "m-2"),
+    "stiffness": ("stiffness per area", "Pa m-1"),
+    "contact_radius_sum": ("contact radii per area", "m-1"),
+    "energy": ("energy per area", "J m-2"),
+    "dissipated_energy": ("dissipated energy per area", "J m-2"),
+    "machine_dissipated_energy": ("energy that the machine dissipates per area", "J m-2"),
+}
+_LONG_NAMES = {"remote": "position of the far end of the spring"}
+_FEW, _ROBUST = 30, 9  # of fewer realisations than these the median is taken over so many steps, too
+_BAND = (0.16, 0.84)
+
+
+class Quantity(NamedTuple):
+    """A variable as it is drawn: its name on the axis, its unit, and the area that it is divided by in each cell."""
+
+    variable: str
+    name: str
+    unit: str
+    area: Floats | None
+
+    @classmethod
+    def of(cls, result: Labelled, variable: str, *, per_area: bool = False) -> "Quantity":
+        """Return a variable of a result, per nominal area where that is asked for and it is a sum over asperities."""
+        name, unit = _LONG_NAMES.get(variable, variable.replace("_", " ")), LAW_VARIABLES[variable].units
+        if not per_area or variable not in _PER_AREA:
+            return cls(variable, name, unit, None)
+        if "nominal_area" not in result.variables:
+            raise StoreError("the result has no nominal_area to divide by: its asperities have none, or it is older")
+        return cls(variable, *_PER_AREA[variable], result.variables["nominal_area"].values)
+
+    def scaled(self, values: Floats) -> Floats:
+        """Return numbers of the variable, over the swept keys and more, as they are drawn."""
+        if self.area is None:
+            return values
+        return np.asarray(values / self.area.reshape(*self.area.shape, *([1] * (values.ndim - self.area.ndim))))
+
+    def in_cell(self, values: Floats, cell: tuple[int, ...]) -> Floats:
+        """Return numbers of the variable in one cell as they are drawn."""
+        return values if self.area is None else np.asarray(values / self.area[cell])
+
+
+class Curve(NamedTuple):
+    """A quantity in one cell of a result, over one loading or unloading."""
+
+    cell: int
+    leg: int  # counts the loadings and unloadings of the path, from 0
+    branch: str
+    x: Floats
+    middle: Floats  # mean over the realisations; of a stiffness where contacts detach the median
+    low: Floats  # two standard errors below it, or the lower edge of the band of a median; NaN if there is none
+    high: Floats
+    model_error: Floats  # of a force, in its unit; NaN where it is not known, or of other variables
+    runs: Floats  # [realization, step]; computed ones, none if only statistics were kept, and of a median
+    runs_x: Floats
+
+
+def drawn_against(result: Labelled, asked: str | None) -> str:
+    """Return the variable that curves are drawn against; StoreError for one that the result lacks."""
+    if asked is None:
+        return abscissa_of(result)
+    available = [*dict.fromkeys([control_of(result), *stored_variables(result)])]
+    if asked not in available:
+        raise StoreError(f"x is {asked!r}, which is not in the result{suggestion(asked, available)}")
+    return asked
+
+
+def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
+    """Yield the curves of a quantity over another, cell by cell."""
+    branches = result.coordinates["branch"].values
+    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    done, name = done_of(result), quantity.variable
+    runs = _runs(result, name)
+    mean, error = _mean(result, name)
+    xs = _runs(result, x.variable)
+    x_mean = _mean(result, x.variable)[0]
+    model_error = _model_error(result, name, mean)
+    mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
+    x_mean, xs = x.scaled(x_mean), x.scaled(xs)
+    adheres = "adhesion" in parse_toml(result.attrs["scene"])
+    for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
+        of_cell, x_of_cell = (values[cell][done[cell]] if runs.size else values[cell] for values in (runs, xs))
+        for leg, steps in enumerate(legs):
+            branch, some = str(branches[steps[0]]), of_cell[:, steps]
+            middle, off = mean[cell][steps], 2.0 * error[cell][steps]
+            low, high = middle - off, middle + off
+            if name == "stiffness" and adheres and branch == "unloading":  # its variance is infinite
+                middle, low, high = _medians(middle, some)
+                some = some[:0]
+            yield Curve(
+                number, leg, branch, x_mean[cell][steps], middle, low, high,
+                model_error[cell][steps], some, x_of_cell[: len(some), steps],
+            )  # fmt: skip
+
+
+def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the median of the realisations with a band of two thirds of them; of few with those of some steps."""
+    values = runs if len(runs) else mean[None]
+    width = 1 if len(values) >= _FEW else _ROBUST
+    padded = np.pad(values, ((0, 0), (width // 2, width // 2)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=1)
+    low, middle, high = np.nanquantile(windows, [_BAND[0], 0.5, _BAND[1]], axis=(0, 2))
+    return middle, low, high
+
+
+def _runs(result: Labelled, name: str) -> Floats:
+    """Return a variable of all realisations, [..., realization, step]; none where their statistics were kept."""
+    cells, steps = tuple(swept_sizes(result).values()), result.sizes["step"]
+    if "realization" not in result.sizes:
+        return np.empty((*cells, 0, steps))
+    if name in result.variables:
+        return result.variables[name].values
+    return np.broadcast_to(controlled_values(result)[..., None, :], (*cells, result.sizes["realization"], steps))
+
+
+def _mean(result: Labelled, name: str) -> tuple[Floats, Floats]:
+    """Return the mean of a variable and its standard error; the controlled quantity has none."""
+    if name not in result.variables and f"{name}_mean" not in result.variables:
+        values = controlled_values(result)
+        return values, np.full_like(values, np.nan)
+    return mean_of(result, name)
+
+
+def _model_error(result: Labelled, name: str, mean: Floats) -> Floats:
+    """Return the model error of a mean force; NaN where it is not known, or of other variables."""
+    curve = "model_error_curve"
+    if name in ("force", "pressure") and (curve in result.variables or f"{curve}_mean" in result.variables):
+        return np.asarray(np.abs(mean) * mean_of(result, curve)[0])
+    return np.full_like(mean, np.nan)

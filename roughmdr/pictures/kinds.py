@@ -1,0 +1,90 @@
+"""The kinds of pictures: what each is drawn from, and which options it takes."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from roughmdr.errors import StoreError
+from roughmdr.pictures.panel import MAX_NAMED
+from roughmdr.pictures.request import Content, Drawable, Picture, Request
+from roughmdr.pictures.select import along_longest, select
+from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
+from roughmdr.schema.wording import suggestion
+from roughmdr.storage.labelled import Labelled
+
+
+class Kind(NamedTuple):
+    """A kind of picture."""
+
+    draw: Callable[[Drawable, Request], Picture]
+    of: tuple[Content, ...]
+    takes: frozenset[str]
+    """Options of a request that it takes."""
+
+
+def draw_request(source: Drawable, request: Request) -> Picture:
+    """Return the picture that is asked for; StoreError where its kind has no such data or option."""
+    name = _usual(source) if request.kind is None else request.kind
+    if name not in KINDS:
+        raise StoreError(f"kind is {name!r}, which is none{suggestion(name, [*KINDS])}")
+    kind = KINDS[name]
+    if source.content not in kind.of:
+        raise StoreError(f"kind {name!r} is drawn from {' or '.join(kind.of)}, and this is an {source.content}")
+    if unfit := sorted(request.given - kind.takes):
+        raise StoreError(f"{unfit[0]} does not go with kind {name!r}, which takes {', '.join(sorted(kind.takes))}")
+    return kind.draw(source, request)
+
+
+def _usual(source: Drawable) -> str:
+    """Return the kind of picture that answers the usual question: of many cells the sweep, else the law."""
+    if source.content != "result":
+        return "map" if source.content == "ensemble" else "fit"
+    return "sweep" if len(cells_of(source.data)) > MAX_NAMED else "law"
+
+
+def _selected(source: Drawable, request: Request) -> tuple[Labelled, str]:
+    return select(source.data, request.select) if request.select else (source.data, "")
+
+
+def _law(source: Drawable, request: Request) -> Picture:
+    from roughmdr.pictures.law import LawOptions, draw_law
+    from roughmdr.pictures.reference import overlay_reference
+
+    result, note = _selected(source, request)
+    if len(cells_of(result)) > MAX_NAMED and len(swept_sizes(result)) > 1:
+        result, others = along_longest(result)
+        note = f"{note}, {others}" if note else f"{others}; select chooses other cells"
+    names = asked_variables(result, request.variables)
+    overlays = [("reference", overlay_reference(result, names))] if request.with_reference else []
+    if request.with_expected or request.with_theory:
+        from roughmdr.pictures.overlay import overlay_expected, overlay_theory, plan_of_result
+
+        if note:
+            raise StoreError(
+                "a part of a sweep does not go with its expected law and theories: they are drawn for whole results"
+            )
+        plan = plan_of_result(source.file, result)
+        overlays += [("expected", overlay_expected(plan, names))] if request.with_expected else []
+        overlays += [("theory", overlay_theory(plan, names))] if request.with_theory else []
+    if overlays and request.x not in (None, "separation"):
+        raise StoreError(f"x = {request.x!r} does not go with curves over the result: they are over separation")
+    lines = [line for _, overlay in overlays for line in overlay.lines]
+    options = LawOptions(request.x, request.per_area, request.log, note)
+    figure = draw_law(result, names, lines, options)
+    return Picture(figure, [(title, text) for title, each in overlays for text in each.remarks])
+
+
+def _sweep(source: Drawable, request: Request) -> Picture:
+    from roughmdr.pictures.sweep import draw_sweep
+
+    result, note = _selected(source, request)
+    return Picture(draw_sweep(result, request, note), [])
+
+
+KINDS = {
+    "law": Kind(
+        _law,
+        ("result",),
+        frozenset({"variables", "x", "per_area", "select", "log", "with_expected", "with_theory", "with_reference"}),
+    ),
+    "sweep": Kind(_sweep, ("result",), frozenset({"variables", "x", "per_area", "at", "select", "log"})),
+}

@@ -1,0 +1,91 @@
+"""A number of each cell of a sweep, with its standard error."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.curves import Quantity
+from roughmdr.pictures.request import Request
+from roughmdr.result.layout import stored_variables, swept_sizes
+from roughmdr.result.means import holds, mean_of
+from roughmdr.schema.wording import suggestion
+from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import PULL_OFF, RUN_VARIABLES
+
+_PULL_OFF = "pull_off_force"
+_PER_AREA = {
+    _PULL_OFF: "pull_off_pressure",
+    f"{_PULL_OFF}_of_mean": "pull_off_pressure_of_mean",
+    "pull_off_contact_area": "pull_off_contact_fraction",
+}
+_PLACES = ("force", "pressure", "contact_fraction", "separation")
+
+
+class Number(NamedTuple):
+    """A number of each cell, over the swept keys, in SI."""
+
+    name: str
+    unit: str
+    mean: Floats
+    error: Floats
+    """Standard error of the mean; NaN where there is none."""
+    where: str
+    """Where along the path it is taken; empty of what is no curve."""
+
+
+def number_of(result: Labelled, request: Request) -> Number:
+    """Return the number that is asked for; StoreError where the result lacks it."""
+    if len(request.variables) > 1:
+        raise StoreError(f"variables are {', '.join(request.variables)}; a sweep is drawn of one")
+    if len(request.at) > 1:
+        raise StoreError(f"at names {', '.join(request.at)}; a law is taken at one of them")
+    name = request.variables[0] if request.variables else _usual(result, request)
+    if name in stored_variables(result):
+        return _of_curve(result, name, request)
+    if request.per_area:
+        name = _PER_AREA.get(name, name)
+    declared = {**PULL_OFF, **RUN_VARIABLES}
+    if name not in declared or not holds(result, name) or not declared[name].units:
+        available = [*stored_variables(result), *(each for each in declared if holds(result, each))]
+        raise StoreError(f"variable {name!r} is not in the result{suggestion(name, available)}")
+    if request.at:
+        raise StoreError(f"at does not go with {name}, which is no curve")
+    if name in result.variables and "realization" not in result.variables[name].dims:
+        mean = np.asarray(result.variables[name].values, dtype=np.float64)
+        return Number(name, declared[name].units, mean, np.full_like(mean, np.nan), "")
+    return Number(name, declared[name].units, *mean_of(result, name), "")
+
+
+def _usual(result: Labelled, request: Request) -> str:
+    """Return the variable that a sweep is usually about: the pull-off force, or else the force."""
+    if not request.at and holds(result, _PULL_OFF) and np.isfinite(mean_of(result, _PULL_OFF)[0]).any():
+        return _PULL_OFF
+    available = stored_variables(result)
+    return next((name for name in ("force", "pressure") if name in available and name not in request.at), available[0])
+
+
+def _of_curve(result: Labelled, name: str, request: Request) -> Number:
+    """Return a variable where the loading reaches what is asked for, or else where its mean is largest."""
+    quantity = Quantity.of(result, name, per_area=request.per_area)
+    if not request.at:
+        mean, error = mean_of(result, name)
+        largest = np.nanargmax(np.where(np.isnan(mean), -np.inf, mean), axis=-1)[..., None]
+        mean, error = (np.take_along_axis(values, largest, axis=-1)[..., 0] for values in (mean, error))
+        where = "at its largest along the path"
+    else:
+        ((place, value),) = request.at.items()
+        if place not in _PLACES:
+            raise StoreError(f"at is {place!r}, which is none{suggestion(place, list(_PLACES))}")
+        from roughmdr.analysis.accessor import Accessor
+
+        try:
+            found = Labelled.of(getattr(Accessor(result.to_xarray()), f"at_{place}")(value))
+        except RoughmdrError as refused:
+            raise StoreError(f"at {place} = {value}: {refused}") from None
+        mean, error = mean_of(found, name)
+        where = f"where loading reaches {place.replace('_', ' ')} {value}"
+    shape = tuple(swept_sizes(result).values())
+    mean, error = (quantity.scaled(values.reshape(shape)) for values in (mean, error))
+    return Number(quantity.name, quantity.unit, mean, error, where)

@@ -1,0 +1,94 @@
+"""A picture that is asked for: of which data, and how it is to be drawn."""
+
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.schema.wording import short_repr
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.result_validation import find_fault
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Content = Literal["result", "ensemble", "fit"]
+
+
+class Drawable(NamedTuple):
+    """Data to draw, and the file that they are in, None where they are in none."""
+
+    content: Content
+    data: Labelled
+    file: Path | None
+
+
+class Picture(NamedTuple):
+    """A figure, and remarks on the curves over it: which they are, and whether they are drawn, and if not why."""
+
+    figure: "Figure"
+    remarks: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Request:
+    """How a picture is to be drawn; ``None``, empty or False where that is left to the kind of picture."""
+
+    kind: str | None = None
+    variables: tuple[str, ...] = ()
+    x: str | None = None
+    per_area: bool = False
+    at: Mapping[str, object] = field(default_factory=dict)
+    select: Mapping[str, object] = field(default_factory=dict)
+    log: bool | None = None
+    step: int | None = None
+    realization: int | None = None
+    with_expected: bool = False
+    with_theory: bool = False
+    with_reference: bool = False
+
+    @property
+    def given(self) -> set[str]:
+        """Names of the options that are given, but the kind."""
+        default = Request()
+        return {each.name for each in fields(self) if getattr(self, each.name) != getattr(default, each.name)} - {
+            "kind"
+        }
+
+
+def drawable(source: "str | Path | xr.Dataset") -> Drawable:
+    """Return data to draw from a file or a Dataset: a result, an ensemble, or a fit; StoreError if it is none.
+
+    A UserWarning tells where the numbers of a result cannot be trusted.
+    """
+    if isinstance(source, str | os.PathLike):
+        file = Path(source)
+        try:
+            data = read_netcdf(file)
+        except RoughmdrError as error:
+            raise StoreError(f"{file}: {error}") from None
+    elif hasattr(source, "data_vars"):
+        data, file = Labelled.of(source), None
+    else:
+        raise StoreError(f"result is {short_repr(source)}; it must be a path or a Dataset as roughmdr.run returns it")
+    content = _content(data)
+    if content == "result":
+        place = "result: not as roughmdr.run returns it"
+        if file is not None:
+            place = f"{file}: not a result as roughmdr writes it"
+        if fault := find_fault(data):
+            raise StoreError(f"{place}: {fault}")
+        if file is not None and (fault := data.integrity_fault()):
+            warnings.warn(f"{file}: {fault}", UserWarning, stacklevel=3)
+    return Drawable(content, data, file)
+
+
+def _content(data: Labelled) -> Content:
+    if data.attrs.get("kind") == "fit":
+        return "fit"
+    return "ensemble" if {"asperity"} == set(data.sizes) and "height" in data.variables else "result"

@@ -1,0 +1,77 @@
+"""The part of a result at chosen values of its swept keys."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.result.layout import cell_label, swept_sizes
+from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.wording import short_repr, suggestion
+from roughmdr.storage.labelled import Array, Labelled
+
+_NEAR = 0.01  # of the value asked for, so that values of a logspace can be typed
+
+
+def select(result: Labelled, chosen: Mapping[str, object]) -> tuple[Labelled, str]:
+    """Return the part of a result where swept keys have the values ``chosen``, and these in words.
+
+    Keys may have dots or underscores; values are numbers in SI, strings with a unit, or names. StoreError where a key
+    is not swept, or has no such value.
+    """
+    indices: dict[str, int] = {}
+    for key, value in chosen.items():
+        name = key.replace(".", "_")
+        if name not in result.coordinates or result.coordinates[name].dims[:1] != (name,):
+            raise StoreError(f"select: {key!r} is not swept{suggestion(name, [*swept_sizes(result)])}")
+        indices[name] = _index(key, value, result.coordinates[name])
+    return _at(result, indices)
+
+
+def along_longest(result: Labelled) -> tuple[Labelled, str]:
+    """Return the cells along the swept key with most values, at the middle values of others, and these in words."""
+    sizes = swept_sizes(result)
+    longest = max(sizes, key=lambda name: sizes[name])
+    return _at(result, {name: size // 2 for name, size in sizes.items() if name != longest})
+
+
+def _at(result: Labelled, indices: Mapping[str, int]) -> tuple[Labelled, str]:
+    places = [indices.get(name, 0) for name in swept_sizes(result)]
+    whole = [part for part in cell_label(result, tuple(places)).split(", ") if part.split(" = ")[0] in indices]
+
+    def part(array: Array) -> Array:
+        index = tuple(indices.get(dim, slice(None)) for dim in array.dims)
+        return Array(tuple(dim for dim in array.dims if dim not in indices), array.values[index], array.attrs)
+
+    variables, coordinates = (
+        {name: part(array) for name, array in arrays.items() if name not in indices}
+        for arrays in (result.variables, result.coordinates)
+    )
+    return Labelled(variables, coordinates, result.attrs), ", ".join(whole)
+
+
+def _index(key: str, value: object, coordinate: Array) -> int:
+    """Return where a coordinate has a value."""
+    values, shown = coordinate.values, short_repr(value)
+    if values.dtype.kind not in "if":
+        found = np.flatnonzero(values == value)
+        if not found.size:
+            available = suggestion(str(value), [*map(str, values)])
+            raise StoreError(f"select: {key} = {shown} is not in the result{available}")
+        return int(found[0])
+    try:
+        number = Quantity(_dimension(coordinate))(value)
+    except RoughmdrError as error:
+        raise StoreError(f"select: {key} = {shown}: {error}") from None
+    nearest = int(np.argmin(np.abs(values - number)))
+    if abs(values[nearest] - number) > _NEAR * abs(number):
+        listed = ", ".join(f"{each:g}" for each in values[:12])
+        more = ", ..." if values.size > 12 else ""
+        raise StoreError(f"select: {key} = {shown} is not in the result; it has {listed}{more} (in SI)")
+    return nearest
+
+
+def _dimension(coordinate: Array) -> str:
+    """Return the unit of a coordinate as readers of quantities have it."""
+    unit = str(coordinate.attrs.get("units", "1"))
+    return {"J m-2": "J/m^2", "N m-1": "N/m"}.get(unit, unit)

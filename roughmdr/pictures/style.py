@@ -1,0 +1,109 @@
+"""Colours, axes, titles and files that all pictures share."""
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import axis_unit
+from roughmdr.schema.wording import escape_controls, short_repr, suggestion
+from roughmdr.storage.files import check_ending, replace_atomically
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+BRANCH_COLOURS = {"loading": "#0072b2", "unloading": "#d55e00"}
+"""Colours that the colour-blind tell apart: M. Okabe, K. Ito, Color universal design (2008)."""
+THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
+BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
+COLOUR_MAP = "viridis"
+_LETTERS_PER_INCH = 12.0  # of a title
+_DPI = 160
+_SALT = "roughmdr"  # so that an SVG of one figure is always the same
+
+
+class Scale(NamedTuple):
+    """The unit of an axis: its size in SI, and the label."""
+
+    size: float
+    label: str
+
+    @classmethod
+    def of(cls, values: ArrayLike, name: str, unit: str) -> "Scale":
+        """Return the scale for numbers in SI, of which the largest is from 1 to 1000, under a name."""
+        finite = np.asarray(values, dtype=np.float64)
+        finite = finite[np.isfinite(finite)]
+        size, text = axis_unit(float(np.abs(finite).max(initial=0.0)), unit)
+        if text[:1] == "u":
+            text = f"µ{text[1:]}"
+        text = text.replace("^2", "²")
+        label = name.replace("_", " ").replace("pull off", "pull-off")
+        return cls(size, f"{label} [{text}]" if text else label)
+
+    def __call__(self, values: ArrayLike) -> Floats:
+        """Return numbers in SI in the unit of the axis."""
+        return np.asarray(values, dtype=np.float64) / self.size
+
+
+def colours(count: int) -> list[str]:
+    """Return that many colours, from dark to light, that the colour-blind tell apart."""
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    return [to_hex(colormaps[COLOUR_MAP](0.92 * number / max(count - 1, 1))) for number in range(count)]
+
+
+def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
+    """Write a title, and smaller notes under it, above a figure, in lines that are not wider than the figure."""
+    letters = int(_LETTERS_PER_INCH * figure.get_figwidth())
+    lines = textwrap.wrap(escape_controls(title), int(0.9 * letters)) or [""]
+    lines += [line for note in notes for line in textwrap.wrap(escape_controls(note), letters)]
+    figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)
+
+
+def hide_unused(axes: "Sequence[Axes]") -> None:
+    """Hide panels that are left over in the last row."""
+    for ax in axes:
+        ax.set_visible(False)
+
+
+@contextmanager
+def styled(style: str | None) -> Iterator[None]:
+    """Draw in a style of matplotlib, by its name or file; StoreError if there is none."""
+    if style is None:
+        yield
+        return
+    from matplotlib import style as styles
+
+    if style not in styles.available and style != "default" and not Path(style).is_file():
+        raise StoreError(f"style {short_repr(style)}: no style of matplotlib{suggestion(style, [*styles.available])}")
+    try:
+        with styles.context(style):
+            yield
+    except OSError as error:
+        raise StoreError(f"style {short_repr(style)}: cannot be read: {error}") from None
+
+
+def save(figure: "Figure", path: Path) -> None:
+    """Write a picture in the format that its name says, with the same bytes for the same figure.
+
+    StoreError if it cannot be written.
+    """
+    from matplotlib import rc_context
+
+    kind = format_of(path)
+    dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
+    with replace_atomically(path) as temporary, rc_context({"svg.hashsalt": _SALT}):
+        figure.savefig(temporary, dpi=_DPI, format=kind, metadata=dated.get(kind))
+
+
+def format_of(path: Path) -> str:
+    """Return the format of a picture by its name; StoreError if there is no such format."""
+    return check_ending(path, "picture", (".png", ".pdf", ".svg")).removeprefix(".")
