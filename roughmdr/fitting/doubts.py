@@ -55,7 +55,8 @@ def _alike(correlation: Floats) -> list[list[int]]:
 
 def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertainty) -> str:
     names = [parameters[i].key for i in group]
-    text = f"the curve does not tell {', '.join(names[:-1])} and {names[-1]} apart"
+    wide = (known.quantile * known.standard_error)[group].max() > _WIDE
+    text = f"the curve {'does not tell' if wide else 'hardly tells'} {', '.join(names[:-1])} and {names[-1]} apart"
     if len(group) > 2:
         return text
     pair = [parameters[i] for i in group]

@@ -1,6 +1,8 @@
 """The expected law of a scene at the steps of a measured curve, as a function of the free parameters."""
 
 import copy
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,13 @@ from roughmdr.batch.usual_path import machine_path
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OFFSET, Parameter, free_parameters
+from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
 
+_NONE: tuple[Floats, Floats] = np.empty(0), np.empty(0)
 _STEP = 1e-4  # of x, in differences
 _FINE_STEP = 1e-3  # where the difference is a central one
 
@@ -31,8 +35,9 @@ class Model:
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
+        self.exact = True
         self.evaluations = 0
-        self._last: tuple[Floats, Floats] = np.empty(0), np.empty(0)
+        self._last = _NONE
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
 
     def scene(self, x: Floats) -> Scene:
@@ -51,14 +56,25 @@ class Model:
         self.evaluations += 1
         scene, steps, quantity = self.scene(x), self._steps(x), self.curve.quantity
         names = [quantity] if scene.asperities.nominal_area is None else [quantity, "model_error_curve"]
-        if self.curve.control == "separation":
-            path = LoadingPath.along(steps, unload=False, adhesive=scene.work > 0.0)
-            law = simulate_realization(scene, path, 0, names, "expected")
+        path: LoadingPath | MachinePath
+        if self.curve.control == "remote" and self.exact:
+            path = machine_path(scene, steps)
         else:
-            law = simulate_realization(scene, machine_path(scene, steps), 0, names, "expected")
+            along = steps if self.curve.control == "separation" else steps + self._stretch(scene)
+            path = LoadingPath.along(along, unload=False, adhesive=scene.work > 0.0)
+        law = simulate_realization(scene, path, 0, names, "expected")
         if not np.isfinite(law.variables[quantity]).all():
             raise OutOfRange("the expected law is not finite")
         return law
+
+    @contextmanager
+    def at_measured_separations(self) -> Iterator[None]:
+        """Let the spring of a machine bear the measured force: the separation is known then, and the law soon found."""
+        self.exact, self._last = False, _NONE
+        try:
+            yield
+        finally:
+            self.exact, self._last = True, _NONE
 
     def deviations(self, x: Floats) -> Floats:
         """Return law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` says."""
@@ -99,6 +115,11 @@ class Model:
             raise self.last_error
         (first, above), (second, below) = [*ends, (0.0, self.deviations(x))][:2]
         return np.asarray((above - below) / (first - second))
+
+    def _stretch(self, scene: Scene) -> Floats:
+        """Return by how much the measured force stretches the spring of the machine [m]."""
+        area = scene.asperities.nominal_area if self.curve.quantity == "pressure" else None
+        return self.curve.load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
 
     def _steps(self, x: Floats) -> Floats:
         """Return the control at each step in the scene [m]."""

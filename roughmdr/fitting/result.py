@@ -14,7 +14,10 @@ from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import FIT, provenance
 
 _POINT, _PARAMETER = ("point",), ("parameter",)
-_REFERENCES = "MacKinnon and White (1985), Journal of Econometrics 29, 305: the covariance HC3"
+_REFERENCES = (
+    "MacKinnon and White (1985), Journal of Econometrics 29, 305: the covariance HC3; Bell and McCaffrey (2002), "
+    "Survey Methodology 28, 169: its degrees of freedom"
+)
 _NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
@@ -82,7 +85,12 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
     """Return a parameter with its standard error and the ends of its interval, which stay where it was sought."""
     x, error = float(found.x[i]), float(known.standard_error[i])
-    half, per_x, key, unit = known.quantile * error, parameter.per_x(x), parameter.key, _spelled(parameter.unit)
+    half, per_x, key, unit = (
+        float(known.quantile[i]) * error,
+        parameter.per_x(x),
+        parameter.key,
+        _spelled(parameter.unit),
+    )
     numbers = {
         "": (parameter.value(x), f"fitted {key}"),
         "_standard_error": (per_x * error, f"standard error of the fitted {key}"),

@@ -27,8 +27,17 @@ class Found(NamedTuple):
 def search(model: Model) -> Found:
     """Return the parameters of least squares; RoughmdrError where no start has a law.
 
-    Where the deviations from the start of the scene are systematic or large, other starts around it are tried.
+    Where the deviations from the start of the scene are systematic or large, other starts around it are tried. On a
+    machine, whose law takes longer, that is done at the separations which the measured force means.
     """
+    if model.curve.control == "separation":
+        return _search(model)
+    with model.at_measured_separations():
+        near = _search(model)
+    return _follow(model, near.x)
+
+
+def _search(model: Model) -> Found:
     start = np.zeros(len(model.parameters))
     found = [_follow(model, start)] if np.isfinite(model.deviations(start)).all() else []
     if not found or _is_poor(model, found[0]):
@@ -46,8 +55,11 @@ def _is_poor(model: Model, found: Found) -> bool:
 
 
 def _follow(model: Model, start: Floats) -> Found:
-    """Return where least squares lead to from a start."""
+    """Return where least squares lead to from a start; RoughmdrError where that has no law."""
     from scipy.optimize import least_squares
+
+    if not np.isfinite(model.deviations(start)).all():
+        raise model.last_error
 
     low, high = np.transpose([parameter.bounds for parameter in model.parameters])
     result: OptimizeResult = least_squares(

@@ -18,8 +18,8 @@ class Uncertainty(NamedTuple):
 
     influence: Floats
     """By how much each standard deviation of each step moves each parameter, [parameter, step]."""
-    quantile: float
-    """Standard deviations from the middle to the end of a 95 % interval."""
+    quantile: Floats
+    """Standard errors of each parameter from the middle to the end of its 95 % interval."""
     shift: Floats | None
     """By how much the error of the law may move each parameter; None where that error is not known."""
 
@@ -51,7 +51,8 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     """Return the uncertainty at the parameters of least squares.
 
     With a standard deviation of each load, it is that which they cause, normal. Without, it is the sandwich HC3 of the
-    residuals, right for noise that is constant, proportional or otherwise uneven, with Student's t.
+    residuals, for noise that is constant, proportional or otherwise uneven, with Student's t of as many degrees of
+    freedom as the points have that decide.
     """
     from scipy.stats import norm, t
 
@@ -59,13 +60,26 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
     inverse = right.T @ (left / np.maximum(sizes, max(_LEAST_SLOPE * sizes[0], np.finfo(float).tiny))).T
     probability = 0.5 * (1.0 + _LEVEL)
-    steps, parameters = slopes.shape
     if model.curve.error is None:
-        freedom = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
-        influence, quantile = inverse * (found.deviations / freedom), t.ppf(probability, steps - parameters)
+        rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
+        influence = inverse * (found.deviations / rest)
+        quantile = t.ppf(probability, _degrees_of_freedom(inverse / rest, left))
     else:
-        influence, quantile = inverse, norm.ppf(probability)
-    return Uncertainty(influence, float(quantile), _shift(model, found, inverse))
+        influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
+    return Uncertainty(influence, quantile, _shift(model, found, inverse))
+
+
+def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
+    """Return those of the variance of each parameter by squares of residuals, after Bell and McCaffrey (2002).
+
+    They make the variance of noise that is even as uncertain as it is: (tr M)^2/tr M^2, M = w (1 - H) w.
+    """
+    squares = np.square(weights) / np.square(weights).max(axis=1, keepdims=True)
+    leverage = np.square(left).sum(axis=1)
+    overlap = np.einsum("ks,sa,sb->kab", squares, left, left)
+    trace = squares @ (1.0 - leverage)
+    trace_of_square = np.square(squares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
+    return np.maximum(np.square(trace) / trace_of_square, 1.0)
 
 
 def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
