@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         Unfinished,
     )
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
+    from roughmdr.fitting.fit import fit
     from roughmdr.pictures.plot import plot
     from roughmdr.report.info import info
     from roughmdr.runner.run import run
@@ -66,6 +67,7 @@ _ROOMS = {
         "Unfinished",
     ),
     "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
+    "fitting.fit": ("fit",),
     "report.info": ("info",),
     "pictures.plot": ("plot",),
     "runner.run": ("run",),
@@ -100,6 +102,7 @@ __all__ = [
     "axis_stress",
     "effective_modulus",
     "equilibria",
+    "fit",
     "generate",
     "indent",
     "info",

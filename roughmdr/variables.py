@@ -83,6 +83,9 @@ LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIA
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
 """Quantities that a path can control, with their units: the last three by a machine."""
 
+MEASURED = {**CONTROLS, "force_error": "N", "pressure_error": "Pa"}
+"""Columns that a measured curve can have, with their units."""
+
 TRAVEL = Variable("travel", "1", "way of the flat, or of the far end of its spring: clear at 0, at the preload at 1")
 """The coordinate of a path to a preload, which each realisation reaches at a separation of its own."""
 

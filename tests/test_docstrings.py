@@ -11,7 +11,7 @@ import pytest
 import roughmdr as rm
 from roughmdr.analysis.accessor import Analysis
 
-ROOMS = ("aggregate", "asperity", "errors", "fields", "schema", "spectrum", "theory")
+ROOMS = ("aggregate", "asperity", "errors", "fields", "fitting", "schema", "spectrum", "theory")
 """The rooms whose public names are described in sections."""
 SECTIONS = ("Parameters", "Returns", "Raises", "References", "Examples")
 

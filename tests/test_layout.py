@@ -39,6 +39,7 @@ LINES = (
     ("result",),
     ("runner",),
     ("report", "analysis", "pictures"),  # what is told, found and shown of a result
+    ("fitting",),
     ("cli",),
     ("__main__",),
 )
@@ -90,6 +91,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
                 "result/",
                 "pictures/",
                 "analysis/",
+                "fitting/",
             ],
         ),
         ("netCDF4", ["storage/"]),

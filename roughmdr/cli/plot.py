@@ -22,6 +22,7 @@ from roughmdr.report.terminal import Command, print_text
 @click.option("--select", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one value of a key; repeatable.")
 @click.option("--step", type=click.IntRange(min=0), help="Of a map or an asperity: step, from 0.")
 @click.option("--realization", type=click.IntRange(min=0), help="Of a map or an asperity: realisation, from 0.")
+@click.option("--asperity", type=click.IntRange(min=0), help="Of an asperity: its number, from the highest down.")
 @click.option("--with-expected", is_flag=True, help="Also draw the expected law of the scene.")
 @click.option("--with-theory", is_flag=True, help="Also draw the theory curves that apply to the scene.")
 @click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that FILE holds.")

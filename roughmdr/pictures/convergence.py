@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -126,7 +126,7 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> None:
     ax.grid(color="0.93", zorder=0)
 
 
-def _levels(result: Labelled) -> "Iterable[tuple[float, dict[str, object], str]]":
+def _levels(result: Labelled) -> "Iterable[tuple[float, dict[str, Any], str]]":
     """Yield the other errors of the force that are known and above 0, largest of all cells, with how they are drawn."""
     for name, style, label in (
         ("numerical_error", {"color": "#56b4e9", "ls": "-."}, "numerical error"),

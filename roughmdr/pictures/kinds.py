@@ -6,7 +6,7 @@ from typing import NamedTuple
 from roughmdr.errors import StoreError
 from roughmdr.pictures.panel import MAX_NAMED
 from roughmdr.pictures.request import Content, Drawable, Picture, Request
-from roughmdr.pictures.select import along_longest, select
+from roughmdr.pictures.select import along_longest, cell_of, select
 from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
@@ -30,7 +30,9 @@ def draw_request(source: Drawable, request: Request) -> Picture:
     if source.content not in kind.of:
         raise StoreError(f"kind {name!r} is drawn from {' or '.join(kind.of)}, and this is an {source.content}")
     if unfit := sorted(request.given - kind.takes):
-        raise StoreError(f"{unfit[0]} does not go with kind {name!r}, which takes {', '.join(sorted(kind.takes))}")
+        raise StoreError(
+            f"{unfit[0]} does not go with kind {name!r}, which takes {', '.join(sorted(kind.takes)) or 'none'}"
+        )
     return kind.draw(source, request)
 
 
@@ -80,6 +82,42 @@ def _sweep(source: Drawable, request: Request) -> Picture:
     return Picture(draw_sweep(result, request, note), [])
 
 
+def _map(source: Drawable, request: Request) -> Picture:
+    from roughmdr.pictures.map import draw_ensemble, draw_map
+
+    if source.content == "ensemble":
+        from roughmdr.ensemble import Ensemble
+
+        if unfit := sorted(request.given):
+            raise StoreError(f"{unfit[0]} does not go with asperities, which have no path")
+        ensemble = Ensemble.from_dataset(source.data.to_xarray())
+        return Picture(draw_ensemble(ensemble, str(source.data.attrs.get("title", "asperities"))), [])
+    cell, realization = cell_of(source.data, request.select), request.realization or 0
+    return Picture(draw_map(source.data, source.file, cell=cell, realization=realization, step=request.step), [])
+
+
+def _asperity(source: Drawable, request: Request) -> Picture:
+    from roughmdr.pictures.asperity import draw_asperity
+
+    figure = draw_asperity(
+        source.data, source.file, cell=cell_of(source.data, request.select), realization=request.realization or 0,
+        step=request.step, asperity=request.asperity,
+    )  # fmt: skip
+    return Picture(figure, [])
+
+
+def _convergence(source: Drawable, request: Request) -> Picture:
+    from roughmdr.pictures.convergence import draw_convergence
+
+    return Picture(draw_convergence(_selected(source, request)[0]), [])
+
+
+def _fit(source: Drawable, _: Request) -> Picture:
+    from roughmdr.pictures.fit import draw_fit
+
+    return Picture(draw_fit(source.data), [])
+
+
 KINDS = {
     "law": Kind(
         _law,
@@ -87,4 +125,8 @@ KINDS = {
         frozenset({"variables", "x", "per_area", "select", "log", "with_expected", "with_theory", "with_reference"}),
     ),
     "sweep": Kind(_sweep, ("result",), frozenset({"variables", "x", "per_area", "at", "select", "log"})),
+    "map": Kind(_map, ("result", "ensemble"), frozenset({"select", "step", "realization"})),
+    "asperity": Kind(_asperity, ("result",), frozenset({"select", "step", "realization", "asperity"})),
+    "convergence": Kind(_convergence, ("result",), frozenset({"select"})),
+    "fit": Kind(_fit, ("fit",), frozenset()),
 }

@@ -1,8 +1,9 @@
 """A number of each cell of a sweep, with its standard error."""
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
@@ -81,7 +82,7 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
         from roughmdr.analysis.interpolation import at_value
 
         try:
-            found = Labelled.of(at_value(result.to_xarray(), place, value, "loading"))
+            found = Labelled.of(at_value(result.to_xarray(), place, cast("ArrayLike", value), "loading"))
         except RoughmdrError as refused:
             raise StoreError(f"at {place} = {value}: {refused}") from None
         mean, error = mean_of(found, name)

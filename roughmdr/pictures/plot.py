@@ -52,7 +52,7 @@ def plot(
         result holds. Of a sweep: ``x``, the swept key along the axis; ``per_area``; ``log``; ``at``, a dictionary such
         as ``{"force": "1 mN"}`` of where on the loading the variable is taken. Of both and others: ``select``, a
         dictionary such as ``{"adhesion.work": "50 mJ/m^2"}`` of the part of a sweep. Of a map and an asperity: ``step``
-        and ``realization``, both counted from 0.
+        and ``realization``, counted from 0; of an asperity its number, ``asperity``, from the highest down.
 
     Returns
     -------

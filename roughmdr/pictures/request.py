@@ -52,6 +52,7 @@ class Request:
     log: bool | None = None
     step: int | None = None
     realization: int | None = None
+    asperity: int | None = None
     with_expected: bool = False
     with_theory: bool = False
     with_reference: bool = False

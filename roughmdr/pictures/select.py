@@ -16,6 +16,20 @@ _NEAR = 0.01  # of the value asked for, so that values of a logspace can be type
 def select(result: Labelled, chosen: Mapping[str, object]) -> tuple[Labelled, str]:
     """Return the part of a result where swept keys have the values ``chosen``, and these in words.
 
+    Errors as ``indices_of``.
+    """
+    return _at(result, indices_of(result, chosen))
+
+
+def cell_of(result: Labelled, chosen: Mapping[str, object]) -> tuple[int, ...]:
+    """Return the index of a cell: the first value of the swept keys that are not chosen. Errors as ``indices_of``."""
+    indices = indices_of(result, chosen)
+    return tuple(indices.get(name, 0) for name in swept_sizes(result))
+
+
+def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]:
+    """Return the indices of values of swept keys, by their dimensions.
+
     Keys may have dots or underscores; values are numbers in SI, strings with a unit, or names. StoreError where a key
     is not swept, or has no such value.
     """
@@ -25,7 +39,7 @@ def select(result: Labelled, chosen: Mapping[str, object]) -> tuple[Labelled, st
         if name not in result.coordinates or result.coordinates[name].dims[:1] != (name,):
             raise StoreError(f"select: {key!r} is not swept{suggestion(name, [*swept_sizes(result)])}")
         indices[name] = _index(key, value, result.coordinates[name])
-    return _at(result, indices)
+    return indices
 
 
 def along_longest(result: Labelled) -> tuple[Labelled, str]:

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial, reduce
 from operator import getitem
 from pathlib import Path
@@ -24,32 +24,25 @@ _NETCDF_MAGIC = (b"\x89HDF", b"CDF")
 _MAX_BYTES = 2**24
 
 
-def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] | Mapping[str, Any] = ()) -> Scene:
+def read(
+    source: str | Path | dict[str, Any] | Scene,
+    changes: Iterable[str] | Mapping[str, Any] = (),
+    amend: Callable[[dict[str, Any]], None] | None = None,
+) -> Scene:
     """Return a validated scene with all changes applied.
 
     ``source`` is the path of a TOML file or of a result, which contains its scene, a dictionary of the same form, or a
     Scene. ``changes`` are KEY=VALUE with dotted keys, a value in TOML or else a string, or a dictionary of such keys
-    and values; a key that is set is no longer swept. SceneError names every fault by file, line, key, value and what
-    is allowed.
+    and values; a key that is set is no longer swept. ``amend`` is given the changed table, which is not validated yet,
+    to change it further. SceneError names every fault by file, line, key, value and what is allowed.
     """
     if isinstance(changes, Mapping):
         applied = [_named_change(key, value) for key, value in changes.items()]
     else:
         applied = [_parse_change(change) for change in changes]
-    if isinstance(source, Scene):
-        if not applied:
-            return source
-        path, label, text, table = source.file, "scene", "", parse_toml(source.toml)
-    elif isinstance(source, dict):
-        path, label, text, table = None, "scene", "", _to_plain(source)
-    elif not isinstance(source, str | os.PathLike):
-        raise SceneError(f"scene is {short_repr(source)}; it must be a path, a dictionary or a Scene")
-    else:
-        path, label, text = Path(source), str(source), _read_text(Path(source))
-        try:
-            table = parse_toml(text)
-        except ValueError as error:
-            raise SceneError(f"{label}: not valid TOML: {error}{_unquoted_unit_hint(str(error), text)}") from None
+    if isinstance(source, Scene) and not applied and amend is None:
+        return source
+    path, label, text, table = _read_table(source)
     try:
         _normalise(table, path.parent if path else Path())
     except OSError as error:
@@ -57,6 +50,8 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] | M
     try:
         for change in applied:
             _apply_change(table, change)
+        if amend is not None:
+            amend(table)
         stem = path.stem if path else "scene"
         table.setdefault("title", "".join(letter if letter.isprintable() else "?" for letter in stem))
         scene, faults = validate(table, path)
@@ -68,6 +63,22 @@ def read(source: str | Path | dict[str, Any] | Scene, changes: Iterable[str] | M
         raise SceneError.of([_add_location(fault, label, lines, applied) for fault in faults])
     scene._locate = partial(_add_location, label=label, lines=lines, applied=applied)
     return scene
+
+
+def _read_table(source: object) -> tuple[Path | None, str, str, dict[str, Any]]:
+    """Return the file that a scene is read from, if any, what messages call it, its text and its table."""
+    if isinstance(source, Scene):
+        return source.file, "scene", "", parse_toml(source.toml)
+    if isinstance(source, dict):
+        return None, "scene", "", _to_plain(source)
+    if not isinstance(source, str | os.PathLike):
+        raise SceneError(f"scene is {short_repr(source)}; it must be a path, a dictionary or a Scene")
+    path, label = Path(source), str(source)
+    text = _read_text(path)
+    try:
+        return path, label, text, parse_toml(text)
+    except ValueError as error:
+        raise SceneError(f"{label}: not valid TOML: {error}{_unquoted_unit_hint(str(error), text)}") from None
 
 
 def _read_text(path: Path) -> str:

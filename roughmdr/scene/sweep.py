@@ -17,7 +17,7 @@ from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS
 
-_SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
+SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
 _STOP = "path.separation.stop"
 _PATH_KEYS = (
     *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),
@@ -117,7 +117,7 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
         hint = suggestion(str(mode), ["product", "zip"])
         faults.append(Fault("sweep.mode", short_repr(mode), f"not available{hint}"))
     readers = {
-        key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in _SECTIONS or key in _PATH_KEYS
+        key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in SECTIONS or key in _PATH_KEYS
     }
     axes = []
     for key, value in table.items():

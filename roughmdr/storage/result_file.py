@@ -11,9 +11,11 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_reading import read_dimensions, read_netcdf
+from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions, read_netcdf
 from roughmdr.storage.result_validation import find_fault
 
+FIT = "fit"
+"""The attribute ``kind`` of the result of a fit."""
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 _MAGIC_BYTES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 _ROOTS = {"svg": b"<svg", "html": b"<!doctype html"}
@@ -57,13 +59,16 @@ def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
 
 
 def check_same_kind(path: Path, kind: str) -> None:
-    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html or ensemble."""
+    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html, ensemble or fit."""
     if not path.exists():
         return
     same = False
     if kind == "ensemble":
         with suppress(RoughmdrError):
             same = read_dimensions(path).get("height") == ("asperity",)
+    elif kind == FIT:
+        with suppress(RoughmdrError):
+            same = read_attribute(path, "kind") == FIT
     else:
         try:
             with path.open("rb") as file:

@@ -1,0 +1,116 @@
+"""The columns of a measurement, as a file, a DataFrame or a Dataset has them: names, units, entries row by row."""
+
+import csv
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.schema.wording import short_repr
+from roughmdr.storage.files import check_regular_file, is_open_pipe
+from roughmdr.variables import MEASURED
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+_UNIT = r"\[[^\]]*\]|\([^)]*\)|/\s*\S+"
+_HEADER = re.compile(rf"\s*([^\[\](/]*?)\s*({_UNIT})?\s*")
+_SPACED_HEADER = re.compile(rf"[^\s\[(/]+(?:\s*(?:{_UNIT}))?")
+_MAX_BYTES = 2**28
+
+
+class Columns(NamedTuple):
+    """A measurement as it was given."""
+
+    origin: str
+    """File or argument, in messages."""
+    names: list[str]
+    units: list[str]
+    """As they are spelled there; empty for SI."""
+    rows: list[tuple[str, list[object]]]
+    """The place of each row, in messages, and its entries."""
+    file: Path | None = None
+
+
+def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
+    """Return the columns of a measurement; StoreError where it is none or cannot be read."""
+    if isinstance(measured, str | os.PathLike):
+        return _of_text(Path(measured))
+    if hasattr(measured, "data_vars"):
+        return _of_dataset(measured)
+    if hasattr(measured, "columns") and hasattr(measured, "itertuples"):
+        return _of_frame(measured)
+    raise StoreError(f"measured is {short_repr(measured)}; it must be the path of a CSV file, a DataFrame or a Dataset")
+
+
+def _of_text(path: Path) -> Columns:
+    lines = list(_lines(path))
+    if not lines:
+        raise StoreError(f"{path}: is empty; expected a line with the names of the columns, and rows")
+    _, header = lines[0]
+    separator = next((each for each in ";\t," if each in header), "")
+    if separator:
+        (titles,) = csv.reader([header], delimiter=separator)
+        entries = list(csv.reader((line for _, line in lines[1:]), delimiter=separator))
+    else:
+        titles = _SPACED_HEADER.findall(header)
+        entries = [line.split() for _, line in lines[1:]]
+    places = [f"line {number}" for number, _ in lines[1:]]
+    rows = list[tuple[str, list[object]]]()
+    for place, row in zip(places, entries, strict=True):
+        if len(row) != len(titles):
+            raise StoreError(f"{path}: {place}: has {len(row)} entries; the first line names {len(titles)} columns")
+        rows.append((place, [entry.strip() for entry in row]))
+    return _titled(str(path), titles, rows)._replace(file=path)
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a file that are neither empty nor comments, with their numbers."""
+    try:
+        if not is_open_pipe(path):
+            check_regular_file(path)
+        with path.open("rb") as file:
+            content = file.read(_MAX_BYTES + 1)
+        text = content.decode("utf-8-sig")
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise StoreError(f"{path}: not a text file; a measured curve is CSV in UTF-8") from None
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if len(content) > _MAX_BYTES:
+        raise StoreError(f"{path}: is longer than {_MAX_BYTES} bytes, the most that a measured curve can have")
+    for number, line in enumerate(text.splitlines(), start=1):
+        kept = line.partition("#")[0]
+        if kept.strip():
+            yield number, kept
+
+
+def _of_frame(frame: Any) -> Columns:
+    rows = [(f"row {label}", list(row)) for label, *row in frame.itertuples(name=None)]
+    return _titled("measured", list(map(str, frame.columns)), rows)
+
+
+def _of_dataset(dataset: Any) -> Columns:
+    """Return those arrays of a Dataset that a measurement can have."""
+    found = {str(name): dataset[name] for name in dataset.variables if name in MEASURED}
+    for name, array in found.items():
+        if array.ndim != 1 or array.dims != next(iter(found.values())).dims:
+            raise StoreError(f"measured: {name} has the dimensions {array.dims}; all must have the same one alone")
+    values = zip(*(array.to_numpy().tolist() for array in found.values()), strict=True)
+    rows = [(f"row {number}", list(row)) for number, row in enumerate(values)]
+    return Columns("measured", list(found), [str(each.attrs.get("units", "")) for each in found.values()], rows)
+
+
+def _titled(origin: str, titles: list[str], rows: list[tuple[str, list[object]]]) -> Columns:
+    """Return the columns of these titles, each a name and perhaps a unit: "force [mN]", "force (mN)" or "force/mN"."""
+    names, units = [], []
+    for title in titles:
+        match = _HEADER.fullmatch(title)
+        name, unit = (match[1], match[2] or "") if match else (title, "")
+        names.append("_".join(name.split()).lower())
+        units.append(unit.strip("/").strip() if unit.startswith("/") else unit[1:-1].strip())
+    return Columns(origin, names, units, rows)

@@ -1,0 +1,94 @@
+"""Doubts about a fit: parameters that the data do not tell apart, and residuals that are not noise."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.parameters import Parameter
+from roughmdr.fitting.residuals import is_systematic, relative_rms
+from roughmdr.fitting.search import Found
+from roughmdr.fitting.uncertainty import Uncertainty
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import format_quantity
+
+_ALIKE = 0.99  # correlation
+_WIDE = math.log(2.0)  # of x: half a 95 % interval, a factor of two or so much of the scale
+_AT_BOUND = 1e-3
+_FAR_OFF = 2.0  # root mean square of deviations over their stated errors
+
+
+def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
+    """Yield what a fit leaves in doubt, in words."""
+    parameters = model.parameters
+    groups = _alike(known.correlation)
+    for group in groups:
+        yield _told_apart(group, parameters, known)
+    width = known.quantile * known.standard_error
+    for i, parameter in enumerate(parameters):
+        if width[i] > _WIDE and not any(i in group for group in groups):
+            yield f"the curve hardly determines {parameter.key}: its 95 % interval is very wide"
+        if min(found.x[i] - parameter.bounds[0], parameter.bounds[1] - found.x[i]) < _AT_BOUND:
+            yield f"{parameter.key} ended at the bound of what is allowed, {parameter.value(float(found.x[i])):g}"
+    if not found.converged:
+        yield "the search ended before it converged"
+    if is_systematic(found.deviations):
+        rms = 100.0 * relative_rms(model.curve, found.deviations)
+        yield (
+            f"the residuals are systematic ({rms:.2g} % r.m.s.): the scene does not describe the curve, and the "
+            "intervals mean little"
+        )
+    size = float(np.sqrt(np.mean(np.square(found.deviations))))
+    if model.curve.error is not None and size > _FAR_OFF:
+        yield f"the residuals are {size:.2g} times the stated errors of the {model.curve.quantity}"
+
+
+def _alike(correlation: Floats) -> list[list[int]]:
+    """Return the groups of parameters that correlate with one another."""
+    groups: list[list[int]] = []
+    for i in range(len(correlation)):
+        joined = [group for group in groups if (np.abs(correlation[i, group]) > _ALIKE).any()]
+        groups = [group for group in groups if group not in joined] + [sorted(sum(joined, [i]))]
+    return [group for group in groups if len(group) > 1]
+
+
+def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertainty) -> str:
+    names = [parameters[i].key for i in group]
+    wide = (known.quantile * known.standard_error)[group].max() > _WIDE
+    text = f"the curve {'does not tell' if wide else 'hardly tells'} {', '.join(names[:-1])} and {names[-1]} apart"
+    if len(group) > 2:
+        return text
+    pair = [parameters[i] for i in group]
+    correlation = float(known.correlation[group[0], group[1]])
+    text += f" (correlation {correlation:.4g})"
+    best = _best_known(known.influence[group])
+    if all(parameter.logarithmic for parameter in pair):
+        exponents = best / np.abs(best).max() * np.sign(best[np.abs(best).argmax()])
+        combination = np.zeros(len(parameters))
+        combination[group] = exponents
+        error = 100.0 * float(known.deviation_of(combination))
+        product = " * ".join(_power(each.key, float(power)) for each, power in zip(pair, exponents, strict=True))
+        return f"{text}; it determines {product}, to {error:.2g} %"
+    if any(parameter.logarithmic for parameter in pair):
+        power, exponent = (0, 1) if pair[0].logarithmic else (1, 0)
+        decay = float(pair[exponent].scale * best[power] / best[exponent])
+        length = format_quantity(decay, pair[exponent].unit)
+        return f"{text}; it determines {names[power]} * exp({names[exponent]} / {length})"
+    if pair[0].unit != pair[1].unit:
+        return text
+    weights = best / [parameter.scale for parameter in pair]
+    ratio = float(weights[1] / weights[0])
+    part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
+    return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
+
+
+def _best_known(influence: Floats) -> Floats:
+    """Return the combination of two parameters with the smallest standard error."""
+    directions, _, _ = np.linalg.svd(influence, full_matrices=False)
+    return np.asarray(directions[:, -1])
+
+
+def _power(key: str, exponent: float) -> str:
+    text = f"{exponent:.2g}"
+    return key if text == "1" else f"{key}^{text}"

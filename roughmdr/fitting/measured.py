@@ -1,0 +1,104 @@
+"""A measured curve: force or pressure against separation or the far end of a spring, in the order of measurement."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.fitting.columns import Columns, read_columns
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import quantity, unit_factor
+from roughmdr.schema.wording import printable, short_repr, suggestion
+from roughmdr.variables import MEASURED
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+_CONTROLS, _LOADS = ("separation", "remote"), ("force", "pressure")
+
+
+class MeasuredCurve(NamedTuple):
+    """A measured curve in SI, row by row."""
+
+    control: str
+    """ "separation", or "remote" of the far end of a machine's spring."""
+    values: Floats
+    """Of the control [m]."""
+    quantity: str
+    """ "force" or "pressure"."""
+    load: Floats
+    """Of the quantity [N or Pa]."""
+    error: Floats | None
+    """Standard deviation of each load [N or Pa]; None where it is not known."""
+    origin: str
+    """The file or argument it is from."""
+    file: Path | None
+
+    @property
+    def unit(self) -> str:
+        """The unit of the load."""
+        return MEASURED[self.quantity]
+
+    @property
+    def weight(self) -> Floats:
+        """By which deviations are divided: the error of each load, or the largest load."""
+        return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
+
+
+def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters: int) -> MeasuredCurve:
+    """Return a measured curve that ``parameters`` numbers are fitted to; StoreError where it is wrong.
+
+    The message names file, line, column, value and what is allowed.
+    """
+    columns = read_columns(measured)
+    control = _one_of(columns, _CONTROLS)
+    load = _one_of(columns, _LOADS)
+    _check_names(columns, (control, load, f"{load}_error"))
+    numbers = {name: _read(columns, name) for name in columns.names}
+    least = parameters + 3
+    if len(columns.rows) < least:
+        raise StoreError(f"{columns.origin}: has {len(columns.rows)} rows; at least {least} are needed")
+    if not numbers[load].any():
+        raise StoreError(f"{columns.origin}: {load} is 0 in every row; a curve with contact is needed")
+    error = numbers.get(f"{load}_error")
+    return MeasuredCurve(control, numbers[control], load, numbers[load], error, columns.origin, columns.file)
+
+
+def _one_of(columns: Columns, names: tuple[str, str]) -> str:
+    """Return which of two columns there is; StoreError where it is none or both."""
+    found = [name for name in names if name in columns.names]
+    if len(found) != 1:
+        there = " and ".join(found) or f"neither among {', '.join(map(printable, columns.names)) or 'no columns'}"
+        raise StoreError(f"{columns.origin}: needs one column {' or '.join(names)}; it has {there}")
+    return found[0]
+
+
+def _check_names(columns: Columns, allowed: tuple[str, ...]) -> None:
+    """StoreError for a column that is not known, or given twice, or whose unit is none of its dimension."""
+    for position, (name, unit) in enumerate(zip(columns.names, columns.units, strict=True)):
+        if name not in allowed:
+            hint = suggestion(name, list(allowed))
+            raise StoreError(f"{columns.origin}: column {short_repr(name)}: not known{hint}")
+        if name in columns.names[:position]:
+            raise StoreError(f"{columns.origin}: column {name!r}: is given twice")
+        try:
+            unit_factor(unit, MEASURED[name])
+        except RoughmdrError as error:
+            raise StoreError(f"{columns.origin}: column {name!r}: {error}") from None
+
+
+def _read(columns: Columns, name: str) -> Floats:
+    """Return a column in SI; StoreError for an entry that is no finite number, or an error that is not above 0."""
+    position, dimension = columns.names.index(name), MEASURED[name]
+    unit, values = columns.units[position], np.empty(len(columns.rows))
+    for i, (place, entries) in enumerate(columns.rows):
+        where = f"{columns.origin}: {place}: {name} = {short_repr(entries[position])}"
+        try:
+            values[i] = quantity(f"{entries[position]} {unit}", dimension)
+        except RoughmdrError as error:
+            raise StoreError(f"{where}: {error}") from None
+        if name.endswith("_error") and not values[i] > 0.0:
+            raise StoreError(f"{where}: must be above 0")
+    return values

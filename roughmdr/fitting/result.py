@@ -1,0 +1,126 @@
+"""The result of a fit: parameters with intervals, their covariance, the measured and the fitted curve."""
+
+import numpy as np
+
+from roughmdr.fitting.doubts import doubts
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.parameters import Parameter
+from roughmdr.fitting.residuals import relative_rms
+from roughmdr.fitting.search import Found
+from roughmdr.fitting.uncertainty import Uncertainty
+from roughmdr.loading.path import labelled_branches
+from roughmdr.report.trust import trust_lines
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.result_file import FIT, provenance
+
+_POINT, _PARAMETER = ("point",), ("parameter",)
+_REFERENCES = (
+    "MacKinnon and White (1985), Journal of Econometrics 29, 305: the covariance HC3; Bell and McCaffrey (2002), "
+    "Survey Methodology 28, 169: its degrees of freedom"
+)
+_NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
+_CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
+
+
+def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, command: str) -> Labelled:
+    """Return the result of a fit, as it is stored."""
+    law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
+    variables: dict[str, Array] = {}
+    for i, parameter in enumerate(model.parameters):
+        variables |= _of_parameter(parameter, i, found, known)
+    variables |= {
+        "covariance": Array(
+            ("parameter", "parameter_2"),
+            known.covariance,
+            {
+                "long_name": "covariance of the numbers that were fitted",
+                "comment": "of the natural logarithm of a parameter where parameter_scale is 0, else of the parameter "
+                "over its parameter_scale",
+                "units": "1",
+            },
+        ),
+        "correlation": Array(
+            ("parameter", "parameter_2"),
+            known.correlation,
+            {"long_name": "correlation of the numbers that were fitted", "units": "1"},
+        ),
+        "parameter_scale": Array(
+            _PARAMETER,
+            np.array([parameter.scale for parameter in model.parameters]),
+            {"long_name": "scale of a fitted number in SI, 0 where its logarithm was fitted"},
+        ),
+        **_of_curve(model, law.variables[curve.quantity]),
+        "residual_rms": _number(
+            relative_rms(curve, found.deviations),
+            "1",
+            "root mean square of the residual over the largest load",
+        ),
+        "evaluation_count": _number(model.evaluations, "1", "number of evaluations of the expected law"),
+        "run_time": _number(seconds, "s", "time spent on the fit"),
+    }
+    keys = np.array([parameter.key for parameter in model.parameters])
+    coordinates = {
+        curve.control: Array(_POINT, curve.values, {"units": "m", "long_name": f"measured {_CONTROLS[curve.control]}"}),
+        "branch": labelled_branches(curve.values)._replace(dims=_POINT),
+        "parameter_name": Array(_PARAMETER, keys, {"long_name": "key of the parameter in the scene"}),
+        "parameter_2_name": Array(("parameter_2",), keys, {"long_name": "key of the parameter in the scene"}),
+    }
+    warnings = [*doubts(model, found, known), *law.warnings]
+    interaction = None if scene.interaction is None else scene.interaction.model
+    attrs = {
+        **provenance(scene.title, command),
+        "kind": FIT,
+        "references": _REFERENCES,
+        "measured": curve.origin,
+        "scene": scene.toml,
+        "intervals": "95 %, by the stated errors" if curve.error is not None else "95 %, HC3 and Student's t",
+        "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
+    }
+    if warnings:
+        attrs["warnings"] = "\n".join(warnings)
+    result = Labelled(variables, coordinates, attrs)
+    return result._replace(attrs={**attrs, "checksum": result.checksum()})
+
+
+def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
+    """Return a parameter with its standard error and the ends of its interval, which stay where it was sought."""
+    x, error = float(found.x[i]), float(known.standard_error[i])
+    half, per_x, key, unit = (
+        float(known.quantile[i]) * error,
+        parameter.per_x(x),
+        parameter.key,
+        _spelled(parameter.unit),
+    )
+    numbers = {
+        "": (parameter.value(x), f"fitted {key}"),
+        "_standard_error": (per_x * error, f"standard error of the fitted {key}"),
+        "_low": (parameter.value(x - half), f"lower end of the 95 % interval of {key}"),
+        "_high": (parameter.value(x + half), f"upper end of the 95 % interval of {key}"),
+    }
+    if known.shift is not None:
+        about = f"how far the model error of the law may shift the fitted {key}, not in its interval"
+        numbers["_model_error"] = per_x * float(known.shift[i]), about
+    return {f"{parameter.name}{end}": _number(value, unit, name) for end, (value, name) in numbers.items()}
+
+
+def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:
+    """Return the measured and the fitted loads."""
+    curve = model.curve
+    name, unit = _NAMES[curve.quantity], curve.unit
+    columns = {
+        curve.quantity: (curve.load, f"measured {name}"),
+        f"{curve.quantity}_fitted": (fitted, f"{name} of the fitted scene"),
+        "residual": (curve.load - fitted, f"measured minus fitted {curve.quantity}"),
+    }
+    if curve.error is not None:
+        columns[f"{curve.quantity}_error"] = curve.error, f"standard deviation of the measured {curve.quantity}"
+    return {key: Array(_POINT, values, {"units": unit, "long_name": text}) for key, (values, text) in columns.items()}
+
+
+def _number(value: float, unit: str, long_name: str) -> Array:
+    return Array((), np.array(float(value)), {"units": unit, "long_name": long_name})
+
+
+def _spelled(unit: str) -> str:
+    """Return a unit of a scene as CF spells it."""
+    return unit.replace("/m^2", " m-2").replace("/m", " m-1")

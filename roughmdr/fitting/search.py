@@ -1,0 +1,85 @@
+"""The search for the parameters of least squares: from the start of the scene, and if need be from others."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.residuals import is_systematic, relative_rms
+from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
+_FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
+_STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
+_POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
+
+
+class Found(NamedTuple):
+    """The parameters of least squares."""
+
+    x: Floats
+    deviations: Floats
+    converged: bool
+
+
+def search(model: Model) -> Found:
+    """Return the parameters of least squares; RoughmdrError where no start has a law.
+
+    Where the deviations from the start of the scene are systematic or large, other starts around it are tried. On a
+    machine, whose law takes longer, that is done at the separations which the measured force means.
+    """
+    if model.curve.control == "separation":
+        return _search(model)
+    with model.at_measured_separations():
+        near = _search(model)
+    return _follow(model, near.x)
+
+
+def _search(model: Model) -> Found:
+    start = np.zeros(len(model.parameters))
+    found = [_follow(model, start)] if np.isfinite(model.deviations(start)).all() else []
+    if not found or _is_poor(model, found[0]):
+        starts = _other_starts(model)
+        costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
+        best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
+        if not best and not found:
+            raise model.last_error
+        found += [_follow(model, x) for x in best]
+    return min(found, key=lambda each: float(np.sum(np.square(each.deviations))))
+
+
+def _is_poor(model: Model, found: Found) -> bool:
+    return is_systematic(found.deviations) or relative_rms(model.curve, found.deviations) > _POOR
+
+
+def _follow(model: Model, start: Floats) -> Found:
+    """Return where least squares lead to from a start; RoughmdrError where that has no law."""
+    from scipy.optimize import least_squares
+
+    if not np.isfinite(model.deviations(start)).all():
+        raise model.last_error
+
+    low, high = np.transpose([parameter.bounds for parameter in model.parameters])
+    result: OptimizeResult = least_squares(
+        model.deviations,
+        np.clip(start, low, high),
+        jac=model.slopes,
+        bounds=(low, high),
+        ftol=_FTOL,
+        xtol=_XTOL,
+        gtol=_GTOL,
+        max_nfev=_MAX_STEPS,
+    )
+    return Found(result.x, result.fun, result.status > 0)
+
+
+def _other_starts(model: Model) -> Floats:
+    """Return starts spread evenly, [start, parameter]."""
+    from scipy.stats.qmc import Halton
+
+    count = len(model.parameters)
+    low, high = np.transpose([parameter.nearby for parameter in model.parameters])
+    spread = Halton(count, scramble=False).random(_STARTS * count + 1)[1:]
+    return np.asarray(low + (high - low) * spread)

@@ -1,0 +1,90 @@
+"""The uncertainty of fitted parameters: covariance, intervals, and the shift that the error of the law may cause."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.search import Found
+from roughmdr.numerics.arguments import Floats
+
+_LEVEL = 0.95
+_LEAST_SLOPE = 1e-6  # of the largest: a combination that changes the law by less is not known at all
+_LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
+
+
+class Uncertainty(NamedTuple):
+    """How well the sought numbers x of a fit are known."""
+
+    influence: Floats
+    """By how much each standard deviation of each step moves each parameter, [parameter, step]."""
+    quantile: Floats
+    """Standard errors of each parameter from the middle to the end of its 95 % interval."""
+    shift: Floats | None
+    """By how much the error of the law may move each parameter; None where that error is not known."""
+
+    @property
+    def covariance(self) -> Floats:
+        """The covariance of x."""
+        return np.asarray(self.influence @ self.influence.T)
+
+    @property
+    def standard_error(self) -> Floats:
+        """The standard error of each x."""
+        return self.deviation_of(np.eye(self.influence.shape[0]))
+
+    @property
+    def correlation(self) -> Floats:
+        """The correlation of x; 0 with a parameter whose error is 0."""
+        error = self.standard_error
+        scaled = self.influence / np.where(error > 0.0, error, 1.0)[:, None]
+        correlation = np.clip(scaled @ scaled.T, -1.0, 1.0)
+        np.fill_diagonal(correlation, 1.0)
+        return np.asarray(correlation)
+
+    def deviation_of(self, combination: Floats) -> Floats:
+        """Return the standard error of a combination of x, or of each of several."""
+        return np.asarray(np.linalg.norm(combination @ self.influence, axis=-1))
+
+
+def uncertainty(model: Model, found: Found) -> Uncertainty:
+    """Return the uncertainty at the parameters of least squares.
+
+    With a standard deviation of each load, it is that which they cause, normal. Without, it is the sandwich HC3 of the
+    residuals, for noise that is constant, proportional or otherwise uneven, with Student's t of as many degrees of
+    freedom as the points have that decide.
+    """
+    from scipy.stats import norm, t
+
+    slopes = model.fine_slopes(found.x)
+    left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
+    inverse = right.T @ (left / np.maximum(sizes, max(_LEAST_SLOPE * sizes[0], np.finfo(float).tiny))).T
+    probability = 0.5 * (1.0 + _LEVEL)
+    if model.curve.error is None:
+        rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
+        influence = inverse * (found.deviations / rest)
+        quantile = t.ppf(probability, _degrees_of_freedom(inverse / rest, left))
+    else:
+        influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
+    return Uncertainty(influence, quantile, _shift(model, found, inverse))
+
+
+def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
+    """Return those of the variance of each parameter by squares of residuals, after Bell and McCaffrey (2002).
+
+    They make the variance of noise that is even as uncertain as it is: (tr M)^2/tr M^2, M = w (1 - H) w.
+    """
+    squares = np.square(weights) / np.square(weights).max(axis=1, keepdims=True)
+    leverage = np.square(left).sum(axis=1)
+    overlap = np.einsum("ks,sa,sb->kab", squares, left, left)
+    trace = squares @ (1.0 - leverage)
+    trace_of_square = np.square(squares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
+    return np.maximum(np.square(trace) / trace_of_square, 1.0)
+
+
+def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
+    law = model.law(found.x)
+    curve = law.model_error.curve
+    if not np.isfinite(curve).all():
+        return None
+    return np.abs(inverse @ (curve * law.variables[model.curve.quantity] / model.curve.weight))

@@ -1,0 +1,56 @@
+"""The text of ``roughmdr fit``."""
+
+from collections.abc import Iterator
+
+from roughmdr.schema.units import format_quantity
+from roughmdr.schema.wording import format_seconds
+from roughmdr.storage.labelled import Labelled
+
+
+def describe_fit(fit: Labelled) -> str:
+    """Return the parameters with standard errors and 95 % intervals, how well they fit, and what is in doubt."""
+    return "\n".join(f"{name:<12} {text}" for name, text in _lines(fit))
+
+
+def describe_parameters(fit: Labelled) -> list[str]:
+    """Return a line for each parameter, with its standard error and its 95 % interval."""
+    keys = parameter_keys(fit)
+    widest = max(map(len, keys))
+    return [f"{key:<{widest}}  {_with_interval(fit, key.replace('.', '_'))}" for key in keys]
+
+
+def parameter_keys(fit: Labelled) -> list[str]:
+    """Return the keys of the fitted parameters."""
+    return list(map(str, fit.coordinates["parameter_name"].values))
+
+
+def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
+    keys = parameter_keys(fit)
+    for i, line in enumerate(describe_parameters(fit)):
+        yield "" if i else "fitted", line
+    yield "intervals", "± one standard error; in parentheses 95 %"
+    load = "pressure" if "pressure_fitted" in fit.variables else "force"
+    points = fit.variables["residual"].values.size
+    yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
+    if shifts := [_shift(fit, key) for key in keys if f"{key.replace('.', '_')}_model_error" in fit.variables]:
+        yield "model error", f"of the law; it may shift {', '.join(shifts)}, which the intervals do not hold"
+    yield "trust", str(fit.attrs["trust"])
+    yield "computed", f"{_number(fit, 'evaluation_count'):.0f} laws in {format_seconds(_number(fit, 'run_time'))}"
+    for text in str(fit.attrs.get("warnings", "")).splitlines():
+        yield "warning", text
+
+
+def _with_interval(fit: Labelled, name: str) -> str:
+    unit = str(fit.variables[name].attrs["units"])
+    low, high = (_number(fit, f"{name}_{end}") for end in ("low", "high"))
+    value = format_quantity(_number(fit, name), unit, error=_number(fit, f"{name}_standard_error"))
+    return f"{value} ({format_quantity(low, unit, to=high)})"
+
+
+def _shift(fit: Labelled, key: str) -> str:
+    name = key.replace(".", "_")
+    return f"{key} by {format_quantity(_number(fit, f'{name}_model_error'), fit.variables[name].attrs['units'])}"
+
+
+def _number(fit: Labelled, name: str) -> float:
+    return float(fit.variables[name].values)

@@ -1,0 +1,75 @@
+"""The picture of a fit: the measured points, the fitted law, and the residuals below."""
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roughmdr.fitting.words import describe_parameters
+from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
+from roughmdr.storage.labelled import Labelled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_CONTROLS = {"separation": "measured separation", "remote": "measured position of the far end of the spring"}
+
+
+def draw_fit(fit: Labelled) -> "Figure":
+    """Draw the measured points over the fitted law, loading and unloading in their colours, and the residuals below.
+
+    ``fit`` is as ``roughmdr.fitting.fit`` returns or stores it.
+    """
+    from matplotlib.figure import Figure
+
+    control = next(name for name in _CONTROLS if name in fit.coordinates)
+    load = "pressure" if "pressure_fitted" in fit.variables else "force"
+    figure = Figure(figsize=(6.4, 5.6), layout="constrained")
+    law, residual = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
+    x = Scale.of(fit.coordinates[control].values, _CONTROLS[control], "m")
+    y = Scale.of(fit.variables[load].values, load, fit.variables[load].attrs["units"])
+    r = Scale.of(fit.variables["residual"].values, "residual", fit.variables[load].attrs["units"])
+    error = f"{load}_error"
+    _draw_points(law, fit, (control, load, error), (x, y))
+    _draw_fitted(law, fit, (control, f"{load}_fitted"), (x, y))
+    _draw_points(residual, fit, (control, "residual", error), (x, r))
+    for ax in (law, residual):
+        ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
+    law.set_ylabel(y.label)
+    law.legend(frameon=False)
+    residual.set(xlabel=x.label, ylabel=r.label)
+    set_title(figure, str(fit.attrs["title"]), describe_parameters(fit))
+    return figure
+
+
+def _draw_points(ax: "Axes", fit: Labelled, names: tuple[str, str, str], scales: tuple[Scale, Scale]) -> None:
+    """Draw points by branch, with bars where their errors are known."""
+    (control, name, error), (x, y) = names, scales
+    branch = fit.coordinates["branch"].values
+    for each, colour in BRANCH_COLOURS.items():
+        at = branch == each
+        if at.any():
+            bars = y(fit.variables[error].values[at]) if error in fit.variables else None
+            ax.errorbar(
+                x(fit.coordinates[control].values[at]),
+                y(fit.variables[name].values[at]),
+                bars,
+                fmt="o",
+                ms=3.0,
+                mfc="none",
+                color=colour,
+                elinewidth=0.6,
+                label=f"measured, {each}",
+            )
+
+
+def _draw_fitted(ax: "Axes", fit: Labelled, names: tuple[str, str], scales: tuple[Scale, Scale]) -> None:
+    """Draw the fitted law, each loading and unloading from where the one before ended."""
+    (control, name), (x, y) = names, scales
+    branch, steps, load = fit.coordinates["branch"].values, fit.coordinates[control].values, fit.variables[name].values
+    turns = np.flatnonzero(branch[1:] != branch[:-1]) + 1
+    ends = [0, *turns.tolist(), branch.size]
+    for number, (first, last) in enumerate(pairwise(ends)):
+        along = slice(max(first - 1, 0), last)
+        ax.plot(x(steps[along]), y(load[along]), color="#111111", lw=1.0, label=None if number else "fitted law")

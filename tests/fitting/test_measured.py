@@ -1,0 +1,87 @@
+"""Measured curves: every spelling is read, every fault is told with its place."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from roughmdr.errors import StoreError
+from roughmdr.fitting.measured import read_measured
+
+ROWS = [(3.0, 0.1), (2.0, 0.5), (1.0, 2.0), (2.0, 0.4)]
+
+
+@pytest.mark.parametrize(
+    ("header", "separator", "scale"),
+    [
+        ("separation [um],force (mN)", ",", (1e-6, 1e-3)),
+        ("Separation/µm;Force [ mN ]", ";", (1e-6, 1e-3)),
+        ("separation [nm]\tforce/uN", "\t", (1e-9, 1e-6)),
+        ("separation [um]  force [mN]", "  ", (1e-6, 1e-3)),
+        ("separation force", " ", (1.0, 1.0)),
+        ('"separation [um]","pressure (N/m^2)"', ",", (1e-6, 1.0)),
+        ("remote/um, pressure / kPa", " , ", (1e-6, 1e3)),
+    ],
+)
+def test_any_spelling_is_read(tmp_path: Path, header: str, separator: str, scale: tuple[float, float]) -> None:
+    path = tmp_path / "curve.csv"
+    rows = [separator.join(map(str, row)) for row in ROWS]
+    path.write_text("\ufeff# a comment\n\n" + "\n".join([header, *rows[:2], "# turn", *rows[2:]]) + "  # last\n")
+    curve = read_measured(path, 1)
+    np.testing.assert_allclose(curve.values, scale[0] * np.array(ROWS)[:, 0], rtol=1e-15)
+    np.testing.assert_allclose(curve.load, scale[1] * np.array(ROWS)[:, 1], rtol=1e-15)
+    assert (curve.control, curve.quantity) == (
+        "remote" if "remote" in header else "separation",
+        "pressure" if "pressure" in header else "force",
+    )
+    assert curve.error is None
+
+
+def test_errors_weight_the_points() -> None:
+    frame = pd.DataFrame(ROWS, columns=["separation", "force"]).assign(**{"force_error [mN]": 2})
+    curve = read_measured(frame, 1)
+    assert curve.error == pytest.approx(np.full(4, 2e-3))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("separation,force\n1,2\n2,nan\n3,1\n4,1\n", r"line 3: force = 'nan': expected a number in N"),
+        ("separation,force\n1,2\n2,inf\n3,1\n4,1\n", r"line 3: force = 'inf': expected a number in N"),
+        ("separation,force\n# x\n1,2\n2,\n3,1\n4,1\n", r"line 4: force = '': expected a number in N"),
+        ("separation,force\n1,2\n2\n3,1\n4,1\n", r"line 3: has 1 entries; the first line names 2 columns"),
+        ("separation,force\n1,2\n2,1\n3,1\n", r"has 3 rows; at least 4 are needed"),
+        ("separation,force,time\n1,2,3\n", r"column 'time': not known; it can be separation, force, force_error"),
+        ("separation,force,force\n1,2,3\n", r"column 'force': is given twice"),
+        ("separation,forse\n1,2\n", r"needs one column force or pressure; it has neither among separation, forse"),
+        ("separation,remote,force\n1,2,3\n", r"needs one column separation or remote; it has separation and remote"),
+        ("separation [kg],force\n1,2\n", r"column 'separation': unknown unit 'kg'; expected a unit of m"),
+        ("separation [N],force\n1,2\n", r"column 'separation': 'N' is a unit of N; expected a unit of m"),
+        ("separation,force\n1,0\n2,0\n3,0\n4,0\n", r"force is 0 in every row"),
+        ("separation,force,force_error\n1,1,0\n2,1,1\n3,1,1\n4,1,1\n", r"line 2: force_error = '0': must be above 0"),
+        ("# nothing\n", "is empty"),
+        ("1,2\n2,3\n", r"needs one column separation or remote; it has neither among 1, 2"),
+    ],
+)
+def test_a_fault_is_told_with_its_place(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "curve.csv"
+    path.write_text(text)
+    with pytest.raises(StoreError, match=message) as raised:
+        read_measured(path, 1)
+    assert str(raised.value).startswith(str(path))
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="no such file"):
+        read_measured(tmp_path / "none.csv", 1)
+    with pytest.raises(StoreError, match="is a folder"):
+        read_measured(tmp_path, 1)
+    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(StoreError, match="not a text file"):
+        read_measured(tmp_path / "binary.csv", 1)
+    with pytest.raises(StoreError, match="it must be the path of a CSV file, a DataFrame or a Dataset"):
+        read_measured(3, 1)  # type: ignore[arg-type]
+    frame = pd.DataFrame({"separation": [1.0, 2.0, 3.0, 4.0], "force": [1.0, np.nan, 1.0, 1.0]})
+    with pytest.raises(StoreError, match="measured: row 1: force = nan: expected a number in N"):
+        read_measured(frame, 1)
