@@ -38,8 +38,7 @@ LINES = (
     ("batch",),
     ("result",),
     ("runner",),
-    ("report", "analysis", "pictures"),  # what is told, found and shown of a result
-    ("fitting",),
+    ("report", "fitting", "analysis", "pictures"),  # what is told, found and shown of a result
     ("cli",),
     ("__main__",),
 )

@@ -1,5 +1,6 @@
 """Colours, axes, titles and files that all pictures share."""
 
+import io
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -102,6 +103,13 @@ def save(figure: "Figure", path: Path) -> None:
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     with replace_atomically(path) as temporary, rc_context({"svg.hashsalt": _SALT}):
         figure.savefig(temporary, dpi=_DPI, format=kind, metadata=dated.get(kind))
+
+
+def png_of(figure: "Figure") -> bytes:
+    """Return a picture as PNG, on a transparent ground."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=_DPI, transparent=True)
+    return content.getvalue()
 
 
 def format_of(path: Path) -> str:

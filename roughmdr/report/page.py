@@ -1,15 +1,14 @@
 """A result as one self-contained page of HTML: figures, errors, scene and provenance, in light and dark."""
 
 import base64
-import io
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roughmdr.pictures.kinds import draw_request
 from roughmdr.pictures.request import Drawable, Request
-from roughmdr.pictures.style import styled
+from roughmdr.pictures.style import png_of, styled
 from roughmdr.report.error_table import error_rows
 from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, summary_lines
@@ -21,10 +20,8 @@ from roughmdr.storage.result_file import check_same_kind
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 _TEMPLATE = "page.html"
-_DPI = 140
 _DARK = "dark_background"
 _MAX_LINES = 8  # under one name of the summary
 _LEFT = ("variables", "left out", "warning")  # parts of the summary that have a place of their own
@@ -133,12 +130,5 @@ def _figure(source: Drawable, request: Request, words: str) -> _Figure:
         with styled(style):
             figure = draw_request(source, request).figure
             figure.suptitle("")
-            pictures.append(_png(figure))
+            pictures.append(base64.b64encode(png_of(figure)).decode())
     return _Figure(words, *pictures)
-
-
-def _png(figure: "Figure") -> str:
-    content = io.BytesIO()
-    options: dict[str, Any] = {"format": "png", "dpi": _DPI, "transparent": True}
-    figure.savefig(content, **options)
-    return base64.b64encode(content.getvalue()).decode()
