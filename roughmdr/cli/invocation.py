@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roughmdr.report.terminal import print_text
+from roughmdr.report.terminal import print_note
 
 if TYPE_CHECKING:
     from roughmdr.storage.labelled import Labelled
@@ -35,4 +35,4 @@ def command_line() -> str:
 def warn_if_changed(file: Path, result: "Labelled") -> None:
     """Print a warning if the numbers in a file cannot be trusted."""
     if fault := result.integrity_fault():
-        print_text(f"roughmdr: {click.format_filename(file)}: {fault}", err=True)
+        print_note(f"{click.format_filename(file)}: {fault}")
