@@ -11,6 +11,7 @@ from roughmdr.cli.new import new
 from roughmdr.cli.plan import plan
 from roughmdr.cli.plot import plot
 from roughmdr.cli.run import run
+from roughmdr.cli.schema import schema
 from roughmdr.report.terminal import Group
 
 
@@ -23,5 +24,5 @@ def main() -> None:
     """
 
 
-for command in (generate, info, new, plan, plot, run):
+for command in (generate, info, new, plan, plot, run, schema):
     main.add_command(command)
