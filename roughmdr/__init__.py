@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     )
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.pictures.plot import plot
+    from roughmdr.report.cite import cite
     from roughmdr.report.info import info
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
@@ -64,6 +65,7 @@ _ROOMS = {
         "Unfinished",
     ),
     "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
+    "report.cite": ("cite",),
     "report.info": ("info",),
     "pictures.plot": ("plot",),
     "runner.run": ("run",),
@@ -96,6 +98,7 @@ __all__ = [
     "TruncatedParaboloid",
     "Unfinished",
     "axis_stress",
+    "cite",
     "effective_modulus",
     "equilibria",
     "generate",

@@ -127,6 +127,7 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["--version"], set()),
         (["new", "new.toml"], {"scipy"}),  # whose distributions the schema beside it lists
         (["schema"], {"scipy"}),
+        (["cite", "out.nc"], set()),
         (["info", "out.nc"], set()),
         (["info", "out.nc", "--json"], set()),
         (["plan", "small.toml", "--json"], {"scipy", "numba"}),

@@ -5,6 +5,7 @@ Exit status: 0 done, 1 runs failed or a batch had to stop, 2 wrong input, 130 in
 
 import click
 
+from roughmdr.cli.cite import cite
 from roughmdr.cli.generate import generate
 from roughmdr.cli.info import info
 from roughmdr.cli.new import new
@@ -24,5 +25,5 @@ def main() -> None:
     """
 
 
-for command in (generate, info, new, plan, plot, run, schema):
+for command in (cite, generate, info, new, plan, plot, run, schema):
     main.add_command(command)
