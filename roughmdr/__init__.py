@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.fitting.fit import fit
     from roughmdr.pictures.plot import plot
+    from roughmdr.report.cite import cite
     from roughmdr.report.info import info
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
@@ -68,6 +69,7 @@ _ROOMS = {
     ),
     "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
     "fitting.fit": ("fit",),
+    "report.cite": ("cite",),
     "report.info": ("info",),
     "pictures.plot": ("plot",),
     "runner.run": ("run",),
@@ -100,6 +102,7 @@ __all__ = [
     "TruncatedParaboloid",
     "Unfinished",
     "axis_stress",
+    "cite",
     "effective_modulus",
     "equilibria",
     "fit",

@@ -126,8 +126,13 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
     [
         (["--help"], set()),
         (["--version"], set()),
-        (["new", "new.toml"], set()),
+        (["new", "new.toml"], {"scipy"}),  # whose distributions the schema beside it lists
+        (["schema"], {"scipy"}),
+        (["cite", "out.nc"], set()),
         (["info", "out.nc"], set()),
+        (["info", "out.nc", "--json"], set()),
+        (["plan", "small.toml", "--json"], {"scipy", "numba"}),
+        (["run", "small.toml", "-o", "x.nc", "--json"], {"scipy", "numba"}),
         (["run", "wrong.toml", "-o", "x.nc"], {"scipy"}),
         (["generate", "small.toml", "-o", "x.nc"], {"scipy"}),
         (["plan", "small.toml"], {"scipy", "numba"}),

@@ -30,6 +30,8 @@ class Foreseen(NamedTuple):
     """Its contact fraction and pressure are those of all asperities."""
     fraction_at_pull_off: float
     """NaN where there is none, or no nominal area."""
+    cell: int = 0
+    """Number of the cell in its plan."""
 
 
 class Prospect(NamedTuple):
@@ -56,7 +58,7 @@ def foresee_cells(plan: Plan) -> Prospect:
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
         path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
         try:
-            foreseen.append(_foreseen(cell.scene, path))
+            foreseen.append(_foreseen(cell.scene, path)._replace(cell=number))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     coupled = max(

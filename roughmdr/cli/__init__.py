@@ -5,6 +5,7 @@ Exit status: 0 done, 1 runs failed or a batch had to stop, 2 wrong input, 130 in
 
 import click
 
+from roughmdr.cli.cite import cite
 from roughmdr.cli.fit import fit
 from roughmdr.cli.generate import generate
 from roughmdr.cli.info import info
@@ -13,6 +14,7 @@ from roughmdr.cli.plan import plan
 from roughmdr.cli.plot import plot
 from roughmdr.cli.report import report
 from roughmdr.cli.run import run
+from roughmdr.cli.schema import schema
 from roughmdr.report.terminal import Group
 
 
@@ -25,5 +27,5 @@ def main() -> None:
     """
 
 
-for command in (fit, generate, info, new, plan, plot, report, run):
+for command in (cite, fit, generate, info, new, plan, plot, report, run, schema):
     main.add_command(command)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.report.terminal import print_text
+from roughmdr.report.terminal import print_note
 
 
 @contextmanager
@@ -31,4 +31,4 @@ def command_line() -> str:
 def warn_of(file: Path, doubt: str) -> None:
     """Print why the numbers in a file cannot be trusted, unless they can."""
     if doubt:
-        print_text(f"roughmdr: {click.format_filename(file)}: {doubt}", err=True)
+        print_note(f"{click.format_filename(file)}: {doubt}")

@@ -11,10 +11,14 @@ from roughmdr.report.terminal import Command, print_text
 @click.command(cls=Command)
 @click.argument("scene", type=OUTPUT)
 def new(scene: Path) -> None:
-    """Write a starter scene to SCENE. It runs as it is; its comments list units and choices."""
+    """Write a starter scene to SCENE. It runs as it is; its comments list units and choices.
+
+    Its first line names roughmdr.schema.json to editors, which is written beside it unless it is there already.
+    """
     from importlib.resources import files
 
     from roughmdr.errors import StoreError
+    from roughmdr.scene.schema_file import DIRECTIVE, put_beside
     from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 
     check_writable(scene)
@@ -22,5 +26,6 @@ def new(scene: Path) -> None:
     if scene.exists():
         raise StoreError(f"{scene}: exists already; give a new name")
     with replace_atomically(scene) as temporary:
-        temporary.write_bytes(files("roughmdr").joinpath("starter.toml").read_bytes())
+        temporary.write_bytes(DIRECTIVE.encode() + files("roughmdr").joinpath("starter.toml").read_bytes())
     print_text(f"scene        {click.format_filename(scene)}")
+    print_text(f"schema       {put_beside(scene)}")

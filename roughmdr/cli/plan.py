@@ -4,15 +4,17 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.options import FILE, changes_option, workers_option
-from roughmdr.report.terminal import Command, print_text
+from roughmdr.cli.options import FILE, changes_option, json_option, workers_option
+from roughmdr.report.terminal import Command, print_document, print_text
 
 
 @click.command(cls=Command)
 @click.argument("scene", type=FILE)
 @changes_option
 @workers_option
-def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
+@json_option
+@click.pass_context
+def plan(ctx: click.Context, scene: Path, changes: tuple[str, ...], workers: int, as_json: bool) -> None:
     """Tell what a run of SCENE will do.
 
     Prints the number of runs and tasks, time and memory, and what is left out and why. Nothing is computed.
@@ -26,4 +28,10 @@ def plan(scene: Path, changes: tuple[str, ...], workers: int) -> None:
     from roughmdr.batch.plan import make_plan
 
     planned = make_plan(validated)
-    print_text(describe_plan(planned, estimate(planned, workers), foresee_cells(planned), workers))
+    cost, prospect = estimate(planned, workers), foresee_cells(planned)
+    if as_json:
+        from roughmdr.report.plan_document import plan_table
+
+        print_document(ctx, plan=plan_table(planned, cost, prospect, workers))
+    else:
+        print_text(describe_plan(planned, cost, prospect, workers))

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
-from roughmdr.cli.options import FILE, OUTPUT, changes_option, workers_option
+from roughmdr.cli.options import FILE, OUTPUT, changes_option, json_option, workers_option
 from roughmdr.errors import RoughmdrError
-from roughmdr.report.terminal import INCOMPLETE, Command, print_text
+from roughmdr.report.terminal import INCOMPLETE, Command, print_document, print_text
 
 if TYPE_CHECKING:
     from roughmdr.runner.backend import Backend
@@ -40,8 +40,10 @@ if TYPE_CHECKING:
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("--verbose", is_flag=True, help="Also print what was left out, and why.")
+@json_option
+@click.pass_context
 def run(
-    scene: Path, output: Path, changes: tuple[str, ...], resume: bool, quiet: bool, verbose: bool, **where: Any
+    ctx: click.Context, /, scene: Path, output: Path, changes: tuple[str, ...], resume: bool, **others: Any
 ) -> None:
     """Compute the load-separation law of SCENE.
 
@@ -49,9 +51,10 @@ def run(
     done. If the command is interrupted or killed, or the disk is full, the same command continues from there. Ctrl-C
     waits for the current runs; a second Ctrl-C does not.
     """
+    started = time.perf_counter()
+    quiet, verbose, as_json = (others.pop(name) for name in ("quiet", "verbose", "as_json"))
     if quiet and verbose:
         raise click.UsageError("--quiet and --verbose exclude each other")
-    started = time.perf_counter()
     with without_garbage_collection():
         from roughmdr.report.summary import describe_failed, describe_result
         from roughmdr.scene import read
@@ -61,13 +64,21 @@ def run(
         from roughmdr.runner.run import execute
 
         planned = make_plan(validated)
-    result = execute(planned, output, _backend(**where), resume=resume, quiet=quiet, command=command_line())
-    if not quiet:
-        print_text(describe_result(result, time.perf_counter() - started, left_out=verbose))
+    silent = quiet or as_json
+    result = execute(planned, output, _backend(**others), resume=resume, quiet=silent, command=command_line())
+    elapsed, failed = time.perf_counter() - started, describe_failed(result)
+    if as_json:
+        from roughmdr.report.documents import fault
+        from roughmdr.report.result_document import result_table
+
+        faults = [fault(failed)] if failed else []
+        print_document(ctx, INCOMPLETE if failed else 0, faults=faults, result=result_table(result, output, elapsed))
+    elif not quiet:
+        print_text(describe_result(result, elapsed, left_out=verbose))
         print_text(f"result       {click.format_filename(output)}")
-    if failed := describe_failed(result):
-        if quiet:
-            print_text(f"roughmdr: {failed}", err=True)
+    elif failed:
+        print_text(f"roughmdr: {failed}", err=True)
+    if failed:
         sys.exit(INCOMPLETE)
 
 

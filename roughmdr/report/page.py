@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from roughmdr.pictures.kinds import draw_request
 from roughmdr.pictures.request import Drawable, Request
 from roughmdr.pictures.style import png_of, styled
+from roughmdr.report.cite import describe_papers
 from roughmdr.report.error_table import error_rows
 from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, summary_lines
@@ -95,7 +96,8 @@ def page_of(result: Labelled, file: Path | None) -> str:
         file="out.nc" if file is None else shlex.quote(file.name),
         scene=attrs["scene"].strip(),
         origin=[("made by", attrs["packages"]), ("history", attrs["history"]), ("checksum", attrs.get("checksum", ""))],
-        citations=attrs.get("references", ""),
+        citations=describe_papers(attrs["scene"], result, bibtex=False),
+        bibtex=describe_papers(attrs["scene"], result, bibtex=True),
     )
 
 

@@ -31,9 +31,9 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     end = over_cells("m", lambda cell: float(cell.path.separation[-1]))
     yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
     if all("pressure" in cell.law.variables for cell in cells):
-        yield "pressure", f"{over_cells('Pa', _pressure_at_closest)} at closest approach, as expected"
-        if any(_largest_tension(cell) > 0.0 for cell in cells):
-            yield "", f"{over_cells('Pa', _largest_tension)} is about the largest tension"
+        yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, as expected"
+        if any(largest_tension(cell) > 0.0 for cell in cells):
+            yield "", f"{over_cells('Pa', largest_tension)} is about the largest tension"
     tabor = min(cell.law.tabor for cell in cells)
     if tabor < math.inf:
         yield "adhesion", f"Tabor number from {tabor:.3g} on: {', '.join(sorted({cell.law.model for cell in cells}))}"
@@ -54,9 +54,11 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
 
 
-def _pressure_at_closest(cell: "Foreseen") -> float:
+def pressure_at_closest(cell: "Foreseen") -> float:
+    """Return the pressure of a cell with a nominal area at its closest approach [Pa]."""
     return float(cell.law.variables["pressure"][np.argmin(cell.path.separation)])
 
 
-def _largest_tension(cell: "Foreseen") -> float:
+def largest_tension(cell: "Foreseen") -> float:
+    """Return the largest tension of a cell with a nominal area [Pa]; 0 for none."""
     return max(0.0, -float(cell.law.variables["pressure"].min()))

@@ -18,7 +18,7 @@ from roughmdr.variables import DONE, FAILED
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
-    from roughmdr.batch.foresee import Foreseen, Prospect
+    from roughmdr.batch.foresee import Prospect
     from roughmdr.batch.plan import Plan
 
 _NOT_KNOWN = "not known: no run was computed"
@@ -37,7 +37,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
         *prospect_lines(prospect),
-        *advice_lines(plan.scene.toml, max((_resolution(cell) for cell in prospect.foreseen), default=0.0)),
+        *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
         *_reference(plan),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
@@ -91,7 +91,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield from _avalanches(result)
     yield from _contacts_at_ends(result)
     yield from trust_of_result(result)
-    yield from advice_lines(attrs["scene"], _resolution_error(result))
+    yield from advice_lines(attrs["scene"], resolution_error(result))
     yield from reference_lines(result)
     yield from _adhesion(result)
     yield from _indent("accuracy", attrs.get("accuracy", "").splitlines())
@@ -101,11 +101,12 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield "run time", time
 
 
-def _resolution(cell: "Foreseen") -> float:
-    return cell.law.model_error.parts["resolution_error"]
+def foreseen_resolution(prospect: "Prospect") -> float:
+    """Return the largest error by the resolution of a map that was foreseen; 0 where no cell was."""
+    return max((cell.law.model_error.parts["resolution_error"] for cell in prospect.foreseen), default=0.0)
 
 
-def _resolution_error(result: Labelled) -> float:
+def resolution_error(result: Labelled) -> float:
     """Return the largest error by the resolution of a map; 0 where an earlier version did not store it."""
     name = "resolution_error"
     return float(np.nanmax(_values(result, name), initial=0.0)) if name in result.variables else 0.0
@@ -236,11 +237,11 @@ def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[st
         f"{np.nanmax(error):.1e}" if np.isfinite(error).any() else "-",
         "" if np.isnan(reached) else f"{reached:.2g}",
         layout.method_of(result, cell),
-        _first_remark(result, cell),
+        first_remark(result, cell),
     )
 
 
-def _first_remark(result: Labelled, cell: tuple[int, ...]) -> str:
+def first_remark(result: Labelled, cell: tuple[int, ...]) -> str:
     """Return the first remark on a cell, and on which realisation it is."""
     if "remark" not in result.coordinates:
         return ""

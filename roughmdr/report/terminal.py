@@ -1,6 +1,7 @@
 """Messages and exit statuses of the command line.
 
-Text that may come from a file is escaped, so that the terminal does not act on it.
+Text that may come from a file is escaped, so that the terminal does not act on it. With --json all that a command has
+to say, its errors and warnings included, is one document on standard output (``documents``).
 """
 
 import errno
@@ -21,8 +22,22 @@ INCOMPLETE = 1
 _WRONG_INPUT, _INTERRUPTED = 2, 130
 
 
+_JSON = f"{__name__}.json"
+"""Key of the notes of a command with --json, in what its contexts share."""
+
+
+class _OutputError(RoughmdrError):
+    """The standard output cannot be written."""
+
+
 class Command(click.Command):
     """A command that tells if its help cannot be printed."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments, after noting whether all is to be told as JSON, mistakes in them included."""
+        if "--json" in args and any("--json" in parameter.opts for parameter in self.params):
+            ctx.meta[_JSON] = {"command": self.name or "", "warnings": []}
+        return super().parse_args(ctx, args)
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
         """Read the arguments; click prints the answers to --help and --version here."""
@@ -44,21 +59,56 @@ class Group(Command, click.Group):
             with warnings.catch_warnings():
                 warnings.showwarning = print_warning
                 return super().invoke(ctx)
-        except click.ClickException as error:
-            message = io.StringIO()
-            error.show(message)
-            print_text(message.getvalue().removesuffix("\n"), err=True)
-            sys.exit(error.exit_code)
-        except RoughmdrError as error:
-            print_error(error)
-            sys.exit(INCOMPLETE if isinstance(error, Unfinished) else _WRONG_INPUT)
-        except MemoryError as error:
-            print_text(f"roughmdr: out of memory{f': {error}' if str(error) else ''}", err=True)
-            sys.exit(INCOMPLETE)
+        except (click.ClickException, RoughmdrError, MemoryError) as error:
+            status = _status_of(error)
+            _print_failure(ctx, error, status)
+            sys.exit(status)
         except (KeyboardInterrupt, click.Abort) as interrupt:
-            print_text(f"roughmdr: {str(interrupt) or 'interrupted; nothing was written'}", err=True)
+            _print_failure(ctx, interrupt, _INTERRUPTED)
             # Threads may still be computing; a normal exit would wait for them.
             os._exit(_INTERRUPTED)
+
+
+def _status_of(error: Exception) -> int:
+    """Return the exit status of an error raised on purpose, or of a lack of memory."""
+    if isinstance(error, click.ClickException):
+        return error.exit_code
+    return INCOMPLETE if isinstance(error, Unfinished | MemoryError) else _WRONG_INPUT
+
+
+def _print_failure(ctx: click.Context, error: BaseException, status: int) -> None:
+    """Print why a command ends: to standard error, or as the document that it would have printed."""
+    message = str(error)
+    if isinstance(error, MemoryError):
+        message = f"out of memory{f': {error}' if str(error) else ''}"
+    elif isinstance(error, KeyboardInterrupt | click.Abort):
+        message = str(error) or "interrupted; nothing was written"
+    if _JSON in ctx.meta and not isinstance(error, _OutputError):
+        from roughmdr.report.documents import faults_of
+
+        if isinstance(error, click.ClickException):
+            message = error.format_message()
+        try:
+            print_document(ctx, status, faults=faults_of(error, message))
+            return
+        except _OutputError as unwritable:
+            error = unwritable
+    if isinstance(error, click.ClickException):
+        shown = io.StringIO()
+        error.show(shown)
+        print_text(shown.getvalue().removesuffix("\n"), err=True)
+    elif isinstance(error, RoughmdrError):
+        print_error(error)
+    else:
+        print_text(f"roughmdr: {message}", err=True)
+
+
+def print_document(ctx: click.Context, exit_status: int = 0, **told: Any) -> None:
+    """Print the document of a command with --json: what was ``told``, and its warnings until now."""
+    from roughmdr.report.documents import document, to_json
+
+    notes = ctx.find_root().meta[_JSON]
+    _print(to_json(document(notes["command"], exit_status, warnings=notes["warnings"], **told)), err=False)
 
 
 def print_text(text: str, *, err: bool = False) -> None:
@@ -67,8 +117,17 @@ def print_text(text: str, *, err: bool = False) -> None:
 
 
 def print_warning(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
-    """Print a warning to standard error, in place of ``warnings.showwarning``."""
-    print_text(f"roughmdr: {category.__name__}: {message}", err=True)
+    """Print a warning as ``print_note`` does, in place of ``warnings.showwarning``."""
+    print_note(f"{category.__name__}: {message}")
+
+
+def print_note(text: str) -> None:
+    """Print a note to standard error, or keep it for the document of a command with --json."""
+    ctx = click.get_current_context(silent=True)
+    if ctx is not None and _JSON in ctx.meta:
+        ctx.meta[_JSON]["warnings"].append(text)
+    else:
+        print_text(f"roughmdr: {text}", err=True)
 
 
 def print_error(error: RoughmdrError) -> None:
@@ -96,14 +155,14 @@ def _print(text: str, *, err: bool) -> None:
             raise unwritable from None
 
 
-def _unwritable(stream: TextIO, error: OSError) -> RoughmdrError:
+def _unwritable(stream: TextIO, error: OSError) -> "_OutputError":
     """Return the error of a stream that cannot be written, after redirecting it to nowhere.
 
     Otherwise Python would try to write it again at exit.
     """
     with suppress(OSError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-    return RoughmdrError(f"the standard output cannot be written: {error.strerror}")
+    return _OutputError(f"the standard output cannot be written: {error.strerror}")
 
 
 def _coloured(fault: Fault) -> str:

@@ -1,6 +1,6 @@
 """The layout of a result: its variables, its cells, its realisations."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
-from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
     DONE,
@@ -114,14 +114,21 @@ def cells_of(result: Labelled) -> list[tuple[int, ...]]:
     return list(np.ndindex(*swept_sizes(result).values()))
 
 
+def swept_values(coordinates: Mapping[str, Array], dims: Sequence[str], cell: tuple[int, ...]) -> dict[str, Array]:
+    """Return the value of each swept key, as an array without dimensions, in a cell over the swept dimensions."""
+    values = {}
+    for name, array in coordinates.items():
+        if name not in AUXILIARY_COORDINATES and array.dims and set(array.dims) <= set(dims):
+            value = array.values[tuple(cell[dims.index(dim)] for dim in array.dims)]
+            values[name] = Array((), np.asarray(value), array.attrs)
+    return values
+
+
 def cell_label(result: Labelled, cell: tuple[int, ...]) -> str:
     """Describe a cell by its swept values."""
-    names = list(swept_sizes(result))
     parts = []
-    for name, array in result.coordinates.items():
-        if name not in AUXILIARY_COORDINATES and array.dims and set(array.dims) <= set(names):
-            value = array.values[tuple(cell[names.index(dim)] for dim in array.dims)]
-            is_number = array.values.dtype.kind in "if"
-            shown = format_quantity(float(value), array.attrs.get("units", "1")) if is_number else str(value)
-            parts.append(f"{name} = {shown}")
+    for name, (_, value, attrs) in swept_values(result.coordinates, list(swept_sizes(result)), cell).items():
+        is_number = value.dtype.kind in "if"
+        shown = format_quantity(float(value), attrs.get("units", "1")) if is_number else str(value)
+        parts.append(f"{name} = {shown}")
     return ", ".join(parts)

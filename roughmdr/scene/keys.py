@@ -8,6 +8,7 @@ from pydantic import BaseModel, BeforeValidator
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import sections_of
+from roughmdr.schema.json_schema import JsonSchema
 from roughmdr.schema.quantities import Reader
 
 
@@ -21,6 +22,10 @@ class Name(NamedTuple):
         if not isinstance(value, str):
             raise RoughmdrError("expected a name")
         return value
+
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of any name."""
+        return {"type": "string"}
 
 
 def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -> Iterator[tuple[str, Reader]]:

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import DEFAULT_ERROR as DEFAULT_SOLVER_ERROR
@@ -113,12 +113,13 @@ def _check_variable(value: object) -> object:
     return value
 
 
+_VARIABLE = Annotated[str, BeforeValidator(_check_variable), WithJsonSchema({"enum": list(CURVE_VARIABLES)})]
+
+
 class Output(Section):
     """[output]: variables of the result, as curves of every realisation or as statistics."""
 
-    variables: Annotated[list[Annotated[str, BeforeValidator(_check_variable)]], Field(min_length=1)] = Field(
-        default=list(DEFAULT_VARIABLES)
-    )
+    variables: Annotated[list[_VARIABLE], Field(min_length=1)] = Field(default=list(DEFAULT_VARIABLES))
     keep: Literal["curves", "statistics"] = "curves"
 
     @field_validator("variables")

@@ -7,10 +7,11 @@ from typing import Annotated, ClassVar, NamedTuple
 from pydantic import BeforeValidator, model_validator
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.schema.json_schema import JsonSchema
 from roughmdr.schema.quantities import Quantity, Section
-from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.units import DIMENSIONLESS, NUMBER, quantity, quantity_pattern
 
-_SIGMA = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*sigma\s*")
+_SIGMA = re.compile(rf"\s*({NUMBER})\s*sigma\s*")
 
 
 class Separation(NamedTuple):
@@ -47,6 +48,20 @@ class SeparationReader:
         except RoughmdrError as error:
             sigma = 'in standard deviations of the heights, like "4 sigma"'
             raise RoughmdrError(f"{error}, or {sigma}{self.other}") from None
+
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of a length, a multiple of sigma or, where it is allowed, "clear"."""
+        alternatives = [
+            quantity_pattern(self.dimension),
+            f"^{_SIGMA.pattern}$",
+            *([f"^{CLEAR}$"] if self.clear else []),
+        ]
+        default = {"default": CLEAR} if self.clear else {}
+        return {"type": ["number", "string"], "pattern": "|".join(alternatives), **default}
+
+    def __str__(self) -> str:
+        clear = f', or "{CLEAR}"' if self.clear else ""
+        return f'a length, a number in m or a string as "1 um", or in standard deviations, as "4 sigma"{clear}'
 
 
 class Target(Section):

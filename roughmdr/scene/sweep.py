@@ -27,7 +27,9 @@ _PATH_KEYS = (
     *(f"path.{preload}" for preload in PRELOADS),
 )
 _ALLOWED_FORMS = "must be a list, { linspace = [first, last], num = ... } or { logspace = [first, last], num = ... }"
-_NUM = WholeNumber(2, 100_000)
+NUM = WholeNumber(2, 100_000)
+ENDS = ("linspace", "logspace")
+"""Tables with two ends, which ``num`` values are between."""
 _MAX_CELLS = 100_000
 _DIGITS = 15  # of values between two ends, so that 0.3 is 0.3 and can be selected
 
@@ -82,6 +84,11 @@ class Sweep:
         return coordinates
 
 
+def may_be_swept(key: str) -> bool:
+    """Return whether a key of a scene that takes a number or a name can be swept."""
+    return key.split(".", maxsplit=1)[0] in SECTIONS or key in _PATH_KEYS
+
+
 def describe_cell(cell: dict[str, object]) -> str:
     """Return the swept keys of a cell with their entries, in words."""
     return ", ".join(f"{key} = {value}" for key, value in cell.items())
@@ -96,7 +103,7 @@ def flatten(table: object) -> object:
     def walk(inner: dict[str, Any], prefix: str) -> None:
         for name, value in inner.items():
             key = f"{prefix}{name}"
-            if isinstance(value, dict) and value and value.keys().isdisjoint({"linspace", "logspace", "num"}):
+            if isinstance(value, dict) and value and value.keys().isdisjoint({*ENDS, "num"}):
                 walk(value, f"{key}.")
             elif key in flat:
                 raise SceneError.of([Fault(f"sweep.{printable(key)}", "", "is given twice")])
@@ -116,9 +123,7 @@ def read_sweep(table: object, allowed_keys: dict[str, Reader]) -> tuple[Sweep | 
     if mode not in ("product", "zip"):
         hint = suggestion(str(mode), ["product", "zip"])
         faults.append(Fault("sweep.mode", short_repr(mode), f"not available{hint}"))
-    readers = {
-        key: reader for key, reader in allowed_keys.items() if key.split(".")[0] in SECTIONS or key in _PATH_KEYS
-    }
+    readers = {key: reader for key, reader in allowed_keys.items() if may_be_swept(key)}
     axes = []
     for key, value in table.items():
         if key == "mode":
@@ -176,7 +181,7 @@ def _read_entries(key: str, entries: list[object], reader: Reader) -> tuple[list
 
 def _spaced_entries(key: str, table: dict[str, Any], reader: Reader) -> list[object]:
     """Return the entries of a linspace or logspace; both ends as they were given."""
-    kind = next((kind for kind in ("linspace", "logspace") if kind in table), None)
+    kind = next((kind for kind in ENDS if kind in table), None)
     if kind is None:
         raise EntryError(key, table, _ALLOWED_FORMS)
     for other in table.keys() - {kind, "num"}:
@@ -187,7 +192,7 @@ def _spaced_entries(key: str, table: dict[str, Any], reader: Reader) -> list[obj
     if "num" not in table:
         raise EntryError(f"{key}.num", None, "is missing")
     try:
-        num = _NUM(table["num"])
+        num = NUM(table["num"])
     except RoughmdrError as error:
         raise EntryError(f"{key}.num", table["num"], str(error)) from None
     (first, last), in_sigma = _read_entries(f"{key}.{kind}", ends, reader)

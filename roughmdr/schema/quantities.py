@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.json_schema import JsonSchema
+from roughmdr.schema.units import DIMENSIONLESS, example_of_unit, quantity, quantity_pattern
 
 
 class Section(BaseModel):
@@ -29,6 +30,9 @@ class Reader(Protocol):
 
     def __call__(self, value: object) -> Any:
         """Return the value in SI; RoughmdrError if it is not allowed."""
+
+    def json_schema(self) -> JsonSchema:
+        """Return the JSON Schema of all values that are allowed, and of as few others as it can tell apart."""
 
 
 class EntryError(RoughmdrError):
@@ -59,6 +63,18 @@ class Quantity:
             raise RoughmdrError(f"must be at most {self.at_most:g}")
         return number
 
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of a number within the bounds, or of a string with a unit."""
+        bounds = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
+        within = {name: bound for name, bound in bounds.items() if bound is not None}
+        return {"type": ["number", "string"], **within, "pattern": quantity_pattern(self.dimension)}
+
+    def __str__(self) -> str:
+        bounds = {"above": self.above, "at least": self.at_least, "at most": self.at_most}
+        limits = " and ".join(f"{name} {bound:g}" for name, bound in bounds.items() if bound is not None)
+        unit = f"a number in {self.dimension} or a string with a unit, as {example_of_unit(self.dimension)}"
+        return ", ".join(filter(None, ("a number" if self.dimension == DIMENSIONLESS else unit, limits)))
+
 
 @dataclass(frozen=True)
 class WholeNumber:
@@ -75,6 +91,13 @@ class WholeNumber:
         if not self.minimum <= value <= self.maximum:
             raise RoughmdrError(f"must be from {self.minimum} to {self.maximum}")
         return value
+
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of an integer within the bounds."""
+        return {"type": "integer", "minimum": self.minimum, "maximum": self.maximum}
+
+    def __str__(self) -> str:
+        return f"a whole number from {self.minimum} to {self.maximum}"
 
 
 Length = Annotated[float, BeforeValidator(Quantity("m", above=0.0))]

@@ -54,7 +54,8 @@ _SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2"}
 """Units as results have them, in the spelling of a scene."""
 _POWERS = {"m^2": 2, "/m^2": -2}
 _DIGITS, _ERROR_DIGITS = 4, 2
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
 
 
 def quantity(value: object, dimension: str) -> float:
@@ -92,6 +93,30 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     others = [f"{unit!r} is a unit of {other}" for other in _BASES if spelled in _table(other)]
     found = others[0] if others else f"unknown unit {short_repr(unit)}"
     raise RoughmdrError(f"{found}; expected a unit of {dimension}, like {_EXAMPLES.get(dimension, 'a plain number')}")
+
+
+def quantity_pattern(dimension: str) -> str:
+    """Return a regular expression of the strings that ``quantity`` reads, but for numbers beyond those of a float."""
+    prefix = f"[{''.join(_PREFIX)}]?"
+    units = [dimension, *_ALONE.get(dimension, {})]
+    for base, _ in _BASES.get(dimension, ()):
+        units.append(f"1?/{prefix}{base[1:]}" if base.startswith("/") else f"{prefix}{base}")
+    spelled = "|".join(map(_any_spelling, dict.fromkeys(units)))
+    return rf"^\s*{NUMBER}\s*(?:{spelled})?\s*$"
+
+
+def _any_spelling(unit: str) -> str:
+    """Return a regular expression of all spellings of a unit, as ``unit_factor`` takes them for one."""
+    power = r"(?:\^|\*\*)"
+    square = rf"m(?:{power}2|²)"
+    for spelled, pattern in (("/m^2", f"(?:/{square}| m{power}?-2)"), ("m^2", square), ("m^-2", f"m{power}-2")):
+        unit = unit.replace(spelled, pattern)
+    return unit
+
+
+def example_of_unit(dimension: str) -> str:
+    """Return an example of a quantity with a unit, in quotes; empty for plain numbers."""
+    return _EXAMPLES.get(dimension, "").partition(",")[0]
 
 
 def format_quantity(value: float, unit: str, *, to: float | None = None, error: float | None = None) -> str:

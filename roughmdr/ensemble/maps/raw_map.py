@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.schema.json_schema import JsonSchema, of_any_type
 from roughmdr.schema.quantities import Quantity
 
 Size = float | tuple[float, float]
@@ -33,6 +34,14 @@ class SizeReader:
         if len(value) != 2:
             raise RoughmdrError('must be one side, as "100 um", or two, along x and y, as ["100 um", "50 um"]')
         return self._side(value[0]), self._side(value[1])
+
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of one side, or of two."""
+        side = self._side.json_schema()
+        return of_any_type(side, {"type": "array", "items": side, "minItems": 2, "maxItems": 2})
+
+    def __str__(self) -> str:
+        return f"{self._side}; or a list of two"
 
 
 def check_points(shape: tuple[int, ...]) -> None:

@@ -7,14 +7,20 @@ from functools import lru_cache
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_families import ALIASES, Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
+from roughmdr.schema.json_schema import JsonSchema, of_any_type
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.schema.wording import close_matches
 
-_COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
+COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
 _LOCATION = ("loc", "mean", "std")  # any of these determines it: std together with the default mean
 _MIN_FRACTION = 1e-200  # that a truncated distribution keeps: less has no digits left
 _MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # of a family: far beyond, scipy can crash the whole process
+
+
+def definition_of(dimension: str) -> str:
+    """Return the name of the JSON Schema of the table of a distribution."""
+    return "distribution" if dimension == DIMENSIONLESS else f"distribution_of_{dimension}"
 
 
 @dataclass(frozen=True)
@@ -55,12 +61,22 @@ class DistributionReader:
         """Return the names of the parameters that an entry can have."""
         given = value.get("distribution") if isinstance(value, dict) else None
         family = find_family(ALIASES.get(given, given)) if isinstance(given, str) else None
-        return [*(family.parameters if family else ()), *_COMMON]
+        return [*(family.parameters if family else ()), *COMMON]
 
     def parameter(self, name: str) -> Quantity:
         """Return the reader of one parameter of the table."""
         above = 0.0 if name in ("std", "scale") else None
-        return Quantity(self.dimension if name in _COMMON else DIMENSIONLESS, above=above)
+        return Quantity(self.dimension if name in COMMON else DIMENSIONLESS, above=above)
+
+    def json_schema(self) -> JsonSchema:
+        """Return the schema of a plain quantity or a table, which is ``distribution_schemas`` to describe."""
+        plain = Quantity(self.dimension, above=0.0 if self.positive else None).json_schema()
+        defined = [{"$ref": f"#/$defs/{definition_of(self.dimension)}"}]
+        return of_any_type(plain, {"type": "object", "required": ["distribution"], "allOf": defined})
+
+    def __str__(self) -> str:
+        plain = Quantity(self.dimension, above=0.0 if self.positive else None)
+        return f'{plain}; or a table such as {{ distribution = "normal", mean = ..., std = ... }}'
 
     def _number(self, name: str, value: object) -> float:
         try:
@@ -138,7 +154,7 @@ def _located(
 def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tuple[float, ...]:
     missing = [name for name in family.parameters if name not in numbers]
     if missing:
-        allowed = ", ".join((*family.parameters, *_COMMON))
+        allowed = ", ".join((*family.parameters, *COMMON))
         raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {allowed}")
     if "std" not in numbers and "scale" not in numbers:
         raise RoughmdrError(f"{given} needs a std or a scale")

@@ -1,9 +1,18 @@
 """Readers of the arrays that describe one profile for all asperities."""
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.quantities import EntryError
+from roughmdr.schema.json_schema import JsonSchema
+from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.shapes import PowerSeries
+
+TERMS: JsonSchema = {
+    "type": "object",
+    "minProperties": 1,
+    "propertyNames": {"pattern": r"^\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*$"},
+    "additionalProperties": Quantity(DIMENSIONLESS).json_schema(),
+}
+LENGTHS: JsonSchema = {"type": "array", "items": Quantity("m").json_schema()}
 
 
 def read_terms(value: object) -> dict[str, float]:

@@ -7,7 +7,15 @@ from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationInfo, create_model, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    WithJsonSchema,
+    create_model,
+    field_validator,
+    model_validator,
+)
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.nodes import Nodes, Rule
@@ -15,7 +23,7 @@ from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.population_nodes import nodes_of
-from roughmdr.ensemble.random.profile_readers import read_lengths, read_terms
+from roughmdr.ensemble.random.profile_readers import LENGTHS, TERMS, read_lengths, read_terms
 from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
@@ -223,7 +231,7 @@ class RandomPowerSeries(RandomAsperities):
     """Asperities with one power series as their common profile."""
 
     shape: Literal["power_series"]
-    terms: Annotated[dict[str, float], BeforeValidator(read_terms)]
+    terms: Annotated[dict[str, float], BeforeValidator(read_terms), WithJsonSchema(TERMS)]
 
     @cached_property
     def shared_profile(self) -> SharedProfile:
@@ -235,8 +243,8 @@ class RandomTabulated(RandomAsperities):
     """Asperities with one measured profile."""
 
     shape: Literal["tabulated"]
-    r: Annotated[list[float], BeforeValidator(read_lengths)]
-    f: Annotated[list[float], BeforeValidator(read_lengths)]
+    r: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
+    f: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
 
     @field_validator("f")
     @classmethod

@@ -1,0 +1,28 @@
+"""roughmdr cite: the papers behind a result or a scene."""
+
+from pathlib import Path
+
+import click
+
+from roughmdr.cli.invocation import warn_of
+from roughmdr.cli.options import FILE
+from roughmdr.report.terminal import Command, print_text
+
+
+@click.command(cls=Command)
+@click.argument("result", type=FILE)
+@click.option("--bibtex", is_flag=True, help="Print entries of BibTeX.")
+def cite(result: Path, bibtex: bool) -> None:
+    """Name the papers behind RESULT, which may also be a scene (.toml): those of all that it uses, and no others."""
+    from roughmdr.report.cite import describe_papers
+
+    if result.suffix.lower() == ".toml":
+        from roughmdr.scene import read
+
+        print_text(describe_papers(read(result).toml, None, bibtex=bibtex))
+        return
+    from roughmdr.storage.result_file import read_result
+
+    data = read_result(result)
+    warn_of(result, data.integrity_fault())
+    print_text(describe_papers(data.attrs["scene"], data, bibtex=bibtex))

@@ -1,0 +1,120 @@
+"""A result as a table for --json."""
+
+from pathlib import Path
+
+import numpy as np
+
+from roughmdr.model_error.parts import PARTS
+from roughmdr.report.advice import advice_lines
+from roughmdr.report.documents import (
+    AccuracyTable,
+    CellTable,
+    CoordinateTable,
+    PullOffTable,
+    ResultTable,
+    paragraphs,
+    trust_table,
+)
+from roughmdr.report.reference import reference_lines
+from roughmdr.report.summary import describe_failed, first_remark, resolution_error
+from roughmdr.report.trust import trust_of_result
+from roughmdr.result import layout
+from roughmdr.result.means import holds, mean_of
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.variables import STATUSES
+
+
+def result_table(result: Labelled, file: Path | None, elapsed: float | None = None) -> ResultTable:
+    """Return all that ``describe_result`` tells, as numbers; ``elapsed`` [s] is the time of the whole run."""
+    attrs, sizes = result.attrs, layout.swept_sizes(result)
+    return {
+        "title": attrs["title"],
+        "file": None if file is None else str(file),
+        "file_size": None if file is None else file.stat().st_size,
+        "sizes": sizes,
+        "coordinates": coordinate_tables(result.coordinates, sizes),
+        "realisations": layout.realizations_of(result),
+        "steps": result.sizes["step"],
+        "control": layout.control_of(result),
+        "variables": layout.stored_variables(result),
+        "cells": [_cell(result, cell) for cell in layout.cells_of(result)],
+        "path": attrs.get("path", "").splitlines(),
+        "map": attrs.get("map", "").splitlines(),
+        "trust": trust_table(trust_of_result(result)),
+        "advice": paragraphs(advice_lines(attrs["scene"], resolution_error(result))).get("advice"),
+        "reference": paragraphs(reference_lines(result)).get("reference"),
+        "accuracy": attrs.get("accuracy") or None,
+        "failed": describe_failed(result) or None,
+        "warnings": attrs.get("warnings", "").splitlines(),
+        "left_out": attrs["left_out"].splitlines(),
+        "run_time": float(np.nansum(result.variables["run_time"].values)),
+        "elapsed": elapsed,
+        "seed": int(attrs["seed"]),
+        "versions": {
+            "source": attrs["source"],
+            "packages": attrs["packages"],
+            "numbers": attrs.get("versions", ""),
+        },
+        "history": attrs["history"].splitlines(),
+        "scene": attrs["scene"],
+    }
+
+
+def coordinate_tables(coordinates: dict[str, Array], sizes: dict[str, int]) -> dict[str, CoordinateTable]:
+    """Return the coordinates of the swept keys."""
+    first = (0,) * len(sizes)
+    return {
+        name: {"units": coordinates[name].attrs.get("units", ""), "values": coordinates[name].values.tolist()}
+        for name in layout.swept_values(coordinates, list(sizes), first)
+    }
+
+
+def swept_table(coordinates: dict[str, Array], sizes: dict[str, int], cell: tuple[int, ...]) -> dict[str, float | str]:
+    """Return the values of the swept keys in a cell."""
+    return {name: array.values.item() for name, array in layout.swept_values(coordinates, list(sizes), cell).items()}
+
+
+def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
+    def values(name: str) -> np.ndarray:
+        return np.atleast_1d(result.variables[name].values[cell]) if name in result.variables else np.array([np.nan])
+
+    def largest(name: str) -> float:
+        return float(np.fmax.reduce(values(name)))
+
+    status, counts = values("status"), values("realization_count")
+    method = layout.method_of(result, cell)
+    accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
+    return {
+        "swept": swept_table(result.coordinates, layout.swept_sizes(result), cell),
+        "realisations": status.size if np.isnan(counts).any() else int(counts[0]),
+        "status": {name: int((status == code).sum()) for code, name in enumerate(STATUSES)},
+        "remark": first_remark(result, cell),
+        "pull_off": _pull_off(result, cell),
+        "model_error": largest("model_error"),
+        "parts": {name.removesuffix("_error"): largest(name) for name in PARTS},
+        "largest_contact_fraction": largest("largest_contact_fraction"),
+        "trusted_separation": largest("trusted_separation"),
+        "numerical_error": largest("numerical_error"),
+        "run_time": float(np.nansum(values("run_time"))),
+        "accuracy": accuracy,
+    }
+
+
+def _pull_off(result: Labelled, cell: tuple[int, ...]) -> PullOffTable | None:
+    """Return the pull-off of a cell; None where no realisation has one."""
+    if "pull_off_count" not in result.variables or not result.variables["pull_off_count"].values[cell] > 0.0:
+        return None
+
+    def mean(name: str, statistic: int = 0) -> float:
+        return float(mean_of(result, name)[statistic][cell]) if holds(result, name) else np.nan
+
+    return {
+        "count": int(result.variables["pull_off_count"].values[cell]),
+        "force": mean("pull_off_force"),
+        "standard_error": mean("pull_off_force", 1),
+        "of_mean": float(result.variables["pull_off_force_of_mean"].values[cell]),
+        "separation": mean("pull_off_separation"),
+        "pressure": mean("pull_off_pressure"),
+        "contacts": mean("pull_off_contacts"),
+        "contact_fraction": mean("pull_off_contact_fraction"),
+    }
