@@ -66,7 +66,7 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
         quantile = t.ppf(probability, _degrees_of_freedom(inverse / rest, left))
     else:
         influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
-    return Uncertainty(influence, quantile, _shift(model, found, inverse))
+    return Uncertainty(influence, np.asarray(quantile), _shift(model, found, inverse))
 
 
 def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
@@ -79,7 +79,7 @@ def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
     overlap = np.einsum("ks,sa,sb->kab", squares, left, left)
     trace = squares @ (1.0 - leverage)
     trace_of_square = np.square(squares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
-    return np.maximum(np.square(trace) / trace_of_square, 1.0)
+    return np.asarray(np.maximum(np.square(trace) / trace_of_square, 1.0))
 
 
 def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
