@@ -208,6 +208,21 @@ def test_asperities_that_are_read_have_no_expected_law(tmp_path: Any) -> None:
         rm.fit(measured, table, "material.modulus")
 
 
+def test_a_path_without_contact_is_refused() -> None:
+    far = pd.DataFrame({"separation": DOWN + 1.0, "force": np.exp(-DOWN / 1e-6)})
+    with pytest.raises(rm.OutOfRange, match="free: material.modulus: changes nothing along the measured path"):
+        rm.fit(far, plain_scene(), "material.modulus")
+
+
+def test_without_noise_too() -> None:
+    case = CASES["elastic"]
+    measured = pd.DataFrame({"separation": DOWN, "force": case.force()})
+    fit = rm.fit(measured, case.scene, list(case.true), set=case.start({"material.modulus": 2.0}))
+    assert [float(fit[key.replace(".", "_")]) for key in case.true] == pytest.approx(list(case.true.values()), rel=1e-6)
+    fit = rm.fit(measured, case.scene, ["material.modulus", "asperities.radius"], set={"asperities.radius": 70e-6})
+    assert "does not tell material.modulus and asperities.radius apart" in fit.warnings
+
+
 def test_three_or_more_that_are_not_told_apart() -> None:
     case = CASES["adhesive"]
     force = case.force()
