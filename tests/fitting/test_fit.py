@@ -210,7 +210,7 @@ def test_asperities_that_are_read_have_no_expected_law(tmp_path: Any) -> None:
 
 def test_a_path_without_contact_is_refused() -> None:
     far = pd.DataFrame({"separation": DOWN + 1.0, "force": np.exp(-DOWN / 1e-6)})
-    with pytest.raises(rm.OutOfRange, match="free: material.modulus: changes nothing along the measured path"):
+    with pytest.raises(rm.OutOfRange, match=r"free: material.modulus: changes nothing along the measured path"):
         rm.fit(far, plain_scene(), "material.modulus")
 
 
