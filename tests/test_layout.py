@@ -138,6 +138,7 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["plan", "small.toml"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
+        (["fit", "curve.csv", "small.toml", "-o", "x.nc", "--free", "adhesion.work"], {"scipy", "numba"}),
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
         (["plot", "out.nc", "-o", "x.png", "--with-expected"], {"matplotlib", "scipy", "numba"}),
         (["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
@@ -147,6 +148,7 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
 def test_a_command_loads_only_what_it_uses(tmp_path: Path, arguments: list[str], may_load: set[str]) -> None:
     (tmp_path / "small.toml").write_text(tomli_w.dumps(scene()))
     (tmp_path / "wrong.toml").write_text(tomli_w.dumps(scene(title=3)))
+    (tmp_path / "curve.csv").write_text("separation [um], force [mN]\n3, 0\n2, 0.1\n1, 2\n0.5, 4\n")
     rm.run(scene(batch=None), tmp_path / "out.nc")
     code = _LISTED.format(arguments=arguments)
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -9,11 +9,12 @@ from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
 from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.fitting.search import Found
-from roughmdr.fitting.uncertainty import Uncertainty
+from roughmdr.fitting.uncertainty import Uncertainty, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
-_ALIKE = 0.99  # correlation
+_ALIKE, _SAME = 0.99, 0.9999  # correlations
+_SHARED = 0.05  # of a direction in which the law hardly moves
 _WIDE = math.log(2.0)  # of x: half a 95 % interval, a factor of two or so much of the scale
 _AT_BOUND = 1e-3
 _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
@@ -22,7 +23,7 @@ _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
 def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     """Yield what a fit leaves in doubt, in words."""
     parameters = model.parameters
-    groups = _alike(known.correlation)
+    groups = _alike(known.slopes)
     for group in groups:
         yield _told_apart(group, parameters, known)
     width = known.quantile * known.standard_error
@@ -44,25 +45,29 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
         yield f"the residuals are {size:.2g} times the stated errors of the {model.curve.quantity}"
 
 
-def _alike(correlation: Floats) -> list[list[int]]:
-    """Return the groups of parameters that correlate with one another."""
+def _alike(slopes: Floats) -> list[list[int]]:
+    """Return the groups of parameters of which some combination hardly moves the law, though each of them does."""
+    sizes = np.linalg.norm(slopes, axis=0)
+    _, strengths, directions = np.linalg.svd(slopes / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
+    weak = directions[np.square(strengths) < 1.0 - _ALIKE]
+    shared = np.abs(weak.T @ weak)
     groups: list[list[int]] = []
-    for i in range(len(correlation)):
-        joined = [group for group in groups if (np.abs(correlation[i, group]) > _ALIKE).any()]
+    for i in range(sizes.size):
+        joined = [group for group in groups if (shared[i, group] > _SHARED).any()]
         groups = [group for group in groups if group not in joined] + [sorted(sum(joined, [i]))]
     return [group for group in groups if len(group) > 1]
 
 
 def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertainty) -> str:
     names = [parameters[i].key for i in group]
-    wide = (known.quantile * known.standard_error)[group].max() > _WIDE
+    correlation = correlation_of(known.by_even_noise)[group[0], group[1]]
+    wide = (known.quantile * known.standard_error)[group].max() > _WIDE or abs(correlation) > _SAME
     text = f"the curve {'does not tell' if wide else 'hardly tells'} {', '.join(names[:-1])} and {names[-1]} apart"
     if len(group) > 2:
         return text
     pair = [parameters[i] for i in group]
-    correlation = float(known.correlation[group[0], group[1]])
     text += f" (correlation {correlation:.4g})"
-    best = _best_known(known.influence[group])
+    best = _best_known(known.by_even_noise[group])
     if all(parameter.logarithmic for parameter in pair):
         exponents = best / np.abs(best).max() * np.sign(best[np.abs(best).argmax()])
         combination = np.zeros(len(parameters))

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.errors import OutOfRange
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
@@ -18,6 +19,10 @@ class Uncertainty(NamedTuple):
 
     influence: Floats
     """By how much each standard deviation of each step moves each parameter, [parameter, step]."""
+    by_even_noise: Floats
+    """Likewise of noise that is even; it says what the curve tells apart, however small its noise."""
+    slopes: Floats
+    """By how much each parameter moves the law, [step, parameter]."""
     quantile: Floats
     """Standard errors of each parameter from the middle to the end of its 95 % interval."""
     shift: Floats | None
@@ -36,15 +41,20 @@ class Uncertainty(NamedTuple):
     @property
     def correlation(self) -> Floats:
         """The correlation of x; 0 with a parameter whose error is 0."""
-        error = self.standard_error
-        scaled = self.influence / np.where(error > 0.0, error, 1.0)[:, None]
-        correlation = np.clip(scaled @ scaled.T, -1.0, 1.0)
-        np.fill_diagonal(correlation, 1.0)
-        return np.asarray(correlation)
+        return correlation_of(self.influence)
 
     def deviation_of(self, combination: Floats) -> Floats:
         """Return the standard error of a combination of x, or of each of several."""
         return np.asarray(np.linalg.norm(combination @ self.influence, axis=-1))
+
+
+def correlation_of(influence: Floats) -> Floats:
+    """Return the correlation of parameters by the influence of each step on them."""
+    error = np.linalg.norm(influence, axis=1, keepdims=True)
+    scaled = influence / np.where(error > 0.0, error, 1.0)
+    correlation = np.clip(scaled @ scaled.T, -1.0, 1.0)
+    np.fill_diagonal(correlation, 1.0)
+    return np.asarray(correlation)
 
 
 def uncertainty(model: Model, found: Found) -> Uncertainty:
@@ -58,7 +68,10 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
 
     slopes = model.fine_slopes(found.x)
     left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
-    inverse = right.T @ (left / np.maximum(sizes, max(_LEAST_SLOPE * sizes[0], np.finfo(float).tiny))).T
+    if not sizes[0] > 0.0:
+        keys = ", ".join(parameter.key for parameter in model.parameters)
+        raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact")
+    inverse = right.T @ (left / np.maximum(sizes, _LEAST_SLOPE * sizes[0])).T
     probability = 0.5 * (1.0 + _LEVEL)
     if model.curve.error is None:
         rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
@@ -66,7 +79,7 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
         quantile = t.ppf(probability, _degrees_of_freedom(inverse / rest, left))
     else:
         influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
-    return Uncertainty(influence, quantile, _shift(model, found, inverse))
+    return Uncertainty(influence, inverse, slopes, np.asarray(quantile), _shift(model, found, inverse))
 
 
 def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
@@ -79,7 +92,7 @@ def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
     overlap = np.einsum("ks,sa,sb->kab", squares, left, left)
     trace = squares @ (1.0 - leverage)
     trace_of_square = np.square(squares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
-    return np.maximum(np.square(trace) / trace_of_square, 1.0)
+    return np.asarray(np.maximum(np.square(trace) / trace_of_square, 1.0))
 
 
 def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:

@@ -32,8 +32,8 @@ def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
     yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
-    if shifts := [_shift(fit, key) for key in keys if f"{key.replace('.', '_')}_model_error" in fit.variables]:
-        yield "model error", f"of the law; it may shift {', '.join(shifts)}, which the intervals do not hold"
+    if shifts := [_shift(fit, key) for key in keys if _has_shift(fit, key.replace(".", "_"))]:
+        yield "model error", f"not in the intervals: that of the law may shift {', '.join(shifts)}"
     yield "trust", str(fit.attrs["trust"])
     yield "computed", f"{_number(fit, 'evaluation_count'):.0f} laws in {format_seconds(_number(fit, 'run_time'))}"
     for text in str(fit.attrs.get("warnings", "")).splitlines():
@@ -43,8 +43,21 @@ def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
 def _with_interval(fit: Labelled, name: str) -> str:
     unit = str(fit.variables[name].attrs["units"])
     low, high = (_number(fit, f"{name}_{end}") for end in ("low", "high"))
+    if _is_open(fit, name):
+        return f"{format_quantity(_number(fit, name), unit)}, not determined"
     value = format_quantity(_number(fit, name), unit, error=_number(fit, f"{name}_standard_error"))
     return f"{value} ({format_quantity(low, unit, to=high)})"
+
+
+def _is_open(fit: Labelled, name: str) -> bool:
+    """Return whether a parameter is not determined: a positive one by a factor of several, another by its scale."""
+    position = [key.replace(".", "_") for key in parameter_keys(fit)].index(name)
+    scale = float(fit.variables["parameter_scale"].values[position]) or _number(fit, name)
+    return _number(fit, f"{name}_standard_error") > scale
+
+
+def _has_shift(fit: Labelled, name: str) -> bool:
+    return f"{name}_model_error" in fit.variables and not _is_open(fit, name)
 
 
 def _shift(fit: Labelled, key: str) -> str:

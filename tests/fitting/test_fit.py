@@ -11,6 +11,8 @@ from measurements import BOTH, CASES, DOWN, Case, inside, noise_of, plain_scene
 from scipy.optimize import curve_fit
 
 import roughmdr as rm
+from roughmdr.fitting.words import describe_fit
+from roughmdr.storage.labelled import Labelled
 
 
 def fit_once(case: Case, factors: dict[str, float], **more: Any) -> xr.Dataset:
@@ -170,11 +172,8 @@ def test_a_start_without_a_law_is_left() -> None:
 
 def test_the_error_of_the_law_is_told_as_one_of_the_parameters() -> None:
     case = CASES["elastic"]
-    table = copy.deepcopy(case.scene)
     fit = fit_once(case, {})
     assert 0.0 < float(fit.material_modulus_model_error) < float(fit.material_modulus)
-    del table["asperities"]["patch"]
-    table["asperities"].pop("patch", None)
     assert fit.trust.startswith("force within about")
 
 
@@ -198,6 +197,42 @@ def test_a_run_of_the_fitted_scene_is_the_fitted_law(tmp_path: Any) -> None:
     law = rm.run(tmp_path / "fit.nc")
     np.testing.assert_allclose(law.force.values.ravel(), fit.force_fitted, rtol=1e-12)
     np.testing.assert_allclose(law.separation, BOTH - case.offset + float(fit.offset), rtol=1e-12)
+
+
+def test_asperities_that_are_read_have_no_expected_law(tmp_path: Any) -> None:
+    table = plain_scene(adhesion=None)
+    rm.generate(table["asperities"], seed=1).to_netcdf(tmp_path / "ensemble.nc")
+    table["asperities"] = {"source": "file", "file": str(tmp_path / "ensemble.nc")}
+    measured = pd.DataFrame({"separation": DOWN, "force": np.exp(-DOWN / 1e-6)})
+    with pytest.raises(rm.SceneError, match="scene: cannot be fitted, for it has no expected law: "):
+        rm.fit(measured, table, "material.modulus")
+
+
+def test_a_path_without_contact_is_refused() -> None:
+    far = pd.DataFrame({"separation": DOWN + 1.0, "force": np.exp(-DOWN / 1e-6)})
+    with pytest.raises(rm.OutOfRange, match=r"free: material.modulus: changes nothing along the measured path"):
+        rm.fit(far, plain_scene(), "material.modulus")
+
+
+def test_without_noise_too() -> None:
+    case = CASES["elastic"]
+    measured = pd.DataFrame({"separation": DOWN, "force": case.force()})
+    fit = rm.fit(measured, case.scene, list(case.true), set=case.start({"material.modulus": 2.0}))
+    assert [float(fit[key.replace(".", "_")]) for key in case.true] == pytest.approx(list(case.true.values()), rel=1e-6)
+    fit = rm.fit(measured, case.scene, ["material.modulus", "asperities.radius"], set={"asperities.radius": 70e-6})
+    assert "does not tell material.modulus and asperities.radius apart" in fit.warnings
+
+
+def test_three_or_more_that_are_not_told_apart() -> None:
+    case = CASES["adhesive"]
+    force = case.force()
+    measured = case.measure(noise_of("constant", force), force)
+    free = ["adhesion.work", "asperities.radius", "asperities.density", "material.modulus"]
+    fit = rm.fit(measured, case.scene, free, set={"asperities.count": None, "asperities.density": 1e9})
+    assert (
+        "does not tell adhesion.work, asperities.radius, asperities.density and material.modulus apart" in fit.warnings
+    )
+    assert describe_fit(Labelled.of(fit)).count("not determined") == 4
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,9 @@ import tomli_w
 import xarray as xr
 from measurements import CASES, noise_of
 
+from roughmdr.errors import StoreError
+from roughmdr.fitting.stored import read_fit
+
 ROUGHMDR = [sys.executable, "-c", "from roughmdr.cli import main; main()"]
 FREE = "--free", "adhesion.work, material.modulus"
 
@@ -97,9 +100,8 @@ def test_wrong_input_is_told(folder: Path, arguments: list[str], says: str) -> N
 
 def test_the_picture(folder: Path) -> None:
     from roughmdr.pictures.fit import draw_fit
-    from roughmdr.storage.netcdf_reading import read_netcdf
 
-    figure = draw_fit(read_netcdf(folder / "fit.nc"))
+    figure = draw_fit(read_fit(folder / "fit.nc"))
     law, residual = figure.axes
     assert [text.get_text() for text in law.get_legend().get_texts()] == [
         "fitted law",
@@ -109,3 +111,19 @@ def test_the_picture(folder: Path) -> None:
     assert law.get_ylabel() == "force [mN]"
     assert residual.get_xlabel() == "measured separation [µm]"
     figure.savefig(folder / "fit.png")
+
+
+@pytest.mark.parametrize("lost", ["residual", "branch", "adhesion_work_low", "parameter_name", "force_fitted"])
+def test_a_file_that_lacks_something_is_refused(folder: Path, tmp_path: Path, lost: str) -> None:
+    with xr.open_dataset(folder / "fit.nc") as fit:
+        fit.drop_vars(lost).to_netcdf(tmp_path / "less.nc")
+    with pytest.raises(StoreError, match="not a fit as roughmdr writes it"):
+        read_fit(tmp_path / "less.nc")
+
+
+def test_files_of_another_kind_are_no_fit(folder: Path) -> None:
+    with pytest.raises(StoreError, match="not a netCDF file"):
+        read_fit(folder / "scene.toml")
+    xr.Dataset().to_netcdf(folder / "empty.nc")
+    with pytest.raises(StoreError, match="holds no fit"):
+        read_fit(folder / "empty.nc")

@@ -1,0 +1,42 @@
+"""Reading the file of a fit, which anyone may have changed."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.result_file import FIT
+
+_TEXTS = ("title", "scene", "trust", "history")
+_ENDS = ("", "_standard_error", "_low", "_high")
+
+
+def read_fit(path: Path) -> Labelled:
+    """Return the file of a fit; StoreError if it is none, or not as ``fit`` writes it."""
+    try:
+        data = read_netcdf(path)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if data.attrs.get("kind") != FIT:
+        raise StoreError(f"{path}: holds no fit")
+    for name, dims in _expected(data):
+        array = (data.variables | data.coordinates).get(name)
+        text = name in ("branch", "parameter_name")
+        if array is None or array.dims != dims or (array.values.dtype.kind in "OU") != text:
+            raise StoreError(f"{path}: not a fit as roughmdr writes it: {name} is missing or of another kind")
+    if missing := [name for name in _TEXTS if not isinstance(data.attrs.get(name), str)]:
+        raise StoreError(f"{path}: not a fit as roughmdr writes it: it has no {', '.join(missing)}")
+    return data
+
+
+def _expected(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the arrays of a fit with their dimensions."""
+    load = "pressure" if "pressure_fitted" in data.variables else "force"
+    control = "remote" if "remote" in data.coordinates else "separation"
+    yield from ((name, ("point",)) for name in (control, "branch", load, f"{load}_fitted", "residual"))
+    yield from ((name, ("parameter",)) for name in ("parameter_name", "parameter_scale"))
+    yield from ((name, ()) for name in ("residual_rms", "evaluation_count", "run_time"))
+    names = data.coordinates["parameter_name"].values.ravel() if "parameter_name" in data.coordinates else ()
+    for name in (str(each).replace(".", "_") for each in names):
+        yield from ((f"{name}{end}", ()) for end in _ENDS)
