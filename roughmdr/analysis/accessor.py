@@ -84,7 +84,7 @@ class Analysis:
         xarray.Dataset
             ``work_of_loading``, ``work_of_unloading`` (regained) and ``energy_lost``, their difference [J], each with
             ``NAME_interpolation_error`` [J]: how far the trapezoid rule changes where every other step is left out,
-            the changes added by their magnitude. ``dissipated_energy`` [J] at the last step, where the result has it.
+            and by jumps, which may cancel in that. ``dissipated_energy`` [J] at the last step, where the result has it.
 
         Raises
         ------

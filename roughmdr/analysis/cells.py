@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def of_cells(dataset: "xr.Dataset", number: Callable[[Scene], float], method: str) -> "xr.DataArray":
-    """Return a number of the scene of each cell over the swept keys, for the cells that a dataset has.
+    """Return a number of the scene of each cell, over those swept keys that change it, for the cells of a dataset.
 
     StoreError, which names the method that asks, where the dataset has no scene, or cells that are not in it.
     """
@@ -36,4 +36,8 @@ def of_cells(dataset: "xr.Dataset", number: Callable[[Scene], float], method: st
                 raise StoreError(f"{method} needs {name} as in the scene; this result has other values") from None
         elif dataset.sizes.get(name) != size:
             raise StoreError(f"{method} needs all {size} cells of the sweep along {name}; select some of them after it")
+    for name in found.dims:
+        first = found.isel({name: [0]})
+        if bool((found.values == first.values).all()):
+            found = first.squeeze(name)
     return found.drop_vars([name for name in found.coords if name not in found.dims])

@@ -71,7 +71,7 @@ def _range(array: "xr.DataArray") -> str:
     if values.dtype.kind not in "iuf":
         return ", ".join(printable(str(name)) for name in dict.fromkeys(values))
     low, high, unit = float(values.min()), float(values.max()), array.attrs.get("units", "1")
-    if "step" in array.dims and values[0] > 0.5 * (low + high):
+    if "step" in array.dims and values[0] == values[: array.sizes["step"]].max():
         low, high = high, low
     number = "" if "step" in array.dims or values.size == 1 else f" ({values.size} values)"
     return format_quantity(low, unit, to=high if high != low else None) + number

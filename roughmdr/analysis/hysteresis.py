@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, curve, separation_of, whole
+from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, curve, separation_of
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
         kwargs={"loading": loading, "unloading": unloading},
         input_core_dims=[["step"], ["step"]],
         output_core_dims=[[]] * 6,
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * 6,
     )
@@ -45,7 +46,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
         found[f"{name}_interpolation_error"] = error.assign_attrs(about)
     for name in (*_HELD, *(f"{each}_mean" for each in _HELD)):
         if name in dataset:
-            found[name] = alone(whole(dataset[name]).isel(step=-1)).assign_attrs(dataset[name].attrs)
+            found[name] = alone(dataset[name]).isel(step=-1)
     titled = {"title": dataset.attrs["title"]} if "title" in dataset.attrs else {}
     return xr.Dataset(found, attrs=titled | {"comment": _MISSING})
 
@@ -55,20 +56,23 @@ def _energies(
 ) -> tuple[Floats, ...]:
     """Return the work of loading, of unloading, and their difference, each followed by its error.
 
-    By the trapezoid rule. To leave a step out takes away the triangle that it makes with its neighbours; the error is
-    the sum of those of every other step, each by its magnitude, so that jumps do not cancel.
+    By the trapezoid rule. To leave a step out takes away the triangle that it makes with its neighbours. The error is
+    a third of the larger change where every other step is left out, as that of smooth curves is, and the root of the
+    sum of the squares of the triangles, for jumps: one between two steps makes a triangle of at least its own error.
     """
     force, separation = np.broadcast_arrays(force, separation)
     work = 0.5 * (force[..., 1:] + force[..., :-1]) * np.diff(separation, axis=-1)
     rise, run = np.diff(force, axis=-1), np.diff(separation, axis=-1)
-    triangle = np.abs(0.5 * (run[..., :-1] * rise[..., 1:] - run[..., 1:] * rise[..., :-1]))
-    done, error = [], []
-    for branch, sign in ((loading, -1.0), (unloading, 1.0)):
-        inner = branch[:-1] & branch[1:]
-        done.append(sign * _sum(work, branch))
-        every_other = np.arange(inner.size) % 2 == 0
-        error.append(np.maximum(_sum(triangle, inner & every_other), _sum(triangle, inner & ~every_other)))
-    return done[0], error[0], done[1], error[1], done[0] - done[1], error[0] + error[1]
+    triangle = 0.5 * (run[..., :-1] * rise[..., 1:] - run[..., 1:] * rise[..., :-1])
+    inner = [branch[:-1] & branch[1:] for branch in (loading, unloading)]
+    even = np.arange(triangle.shape[-1]) % 2 == 0
+
+    def error(steps: NDArray[np.bool_]) -> Floats:
+        changes = (np.abs(_sum(triangle, steps & every_other)) for every_other in (even, ~even))
+        return np.asarray(np.maximum(*changes) / 3.0 + np.sqrt(_sum(triangle * triangle, steps)))
+
+    done, regained = -_sum(work, loading), _sum(work, unloading)
+    return done, error(inner[0]), regained, error(inner[1]), done - regained, error(inner[0] | inner[1])
 
 
 def _sum(values: Floats, chosen: NDArray[np.bool_]) -> Floats:

@@ -35,6 +35,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         kwargs={"ways": Steps.ways(legs)},
         input_core_dims=[["step"], [name]],
         output_core_dims=[[name, *_BRACKET]],
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64],
         dask_gufunc_kwargs={"output_sizes": dict(zip(_BRACKET, (3, 3), strict=True))},
@@ -48,6 +49,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
             kwargs={"in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
             input_core_dims=[["step"], [name, *_BRACKET]],
             output_core_dims=[[name], [name]],
+            keep_attrs=False,
             dask="parallelized",
             output_dtypes=[np.float64, np.float64],
         )

@@ -79,7 +79,8 @@ def normalise(dataset: "xr.Dataset", theory: str) -> "xr.Dataset":
             )
             array = dataset[name]
             about = {"units": "1", "long_name": f"{array.attrs.get('long_name', name)}, over {scale.text}"}
-            found[name] = (array / factor).drop_vars(control, errors="ignore").assign_attrs(about)
+            scaled = (array / factor).drop_vars(control, errors="ignore").assign_attrs(about)
+            found[name] = scaled.transpose(..., "step", missing_dims="ignore")
     kept = {name: dataset[name] for name in _KEPT if name in dataset}
     coordinates: dict[Any, Any] = {name: array for name, array in dataset.coords.items() if name != control}
     coordinates[control] = found.pop(control, dataset[control])

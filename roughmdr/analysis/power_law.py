@@ -54,6 +54,7 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
         kwargs=kwargs,
         input_core_dims=[["step"], ["step"]],
         output_core_dims=[[]] * len(_Sums._fields),
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * len(_Sums._fields),
     )
@@ -74,6 +75,7 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
         *sums,
         input_core_dims=[["realization"]] * len(sums),
         output_core_dims=[[]] * len(names),
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * len(names),
     )

@@ -62,6 +62,7 @@ def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr
         each,
         input_core_dims=[["realization"]],
         output_core_dims=[[], []],
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * 2,
     )

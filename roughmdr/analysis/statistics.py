@@ -45,9 +45,8 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
             found |= _statistics(dataset, name, dataset[name].notnull())
     found |= {name: dataset[name] for name in _OVER_CELLS if name in dataset}
     counted = xr.full_like(done.any("realization"), dataset.sizes["realization"], dtype=np.float64)
-    found["realization_count"] = dataset.get("realization_count", counted).assign_attrs(
-        RUN_VARIABLES["realization_count"].attrs
-    )
+    counted.attrs = RUN_VARIABLES["realization_count"].attrs
+    found["realization_count"] = dataset.get("realization_count", counted)
     for name, declared in RUN_DIAGNOSTICS.items():
         if name in dataset.data_vars:
             found[name] = _reduced(dataset[name], declared.merge)
@@ -56,12 +55,9 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
         table: dict[str, Any] = parse_toml(attrs["scene"])
         table["output"] = {**table.get("output", {}), "keep": "statistics"}
         attrs["scene"] = tomli_w.dumps(table)
-    over_steps = {name: each for name, each in dataset.coords.items() if "realization" not in each.dims}
-    return (
-        xr.Dataset(found, attrs=attrs)
-        .drop_vars(_OF_CURVES, errors="ignore")
-        .assign_coords({name: each for name, each in over_steps.items() if name not in _OF_CURVES})
-    )
+    kept = [name for name in dataset.coords if name not in _OF_CURVES and "realization" not in dataset[name].dims]
+    bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
+    return xr.Dataset(bare, coords={name: dataset[name].variable for name in kept}, attrs=attrs)
 
 
 def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "dict[str, xr.DataArray]":
@@ -78,6 +74,7 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
         counted,
         input_core_dims=[["realization"], ["realization"]],
         output_core_dims=[[]] * len(_NAMES),
+        keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * len(_NAMES),
     )
@@ -86,7 +83,8 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
         statistic: {**array.attrs, "long_name": f"{said} of {_article(name)}{array.attrs['long_name']}"}
         for statistic, said in _NAMES.items()
     }
-    attrs["mean"]["ancillary_variables"] = f"{name}_sem"
+    if name not in PULL_OFF:
+        attrs["mean"]["ancillary_variables"] = f"{name}_sem"
     if name == "stiffness" and (known := _has_variance(dataset)) is not None:
         parts["sem"] = parts["sem"].where(known)
         attrs["sem"]["comment"] = _INFINITE_VARIANCE

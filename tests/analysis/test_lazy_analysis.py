@@ -1,0 +1,87 @@
+"""Of a file that is opened in chunks nothing is computed before it is asked for, and then to the same bits."""
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from dask.callbacks import Callback
+from scenes import scene
+
+import roughmdr as rm
+
+_CALLS: dict[str, Callable[[Any], xr.Dataset]] = {
+    "pull_off": lambda of: of.pull_off(),
+    "hysteresis": lambda of: of.hysteresis(),
+    "at_force": lambda of: of.at_force([1e-4, 3e-4], branch="unloading"),
+    "at_pressure": lambda of: of.at_pressure("100 Pa"),
+    "at_contact_fraction": lambda of: of.at_contact_fraction(0.01),
+    "at_separation": lambda of: of.at_separation(["2 um", "3 um"]),
+    "normalise": lambda of: of.normalise("gw"),
+    "fit_power_law": lambda of: of.fit_power_law("stiffness", "force"),
+    "statistics": lambda of: of.statistics(),
+    "trust": lambda of: of.trust(),
+}
+
+
+class NoCurve(Callback):
+    """Fails where something over both swept keys, realisations and steps is loaded."""
+
+    def _posttask(self, key: Any, result: Any, dsk: Any, state: Any, worker_id: Any) -> None:
+        assert np.ndim(result) < 4, f"{key} was loaded"
+
+
+@pytest.fixture(scope="module")
+def opened(curves: xr.Dataset, tmp_path_factory: pytest.TempPathFactory) -> Iterator[xr.Dataset]:
+    path = tmp_path_factory.mktemp("lazy") / "out.nc"
+    curves.to_netcdf(path)
+    with xr.open_dataset(path, chunks={"realization": 2, "step": 50}) as dataset:
+        yield dataset
+
+
+@pytest.mark.parametrize("method", _CALLS)
+def test_it_stays_lazy_and_computes_to_the_same_bits(method: str, curves: xr.Dataset, opened: xr.Dataset) -> None:
+    call = _CALLS[method]
+    with NoCurve():
+        lazy = call(opened.roughmdr)
+        repr(opened.roughmdr)
+    if method not in ("pull_off", "trust"):
+        assert any(array.chunks is not None for array in lazy.data_vars.values())
+    eager, computed = call(curves.roughmdr), lazy.compute()
+    assert list(eager.data_vars) == list(computed.data_vars)
+    for name in eager.data_vars:
+        np.testing.assert_array_equal(computed[name].values, eager[name].values, err_msg=str(name))
+        assert computed[name].attrs.keys() == eager[name].attrs.keys()
+
+
+_MEASURE = """
+import resource, sys, time
+import roughmdr, xarray, dask.array
+from scipy import special
+from roughmdr.analysis import accessor, interpolation, statistics, hysteresis, power_law
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+start = time.perf_counter()
+with xarray.open_dataset(sys.argv[1], chunks={"realization": 500}) as result:
+    of = result.roughmdr
+    for found in (of.at_force([1e-5, 1e-4]), of.statistics(), of.hysteresis(), of.fit_power_law("stiffness", "force")):
+        found.compute(scheduler="threads", num_workers=2)
+print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6, before / 1e6)
+"""
+
+
+@pytest.mark.large
+def test_ten_thousand_curves_take_five_seconds_and_a_gigabyte(tmp_path: Path) -> None:
+    path = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 200}, "unload": True}
+    few = rm.run(scene(path=path, batch={"realizations": 100}))
+    few.isel(realization=np.tile(np.arange(100), 100)).to_netcdf(tmp_path / "many.nc")
+    done = subprocess.run(
+        [sys.executable, "-c", _MEASURE, str(tmp_path / "many.nc")], capture_output=True, text=True, check=True
+    )
+    seconds, gigabytes, before = map(float, done.stdout.split())
+    print(f"{seconds:.2f} s, {gigabytes:.2f} GB, of which {before:.2f} GB before")
+    assert seconds < 5.0
+    assert gigabytes < 1.0
