@@ -76,7 +76,7 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     if model.curve.error is None:
         rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
         influence = inverse * (found.deviations / rest)
-        quantile = t.ppf(probability, _degrees_of_freedom(inverse / rest, left))
+        quantile = np.asarray(t.ppf(probability, _degrees_of_freedom(inverse / rest, left)))
     else:
         influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
     return Uncertainty(influence, inverse, slopes, np.asarray(quantile), _shift(model, found, inverse))

@@ -69,8 +69,8 @@ def draw_asperity(
         force=float(force[number]),
         indentation=float(now.ensemble.height[number] - now.separation),
     )
-    which = f"asperity {number} of {count}, {shape.name.replace('_', ' ')}"
-    notes = [now.place, which + (" with the largest force" if number == largest else "")]
+    which = f"asperity {number} of {count} ({shape.name.replace('_', ' ')})"
+    notes = [now.place, which + (", that with the largest force" if number == largest else "")]
     if now.scene.needs_positions:
         notes.append("force and radius are those among its neighbours; it is drawn as if alone with that radius")
     return draw_contact(contact, float(force[number]), result.attrs["title"], notes)
@@ -95,7 +95,7 @@ def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]
     _draw_pressure(load, contact, length)
     half = float(length(contact.half_width))
     load.set(xlim=(-half, half), xlabel=length.label)
-    set_title(figure, title, [*notes, _numbers(contact, force)])
+    set_title(figure, title, [*notes, *_numbers(contact, force)])
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     figure.draw_without_rendering()  # lays the panels out
     names = "profile and surface of the half-space", "MDR profile g(x) on its row of springs"
@@ -105,19 +105,17 @@ def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]
     return figure
 
 
-def _numbers(contact: OneContact, force: float) -> str:
-    """Return the numbers of a contact in words."""
+def _numbers(contact: OneContact, force: float) -> tuple[str, str]:
+    """Return the numbers of a contact, and those of its material, in words."""
     state, adhesion = contact.state, contact.adhesion
-    parts = [
-        f"force {text(force, 'N')}",
-        f"indentation {text(state.indentation, 'm')}",
-        f"contact radius {text(state.radius, 'm')}",
-        f"E* = {text(contact.modulus, 'Pa')}",
-        f"w = {text(adhesion.work, 'J/m^2')}" if adhesion.work > 0.0 else "no adhesion",
-    ]
+    numbers = f"force {text(force, 'N')}, indentation {text(state.indentation, 'm')}"
+    numbers += f", contact radius {text(state.radius, 'm')}"
+    material = f"E* = {text(contact.modulus, 'Pa')}, "
+    material += f"w = {text(adhesion.work, 'J/m^2')}" if adhesion.work > 0.0 else "no adhesion"
     if adhesion.cohesive:
-        parts += [f"cohesive radius {text(state.reach, 'm')}", f"strength {text(adhesion.strength, 'Pa')}"]
-    return ", ".join(parts)
+        numbers += f", cohesive radius {text(state.reach, 'm')}"
+        material += f", strength {text(adhesion.strength, 'Pa')}"
+    return numbers, material
 
 
 def _exaggeration(ax: "Axes", height: Scale, length: Scale) -> str:

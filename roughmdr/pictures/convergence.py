@@ -1,7 +1,7 @@
 """How a mean over realisations converges: its standard error against their number, beside the other errors."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _POINTS = 160  # of a curve
 _MAX_LINES = 6  # cells drawn each; more are a band
+_FEW = 40  # points of a curve below which each is marked
+_DEEPEST = 0.03  # of the least error drawn: what lies deeper is named alone
 _NEEDED = 0.01, 0.001  # relative standard errors of which the note says what they take
 
 
@@ -28,19 +30,24 @@ class Convergence(NamedTuple):
     name: str
     cell: int
     values: Floats
+    span: float = 0.0
+    """What errors are relative to, where that is not the mean."""
 
     def running(self) -> tuple[Ints, Floats]:
-        """Return numbers n of realisations, and the standard error of the mean of the first n over that mean."""
-        size = self.values.size
-        counts = np.unique(np.geomspace(2, size, _POINTS).round().astype(np.int64))
-        first = (self.values[:count] for count in counts.tolist())
-        errors = [np.std(some, ddof=1) / math.sqrt(some.size) / abs(np.mean(some)) for some in first]
+        """Return numbers n of realisations, and the relative standard error of the mean of the first n."""
+        counts = np.unique(np.geomspace(2, self.values.size, _POINTS).round().astype(np.int64))
+        errors = [_scatter(self.values[:count], self.span) / math.sqrt(count) for count in counts.tolist()]
         return counts, np.array(errors)
 
     @property
     def scatter(self) -> float:
-        """Standard deviation of the realisations over the magnitude of their mean."""
-        return float(np.std(self.values, ddof=1) / abs(np.mean(self.values)))
+        """Relative standard deviation of the realisations."""
+        return _scatter(self.values, self.span)
+
+
+def _scatter(values: Floats, span: float) -> float:
+    """Return the standard deviation over the magnitude of the mean, or over a span."""
+    return float(np.std(values, ddof=1) / (span or abs(np.mean(values))))
 
 
 def draw_convergence(result: Labelled) -> "Figure":
@@ -48,9 +55,9 @@ def draw_convergence(result: Labelled) -> "Figure":
     of realisations.
 
     The largest force is that at the step at which its mean is largest; under a dead load, which is the force, the
-    separation at the largest load stands for it. Beside it: the numerical error, the error of the model and the error
-    asked for. More than a few cells are a band with their median. StoreError where the result holds no realisations, or
-    too few.
+    separation at the largest load stands for it, over the range of its mean. Beside it: the numerical error, the error
+    of the model and the error asked for. More than a few cells are a band with their median. StoreError where the
+    result holds no realisations, or too few.
     """
     from matplotlib.figure import Figure
 
@@ -68,70 +75,86 @@ def draw_convergence(result: Labelled) -> "Figure":
     names = list(dict.fromkeys(each.name for each in found))
     figure = Figure(figsize=(max(5.0 * len(names), 7.0), 5.4), layout="constrained")
     axes = figure.subplots(1, len(names), sharey=True, squeeze=False).ravel()
-    notes = []
+    notes, named, lowest = [], dict[str, Any](), math.inf
     for ax, name in zip(axes, names, strict=True):
         of_name = [each for each in found if each.name == name]
-        _draw_panel(ax, result, of_name)
-        notes.append(f"{name}: {_needed_in_words([each.scatter for each in of_name])}")
-    axes[0].set_ylabel("standard error of the mean over the mean")
+        lowest = min(lowest, _draw_panel(ax, result, of_name))
+        notes.append(f"{name}: {_needed_in_words(of_name)}")
+    levels = list(_levels(result))
+    for ax in axes:
+        for level, style, label in levels:
+            below = ", below" if level < _DEEPEST * lowest else ""
+            ax.axhline(level, lw=1.2, zorder=1, label=f"{label}: {level:.2g}{below}", **style)
+        named = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True)) | named
+    seen = [lowest, *(level for level, _, _ in levels if level >= _DEEPEST * lowest)]
+    axes[0].set_ylim(bottom=0.5 * min(seen))
+    axes[0].set_ylabel("relative standard error of the mean")
     set_title(figure, result.attrs["title"], notes)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     return figure
 
 
-def _quantities(result: Labelled) -> Iterable[Convergence]:
+def _quantities(result: Labelled) -> Iterator[Convergence]:
     """Yield the quantities of each cell of which at least two realisations were computed, unless all are alike."""
-    done, cells = done_of(result), cells_of(result)
     dead_load = control_of(result) in ("force", "pressure")
-    for name, label in (
-        ("separation" if dead_load else "force", "separation at the largest load" if dead_load else "largest force"),
-        ("pull_off_force", "pull-off force"),
-    ):
-        for number, cell in enumerate(cells):
+    curve, label = (
+        ("separation", "separation at the largest load, over its range") if dead_load else ("force", "largest force")
+    )
+    done = done_of(result)
+    for name, title in ((curve, label), ("pull_off_force", "pull-off force")):
+        for number, cell in enumerate(cells_of(result)):
             if name not in result.variables or method_of(result, cell) == "expected":
                 continue
-            values = result.variables[name].values[cell][done[cell]]
-            if values.ndim == 2:
-                means = np.abs(values.mean(axis=0)) if not dead_load else -values.mean(axis=0)
-                values = values[:, int(np.nanargmax(means))] if np.isfinite(means).any() else values[:, 0]
+            values, span = result.variables[name].values[cell][done[cell]], 0.0
+            if name == curve:
+                values = values[:, np.isfinite(values).all(axis=0)]
+                if not values.size:
+                    continue
+                means = values.mean(axis=0)
+                span = float(np.ptp(means)) if dead_load else 0.0
+                values = values[:, int((-means if dead_load else np.abs(means)).argmax())]
             values = values[np.isfinite(values)]
-            if values.size > 1 and np.ptp(values) > 0.0 and np.mean(values) != 0.0:
-                yield Convergence(label, number, values)
+            if values.size > 1 and np.ptp(values) > 0.0:
+                yield Convergence(title, number, values, span)
 
 
-def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> None:
-    """Draw one quantity of all cells, the line 1/sqrt(n), and the levels of the other errors."""
-    curves = [each.running() for each in found]
+def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float:
+    """Draw one quantity of all cells, and the line 1/sqrt(n); return the least error."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    curves, cells = [each.running() for each in found], cells_of(result)
     largest = max(int(counts[-1]) for counts, _ in curves)
+    first = BRANCH_COLOURS["loading"]
     if len(found) <= _MAX_LINES:
-        palette = [BRANCH_COLOURS["loading"]] if len(found) == 1 else colours(len(found))
-        for each, (counts, errors), colour in zip(found, curves, palette, strict=True):
-            label = cell_label(result, cells_of(result)[each.cell]).replace("$", r"\$") or "realisations"
-            ax.plot(counts, errors, color=colour, lw=1.8, marker="o" if counts.size < 30 else "", ms=3, label=label)
+        palette = [first] if len(cells) == 1 else colours(len(cells))
+        for each, (counts, errors) in zip(found, curves, strict=True):
+            label = cell_label(result, cells[each.cell]).replace("$", r"\$") or "realisations in their order"
+            marker = "o" if counts.size < _FEW else ""
+            ax.plot(counts, errors, color=palette[each.cell], lw=1.8, marker=marker, ms=3, label=label)
     else:
         grid = np.unique(np.geomspace(2, min(int(counts[-1]) for counts, _ in curves), _POINTS).round())
         errors = np.array([np.interp(np.log(grid), np.log(counts), each) for counts, each in curves])
-        colour = BRANCH_COLOURS["loading"]
-        ax.fill_between(
-            grid, errors.min(axis=0), errors.max(axis=0), color=colour, alpha=0.25, lw=0.0, label=f"{len(found)} cells"
-        )
-        ax.plot(grid, np.median(errors, axis=0), color=colour, lw=1.8, label="their median")
+        low, high = errors.min(axis=0), errors.max(axis=0)
+        ax.fill_between(grid, low, high, color=first, alpha=0.25, lw=0.0, label="all cells")
+        ax.plot(grid, np.median(errors, axis=0), color=first, lw=1.8, label="median of the cells")
     middle = float(np.median([each.scatter for each in found]))
     n = np.array([2.0, 2.0 * largest])
-    ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="scatter of all realisations / √n")
-    for level, style, label in _levels(result):
-        ax.axhline(level, lw=1.2, zorder=1, label=f"{label}, {level:.2g}", **style)
+    ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
     ax.set(xscale="log", yscale="log", xlabel="realisations n", title=found[0].name, xlim=(2.0, float(n[1])))
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(color="0.93", zorder=0)
+    return min(float(errors.min()) for _, errors in curves)
 
 
-def _levels(result: Labelled) -> "Iterable[tuple[float, dict[str, Any], str]]":
+def _levels(result: Labelled) -> Iterator[tuple[float, dict[str, Any], str]]:
     """Yield the other errors of the force that are known and above 0, largest of all cells, with how they are drawn."""
-    for name, style, label in (
-        ("numerical_error", {"color": "#56b4e9", "ls": "-."}, "numerical error"),
-        ("model_error", {"color": "#cc79a7", "ls": "-"}, "error of the model, at most"),
-    ):
+    kinds: tuple[tuple[str, dict[str, Any], str], ...] = (
+        ("numerical_error", {"color": "#56b4e9", "ls": "-."}, "numerical error of the force"),
+        ("model_error", {"color": "#cc79a7", "ls": "-"}, "error of the force by the model, at most"),
+    )
+    for name, style, label in kinds:
         values = result.variables[name].values if name in result.variables else np.empty(0)
         values = values[np.isfinite(values)]
         if values.max(initial=0.0) > 0.0:
@@ -141,10 +164,16 @@ def _levels(result: Labelled) -> "Iterable[tuple[float, dict[str, Any], str]]":
         yield float(asked), {"color": "#009e73", "ls": (0, (1.0, 1.0))}, "accuracy.relative, as asked"
 
 
-def _needed_in_words(scatters: list[float]) -> str:
+def _needed_in_words(found: list[Convergence]) -> str:
     """Return how many realisations the errors of ``_NEEDED`` take, least and most of all cells."""
+    scatters = [each.scatter for each in found]
     parts = []
     for error in _NEEDED:
-        low, high = (math.ceil((scatter / error) ** 2) for scatter in (min(scatters), max(scatters)))
-        parts.append(f"{error:.1%} takes about {low}" + (f" to {high}" if high > low else ""))
-    return ", ".join(parts).replace(".0%", " %").replace("%", " %").replace("  ", " ") + " realisations"
+        low, high = (_rounded((scatter / error) ** 2) for scatter in (min(scatters), max(scatters)))
+        parts.append(f"{100.0 * error:g} % takes about {low}" + (f" to {high}" if high != low else ""))
+    return ", ".join(parts) + f" realisations, by {min(each.values.size for each in found)}"
+
+
+def _rounded(count: float) -> str:
+    """Return a number of realisations with two digits."""
+    return f"{max(float(f'{count:.1e}'), 2.0):.0f}"
