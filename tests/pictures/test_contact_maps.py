@@ -165,3 +165,13 @@ def test_a_map_is_written_alike_each_time(sticky: Labelled, tmp_path: Path, kind
         save(draw_map(sticky), tmp_path / f"{name}.{kind}")
         written.append((tmp_path / f"{name}.{kind}").read_bytes())
     assert written[0] == written[1]
+
+
+def test_a_result_by_boundary_elements_is_said_to_be_one() -> None:
+    coupled = {"model": "pairwise", "beyond": "boundary_elements"}
+    crowd = asperities(count=40, patch="0.1 mm")
+    path = {"separation": ["2 um", "0.5 um"]}
+    found = result(asperities=crowd, adhesion=None, interaction=coupled, path=path, batch=None)
+    by_elements = bool(found.variables["grid_points"].values[0] > 0.0)
+    assert by_elements
+    assert "by boundary elements" in Snapshot.of(found, None, placed=True).place
