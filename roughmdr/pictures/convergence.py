@@ -12,6 +12,7 @@ from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
 from roughmdr.result.layout import cell_label, cells_of, control_of, done_of, method_of
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import TRAVEL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,8 +55,8 @@ def draw_convergence(result: Labelled) -> "Figure":
     """Draw the relative standard error of the mean of the largest force, and of the pull-off force, against the number
     of realisations.
 
-    The largest force is that at the step at which its mean is largest; under a dead load, which is the force, the
-    separation at the largest load stands for it, over the range of its mean. Beside it: the numerical error, the error
+    The largest force is that at the step at which its mean is largest; where that is prescribed, by a dead load or a
+    preload, the separation there stands for it, over the range of its mean. Beside it: the numerical error, the error
     of the model and the error asked for. More than a few cells are a band with their median. StoreError where the
     result holds no realisations, or too few.
     """
@@ -96,9 +97,9 @@ def draw_convergence(result: Labelled) -> "Figure":
 
 def _quantities(result: Labelled) -> Iterator[Convergence]:
     """Yield the quantities of each cell of which at least two realisations were computed, unless all are alike."""
-    dead_load = control_of(result) in ("force", "pressure")
+    prescribed = control_of(result) in ("force", "pressure", TRAVEL.name)
     curve, label = (
-        ("separation", "separation at the largest load, over its range") if dead_load else ("force", "largest force")
+        ("separation", "separation at the largest load, over its range") if prescribed else ("force", "largest force")
     )
     done = done_of(result)
     for name, title in ((curve, label), ("pull_off_force", "pull-off force")):
@@ -111,8 +112,8 @@ def _quantities(result: Labelled) -> Iterator[Convergence]:
                 if not values.size:
                     continue
                 means = values.mean(axis=0)
-                span = float(np.ptp(means)) if dead_load else 0.0
-                values = values[:, int((-means if dead_load else np.abs(means)).argmax())]
+                span = float(np.ptp(means)) if prescribed else 0.0
+                values = values[:, int((-means if prescribed else np.abs(means)).argmax())]
             values = values[np.isfinite(values)]
             if values.size > 1 and np.ptp(values) > 0.0:
                 yield Convergence(title, number, values, span)
@@ -138,9 +139,9 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
         ax.fill_between(grid, low, high, color=first, alpha=0.25, lw=0.0, label="all cells")
         ax.plot(grid, np.median(errors, axis=0), color=first, lw=1.8, label="median of the cells")
     middle = float(np.median([each.scatter for each in found]))
-    n = np.array([2.0, 2.0 * largest])
+    n = np.array([2.0, max(2.0 * largest, 10.0)])
     ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
-    ax.set(xscale="log", yscale="log", xlabel="realisations n", title=found[0].name, xlim=(2.0, float(n[1])))
+    ax.set(xscale="log", yscale="log", xlabel="realisations n", title=found[0].name, xlim=(1.8, float(n[1])))
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())

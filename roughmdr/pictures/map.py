@@ -45,7 +45,8 @@ class Frame(NamedTuple):
         sides = sides_of(ensemble)
         if sides is not None and min(x.min(), y.min()) >= 0.0 and x.max() <= sides[0] and y.max() <= sides[1]:
             return cls(0.0, 0.0, *sides)
-        reach = margin or 0.05 * float(max(np.ptp(x), np.ptp(y))) or 1.0
+        reach = margin or 0.05 * float(max(np.ptp(x), np.ptp(y)))
+        reach = reach or float(ensemble.nondimensional().width.max())
         low = float(x.min()) - reach, float(y.min()) - reach
         return cls(*low, float(np.ptp(x)) + 2.0 * reach, float(np.ptp(y)) + 2.0 * reach)
 
@@ -81,7 +82,7 @@ def draw_map(
         _draw_surface(figure, ax, surface, length)
     x, y = ensemble.positions["x"], ensemble.positions["y"]
     few = others[:_OTHERS]
-    ax.scatter(length(x[few]), length(y[few]), s=2.0, c="k", alpha=0.25, lw=0.0, rasterized=True, label="no contact")
+    ax.scatter(length(x[few]), length(y[few]), s=3.0, c="k", alpha=0.35, lw=0.0, rasterized=True, label="no contact")
     if on.size:
         _draw_contacts(
             figure,

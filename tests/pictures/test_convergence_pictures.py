@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from scenes import scene
 
 import roughmdr as rm
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.convergence import draw_convergence
 from roughmdr.pictures.style import save
 from roughmdr.storage.labelled import Labelled
@@ -19,6 +21,12 @@ def result(**changes: Any) -> Labelled:
     path = {"separation": {"start": "5 um", "stop": "0.5 sigma", "steps": 6}, "unload": True}
     asperities = scene()["asperities"] | {"count": 200}
     return Labelled.of(rm.run(scene(**{"path": path, "asperities": asperities} | changes)))
+
+
+def curve(ax: Axes, number: int) -> tuple[Floats, Floats]:
+    """The points of a line."""
+    x, y = (np.asarray(each) for each in ax.lines[number].get_data())
+    return x, y
 
 
 @pytest.fixture(scope="module")
@@ -33,9 +41,9 @@ def test_the_running_error_is_that_of_numpy(sixteen: Labelled) -> None:
     pull_off = sixteen.variables["pull_off_force"].values
     assert np.isfinite(pull_off).all()
     for ax, values in zip(figure.axes, (largest, pull_off), strict=True):
-        counts, errors = ax.lines[0].get_data()
+        counts, errors = curve(ax, 0)
         assert counts.tolist() == list(range(2, 17))
-        for count, error in zip(np.asarray(counts).tolist(), errors, strict=True):
+        for count, error in zip(counts.tolist(), errors, strict=True):
             some = values[:count]
             expected = np.std(some, ddof=1) / math.sqrt(count) / abs(some.mean())
             assert error == pytest.approx(expected, rel=1e-13)
@@ -43,8 +51,8 @@ def test_the_running_error_is_that_of_numpy(sixteen: Labelled) -> None:
 
 def test_the_last_error_is_on_the_line_of_the_square_root(sixteen: Labelled) -> None:
     ax = draw_convergence(sixteen).axes[0]
-    n, line = (np.asarray(each) for each in ax.lines[1].get_data())
-    assert line[0] * math.sqrt(2.0 / 16.0) == pytest.approx(ax.lines[0].get_data()[1][-1], rel=1e-12)
+    n, line = curve(ax, 1)
+    assert line[0] * math.sqrt(2.0 / 16.0) == pytest.approx(curve(ax, 0)[1][-1], rel=1e-12)
     assert line[0] * math.sqrt(n[0]) == pytest.approx(line[1] * math.sqrt(n[1]))
 
 
@@ -58,7 +66,7 @@ def test_the_note_says_how_many_realisations_an_error_takes(sixteen: Labelled) -
 def test_levels_are_those_of_the_result() -> None:
     asked = result(accuracy={"relative": 0.05, "max_realizations": 40, "method": "sampled"})
     figure = draw_convergence(asked)
-    levels = {str(line.get_label()): line.get_ydata() for line in figure.axes[0].lines}
+    levels = {str(line.get_label()): np.asarray(line.get_ydata()) for line in figure.axes[0].lines}
     model = float(np.nanmax(asked.variables["model_error"].values))
     assert levels["accuracy.relative, as asked: 0.05"][0] == 0.05
     assert next(value[0] for label, value in levels.items() if "by the model" in label) == model
@@ -98,3 +106,9 @@ def test_convergence_is_written_alike_each_time(sixteen: Labelled, tmp_path: Pat
         save(draw_convergence(sixteen), tmp_path / f"{name}.{kind}")
         written.append((tmp_path / f"{name}.{kind}").read_bytes())
     assert written[0] == written[1]
+
+
+def test_with_a_preload_the_separation_converges() -> None:
+    path = {"preload": "1 mN", "steps": 5, "unload": True}
+    titles = [ax.get_title() for ax in draw_convergence(result(path=path)).axes]
+    assert titles == ["separation at the largest load, over its range", "pull-off force"]
