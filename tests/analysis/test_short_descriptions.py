@@ -72,6 +72,8 @@ def test_a_page_shows_markup_as_text_and_has_no_colours() -> None:
     assert "&lt;b&gt;&amp;" in page
     assert "<b>" not in page
     result = rm.run(scene(title="<script>", batch=None, path={"separation": ["3 um", "2 um"]}))
+    result.attrs["title"] += "\x1b[31m"
+    assert "\x1b" not in repr(result.roughmdr)
     page = result.roughmdr._repr_html_()
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
