@@ -78,6 +78,19 @@ def test_statistics_over_other_paths(changes: dict[str, Any]) -> None:
     same_as_stored(found, rm.run(table | {"output": {"keep": "statistics"}}))
 
 
+def test_a_run_that_failed_does_not_count_and_is_told(curves: xr.Dataset) -> None:
+    failed = curves.copy(deep=True)
+    failed.status[0, 1, 2] = 1
+    failed.force[0, 1, 2] = np.nan
+    failed.coords["remark"] = (failed.status.dims, np.where(failed.status.values == 1, "it is wrong", ""))
+    found = failed.roughmdr.statistics()
+    others = curves.force[0, 1].isel(realization=[0, 1, 3, 4])
+    np.testing.assert_allclose(found.force_mean[0, 1], others.mean("realization"), rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(found.force_sem[0, 1], others.std("realization", ddof=1) / 2.0, rtol=1e-9, atol=1e-18)
+    assert found.remark.values.tolist() == [["", "it is wrong"], ["", ""]]
+    assert "failed" in rm.info(found, cells=True)
+
+
 def test_statistics_need_realisations(statistics: xr.Dataset) -> None:
     with pytest.raises(rm.StoreError, match="has their statistics already"):
         statistics.roughmdr.statistics()
