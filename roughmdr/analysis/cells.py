@@ -36,8 +36,8 @@ def of_cells(dataset: "xr.Dataset", number: Callable[[Scene], float], method: st
                 raise StoreError(f"{method} needs {name} as in the scene; this result has other values") from None
         elif dataset.sizes.get(name) != size:
             raise StoreError(f"{method} needs all {size} cells of the sweep along {name}; select some of them after it")
-    for name in found.dims:
-        first = found.isel({name: [0]})
+    for dim in found.dims:
+        first = found.isel({dim: [0]})
         if bool((found.values == first.values).all()):
-            found = first.squeeze(name)
+            found = first.squeeze(dim)
     return found.drop_vars([name for name in found.coords if name not in found.dims])

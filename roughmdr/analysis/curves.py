@@ -54,32 +54,34 @@ def curves_of(dataset: "xr.Dataset") -> list[str]:
     return [name for name in names if name in dataset.data_vars and "step" in dataset[name].dims]
 
 
-def curve(dataset: "xr.Dataset", name: str, role: str) -> "xr.DataArray":
+def curve(dataset: "xr.Dataset", name: str, asked: str) -> "xr.DataArray":
     """Return a variable over the steps, or its mean, computed from another where the result does not hold it.
 
-    StoreError, naming the argument by its ``role``, where it holds neither.
+    StoreError where it holds neither; ``asked`` are the words before the name in its message, such as "x is".
     """
     for held in (name, f"{name}_mean"):
         if held in dataset.variables and "step" in dataset[held].dims:
             return alone(whole(dataset[held]))
     if name in _PER_AREA and "nominal_area" in dataset:
-        total = curve(dataset, _PER_AREA[name], role)
+        total = curve(dataset, _PER_AREA[name], asked)
         return (total / alone(dataset["nominal_area"])).assign_attrs(CURVE_VARIABLES[name].attrs)
     if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
-        total = curve(dataset, "pressure", role) * alone(dataset["nominal_area"])
+        total = curve(dataset, "pressure", asked) * alone(dataset["nominal_area"])
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)
     held_names = [each.removesuffix("_mean") for each in curves_of(dataset)]
     allowed = list(dict.fromkeys([*held_names, control_of(dataset)]))
     if name in _PER_AREA and "nominal_area" not in dataset and _holds(dataset, _PER_AREA[name]):
-        raise StoreError(f"{role} is {name!r}; it needs the variable nominal_area, which this result does not hold")
+        raise StoreError(
+            f"{asked} {name!r}: from {_PER_AREA[name]} only with nominal_area, which this result does not hold"
+        )
     if name in LAW_VARIABLES:
-        raise StoreError(f"{role} is {name!r}, which this result does not hold; it holds {', '.join(allowed)}")
-    raise StoreError(f"{role} is {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
+        raise StoreError(f"{asked} {name!r}, which this result does not hold; it holds {', '.join(allowed)}")
+    raise StoreError(f"{asked} {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
 
 
 def separation_of(dataset: "xr.Dataset") -> "xr.DataArray":
     """Return the separation [m] over the steps, a coordinate or a variable."""
-    return curve(dataset, SEPARATION.name, "separation")
+    return curve(dataset, SEPARATION.name, "ds.roughmdr needs")
 
 
 def alone(array: "xr.DataArray") -> "xr.DataArray":

@@ -51,7 +51,8 @@ def _describe_result(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     yield "path", f"{control} {_range(dataset[control])}, {' and '.join(branches)}"
     yield "curves", ", ".join(name.removesuffix("_mean") for name in curves_of(dataset) if not is_reference(name))
     yield "pull-off", _pull_off(dataset)
-    yield "trust", next((text for name, text in trust_lines(dataset) if name == "trust"), "not known")
+    if "model_error" in dataset:
+        yield "trust", next((text for name, text in trust_lines(dataset) if name == "trust"), "not known")
     if warnings := str(dataset.attrs.get("warnings", "")).splitlines():
         more = f" (and {len(warnings) - 1} more)" if len(warnings) > 1 else ""
         yield "warning", warnings[0] + more
@@ -94,16 +95,16 @@ def _pull_off(dataset: "xr.Dataset") -> str:
     except StoreError:
         return "none: no unloading" if not (dataset["branch"] == "unloading").any() else "not stored"
     force, error = (found[name].to_numpy().ravel() for name in ("force", "force_sem"))
-    known = np.isfinite(force)
+    known, unit = np.isfinite(force), found["force"].attrs["units"]
     if not known.any():
         return "none: the unloading ends in contact"
     if force.size <= _FEW_CELLS:
         return "; ".join(
-            format_quantity(float(each), "N", error=float(off)) if np.isfinite(each) else "none"
+            format_quantity(float(each), unit, error=float(off)) if np.isfinite(each) else "none"
             for each, off in zip(force, error, strict=True)
         )
     low, high = float(force[known].max()), float(force[known].min())
-    return f"{format_quantity(low, 'N', to=high)}, in {int(known.sum())} of {force.size} cells"
+    return f"{format_quantity(low, unit, to=high)}, in {int(known.sum())} of {force.size} cells"
 
 
 def _describe_ensemble(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:

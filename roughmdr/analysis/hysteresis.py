@@ -25,7 +25,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
     import xarray as xr
 
     check_result(dataset)
-    force, separation = alone(curve(dataset, "force", "hysteresis")), alone(separation_of(dataset))
+    force, separation = alone(curve(dataset, "force", "hysteresis needs")), alone(separation_of(dataset))
     loading, unloading = (Legs(dataset, branch).wanted[1:] for branch in BRANCHES)
     energies = xr.apply_ufunc(
         _energies,

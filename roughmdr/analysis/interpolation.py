@@ -26,7 +26,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     units = (LAW_VARIABLES | {SEPARATION.name: SEPARATION})[name].units
     wanted = check_values(name, values, units)
     legs = Legs(dataset, branch)
-    reached = alone(curve(dataset, name, f"at_{name}"))
+    reached = alone(curve(dataset, name, f"at_{name} needs"))
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
     brackets = xr.apply_ufunc(
         find_brackets,
@@ -67,7 +67,7 @@ def _curves(dataset: "xr.Dataset", name: str) -> "dict[str, xr.DataArray]":
     curves = {each: alone(whole(dataset[each])) for each in curves_of(dataset)}
     control = control_of(dataset)
     if control in dataset.coords:
-        curves = {control: curve(dataset, control, "control"), **curves}
+        curves = {control: curve(dataset, control, "ds.roughmdr needs"), **curves}
     if SEPARATION.name not in curves and f"{SEPARATION.name}_mean" not in curves:
         curves = {SEPARATION.name: separation_of(dataset), **curves}
     return {each: array for each, array in curves.items() if each.removesuffix("_mean") != name}

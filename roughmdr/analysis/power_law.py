@@ -43,7 +43,7 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
     import xarray as xr
 
     check_result(dataset)
-    along, over = (alone(curve(dataset, name, role)) for name, role in ((y, "y"), (x, "x")))
+    along, over = (alone(curve(dataset, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
     both = {"y": along.attrs.get("units", "1"), "x": over.attrs.get("units", "1")}
     low, high = (0.0, np.inf) if between is None else _ends(between, both["x"])
     kwargs = {"chosen": _chosen(dataset, branch), "low": low, "high": high}

@@ -44,7 +44,7 @@ def pull_off(dataset: "xr.Dataset") -> "xr.Dataset":
                 about = {"units": "N", "long_name": "standard error of the mean pull-off force"}
                 found["force_sem"] = error.assign_attrs(about)
     found |= {name: dataset[stored] for name, stored in _AS_THEY_ARE.items() if stored in dataset}
-    return xr.Dataset(found, attrs={"comment": _COMMENT}).drop_dims("step", errors="ignore")
+    return xr.Dataset(found, attrs={"comment": _COMMENT})
 
 
 def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr.DataArray]":

@@ -55,9 +55,13 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
         table: dict[str, Any] = parse_toml(attrs["scene"])
         table["output"] = {**table.get("output", {}), "keep": "statistics"}
         attrs["scene"] = tomli_w.dumps(table)
+    if "remark" in dataset.coords and "realization" in dataset["remark"].dims:
+        found["remark"] = _first_text(dataset["remark"])
     kept = [name for name in dataset.coords if name not in _OF_CURVES and "realization" not in dataset[name].dims]
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
-    return xr.Dataset(bare, coords={name: dataset[name].variable for name in kept}, attrs=attrs)
+    coordinates = {name: dataset[name].variable for name in kept}
+    result = xr.Dataset(bare, coords=coordinates, attrs=attrs)
+    return result.set_coords("remark") if "remark" in bare else result
 
 
 def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "dict[str, xr.DataArray]":
@@ -157,5 +161,23 @@ def _reduced(array: "xr.DataArray", rule: str) -> "xr.DataArray":
         keep_attrs=True,
         dask="parallelized",
         output_dtypes=[array.dtype],
+    )
+    return merged
+
+
+def _first_text(remark: "xr.DataArray") -> "xr.DataArray":
+    """Return the first text over the realisations of each cell that is not empty."""
+    import xarray as xr
+
+    def first(texts: NDArray[Any]) -> object:
+        return next(filter(None, map(str, texts)), "")
+
+    merged: xr.DataArray = xr.apply_ufunc(
+        first,
+        remark.compute(),
+        input_core_dims=[["realization"]],
+        keep_attrs=True,
+        vectorize=True,
+        output_dtypes=[object],
     )
     return merged

@@ -28,8 +28,6 @@ def trust(dataset: "xr.Dataset") -> "xr.Dataset":
     found = dataset[list(_NAMES)]
     if "realization" in found.dims:
         found = found.max("realization", keep_attrs=True)
-    over_cells = [name for name, each in found.coords.items() if "step" in each.dims]
-    found = found.drop_vars(over_cells)
     found.attrs = {"trust": "\n".join(f"{name:<12} {text}".rstrip() for name, text in trust_lines(dataset))}
     return found
 

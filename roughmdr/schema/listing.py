@@ -3,20 +3,21 @@
 import html
 from collections.abc import Iterable
 
-Lines = list[tuple[str, str]]
+from roughmdr.schema.wording import escape_controls
+
 _MAX_LENGTH = 160
 
 
 def listing(lines: Iterable[tuple[str, str]]) -> str:
     """Return lines with their names in a column."""
-    return "\n".join(f"{name:<12} {_short(text)}".rstrip() for name, text in lines)
+    return "\n".join(f"{_short(name):<12} {_short(text)}".rstrip() for name, text in lines)
 
 
 def html_listing(lines: Iterable[tuple[str, str]]) -> str:
     """Return a table without colours of its own, for a light and for a dark page."""
     style = "text-align:left;vertical-align:top;background:none;color:inherit"
     rows = "".join(
-        f'<tr style="background:none"><th style="{style}">{html.escape(name)}</th>'
+        f'<tr style="background:none"><th style="{style}">{html.escape(_short(name))}</th>'
         f'<td style="{style}">{html.escape(_short(text))}</td></tr>'
         for name, text in lines
     )
@@ -24,5 +25,5 @@ def html_listing(lines: Iterable[tuple[str, str]]) -> str:
 
 
 def _short(text: str) -> str:
-    line = " ".join(text.split())
+    line = escape_controls(" ".join(text.split()))
     return line if len(line) <= _MAX_LENGTH else f"{line[: _MAX_LENGTH - 3]}..."

@@ -31,11 +31,7 @@ def test_the_pull_off_of_statistics_is_what_they_store(curves: xr.Dataset, stati
 
 def test_realisations_without_a_pull_off_do_not_count(curves: xr.Dataset) -> None:
     some = curves.copy()
-    some["pull_off_force"] = (
-        curves.pull_off_force.where(curves.realization != 0)
-        if "realization" in curves.coords
-        else (curves.pull_off_force.where(xr.DataArray(np.arange(5) > 0, dims="realization")))
-    )
+    some["pull_off_force"] = curves.pull_off_force.where(xr.DataArray(np.arange(5) > 0, dims="realization"))
     np.testing.assert_allclose(
         some.roughmdr.pull_off().force, curves.pull_off_force.isel(realization=slice(1, None)).mean("realization")
     )
@@ -82,6 +78,19 @@ def test_statistics_over_other_paths(changes: dict[str, Any]) -> None:
     same_as_stored(found, rm.run(table | {"output": {"keep": "statistics"}}))
 
 
+def test_a_run_that_failed_does_not_count_and_is_told(curves: xr.Dataset) -> None:
+    failed = curves.copy(deep=True)
+    failed.status[0, 1, 2] = 1
+    failed.force[0, 1, 2] = np.nan
+    failed.coords["remark"] = (failed.status.dims, np.where(failed.status.values == 1, "it is wrong", ""))
+    found = failed.roughmdr.statistics()
+    others = curves.force[0, 1].isel(realization=[0, 1, 3, 4])
+    np.testing.assert_allclose(found.force_mean[0, 1], others.mean("realization"), rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(found.force_sem[0, 1], others.std("realization", ddof=1) / 2.0, rtol=1e-9, atol=1e-18)
+    assert found.remark.values.tolist() == [["", "it is wrong"], ["", ""]]
+    assert "failed" in rm.info(found, cells=True)
+
+
 def test_statistics_need_realisations(statistics: xr.Dataset) -> None:
     with pytest.raises(rm.StoreError, match="has their statistics already"):
         statistics.roughmdr.statistics()
@@ -120,7 +129,7 @@ _METHODS = {
 def test_what_is_no_result_is_refused(method: str) -> None:
     other = xr.Dataset({"temperature": ("time", [1.0])})
     with pytest.raises(
-        rm.StoreError, match="needs a result as roughmdr.run or load_separation returns it, with curves"
+        rm.StoreError, match=r"needs a result as roughmdr\.run or load_separation returns it, with curves"
     ):
         getattr(other.roughmdr, method)(*_METHODS[method])
     asperities = rm.generate(scene()["asperities"], seed=1)

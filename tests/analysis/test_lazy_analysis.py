@@ -63,13 +63,12 @@ import resource, sys, time
 import roughmdr, xarray, dask.array
 from scipy import special
 from roughmdr.analysis import accessor, interpolation, statistics, hysteresis, power_law
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-start = time.perf_counter()
+start, busy = time.perf_counter(), time.process_time()
 with xarray.open_dataset(sys.argv[1], chunks={"realization": 500}) as result:
     of = result.roughmdr
     for found in (of.at_force([1e-5, 1e-4]), of.statistics(), of.hysteresis(), of.fit_power_law("stiffness", "force")):
         found.compute(scheduler="threads", num_workers=2)
-print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6, before / 1e6)
+print(time.perf_counter() - start, time.process_time() - busy, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 """
 
 
@@ -81,7 +80,7 @@ def test_ten_thousand_curves_take_five_seconds_and_a_gigabyte(tmp_path: Path) ->
     done = subprocess.run(
         [sys.executable, "-c", _MEASURE, str(tmp_path / "many.nc")], capture_output=True, text=True, check=True
     )
-    seconds, gigabytes, before = map(float, done.stdout.split())
-    print(f"{seconds:.2f} s, {gigabytes:.2f} GB, of which {before:.2f} GB before")
-    assert seconds < 5.0
+    wall, busy, gigabytes = map(float, done.stdout.split())
+    print(f"{wall:.2f} s, {busy:.2f} s of all processors, {gigabytes:.2f} GB")
+    assert busy < 5.0  # whatever else the machine does
     assert gigabytes < 1.0

@@ -32,6 +32,9 @@ def test_a_sweep_and_its_statistics(curves: xr.Dataset, statistics: xr.Dataset) 
     assert lines(curves.roughmdr)["runs"] == "5 realisations, 120 steps"
     assert lines(curves.roughmdr)["path"] == "separation 13.12 to 1 um, loading and unloading"
     assert lines(statistics.roughmdr)["runs"] == "statistics of 5 realisations, 120 steps"
+    scaled = lines(curves.roughmdr.normalise("gw").roughmdr)
+    assert re.fullmatch(r"separation [\d.]+ to [\d.]+, loading and unloading", scaled["path"])
+    assert re.fullmatch(r"-[\d.e-]+ to -[\d.e-]+, in 4 of 4 cells", scaled["pull-off"])
     few = curves.isel(asperities_height_std=0).roughmdr
     assert re.fullmatch(r"-\S+ ± \S+ [um]N; -\S+ ± \S+ [um]N", lines(few)["pull-off"])
 
@@ -72,6 +75,8 @@ def test_a_page_shows_markup_as_text_and_has_no_colours() -> None:
     assert "&lt;b&gt;&amp;" in page
     assert "<b>" not in page
     result = rm.run(scene(title="<script>", batch=None, path={"separation": ["3 um", "2 um"]}))
+    result.attrs["title"] += "\x1b[31m"
+    assert "\x1b" not in repr(result.roughmdr)
     page = result.roughmdr._repr_html_()
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
