@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from roughmdr.pictures.plot import plot
     from roughmdr.report.cite import cite
     from roughmdr.report.info import info
+    from roughmdr.report.page import write_report
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
     from roughmdr.schema.material import effective_modulus
@@ -71,6 +72,7 @@ _ROOMS = {
     "fitting.fit": ("fit",),
     "report.cite": ("cite",),
     "report.info": ("info",),
+    "report.page": ("write_report",),
     "pictures.plot": ("plot",),
     "runner.run": ("run",),
     "scene": ("Scene",),
@@ -118,6 +120,7 @@ __all__ = [
     "surface_displacement",
     "tabor",
     "theory",
+    "write_report",
 ]
 
 register()

@@ -41,7 +41,7 @@ def writing() -> tuple[float, float]:
     result = TaskResult.of(["0" * 32], variables, [ResultRow(0, 0, moments, pull_off, row_of(run_time=1.0))], steps)
     times = []
     with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as store:
-        store.begin("", "", "")
+        store.begin("", "", "", "")
         for _ in range(_REPEATS):
             started = time.perf_counter()
             store.write(result)

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BRANCHES = ("loading", "unloading")
-_PER_AREA = {"pressure": "force", "contact_fraction": "contact_area"}
+PER_AREA = {"pressure": "force", "contact_fraction": "contact_area"}
+"""Curves that follow from others and the nominal area."""
 _NEEDED = "ds.roughmdr needs a result as roughmdr.run or load_separation returns it"
 
 
@@ -62,17 +63,17 @@ def curve(dataset: "xr.Dataset", name: str, asked: str) -> "xr.DataArray":
     for held in (name, f"{name}_mean"):
         if held in dataset.variables and "step" in dataset[held].dims:
             return alone(whole(dataset[held]))
-    if name in _PER_AREA and "nominal_area" in dataset:
-        total = curve(dataset, _PER_AREA[name], asked)
+    if name in PER_AREA and "nominal_area" in dataset:
+        total = curve(dataset, PER_AREA[name], asked)
         return (total / alone(dataset["nominal_area"])).assign_attrs(CURVE_VARIABLES[name].attrs)
     if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
         total = curve(dataset, "pressure", asked) * alone(dataset["nominal_area"])
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)
     held_names = [each.removesuffix("_mean") for each in curves_of(dataset)]
     allowed = list(dict.fromkeys([*held_names, control_of(dataset)]))
-    if name in _PER_AREA and "nominal_area" not in dataset and _holds(dataset, _PER_AREA[name]):
+    if name in PER_AREA and "nominal_area" not in dataset and _holds(dataset, PER_AREA[name]):
         raise StoreError(
-            f"{asked} {name!r}: from {_PER_AREA[name]} only with nominal_area, which this result does not hold"
+            f"{asked} {name!r}: from {PER_AREA[name]} only with nominal_area, which this result does not hold"
         )
     if name in LAW_VARIABLES:
         raise StoreError(f"{asked} {name!r}, which this result does not hold; it holds {', '.join(allowed)}")

@@ -6,7 +6,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.analysis.brackets import Steps, find_brackets, interpolate
-from roughmdr.analysis.curves import Legs, alone, check_result, control_of, curve, curves_of, separation_of, whole
+from roughmdr.analysis.curves import (
+    PER_AREA,
+    Legs,
+    alone,
+    check_result,
+    control_of,
+    curve,
+    curves_of,
+    keeps_statistics,
+    separation_of,
+    whole,
+)
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
 
@@ -63,8 +74,12 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
 
 
 def _curves(dataset: "xr.Dataset", name: str) -> "dict[str, xr.DataArray]":
-    """Return the separation and all curves but those of ``name`` itself."""
+    """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
     curves = {each: alone(whole(dataset[each])) for each in curves_of(dataset)}
+    suffix = "_mean" if keeps_statistics(dataset) else ""
+    for derived, total in PER_AREA.items():
+        if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in dataset:
+            curves[f"{derived}{suffix}"] = curve(dataset, derived, "ds.roughmdr needs")
     control = control_of(dataset)
     if control in dataset.coords:
         curves = {control: curve(dataset, control, "ds.roughmdr needs"), **curves}

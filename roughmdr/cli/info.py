@@ -1,4 +1,4 @@
-"""roughmdr info: tell what a result contains."""
+"""roughmdr info: tell what a result contains, or how far a batch is."""
 
 from pathlib import Path
 
@@ -6,6 +6,7 @@ import click
 
 from roughmdr.cli.invocation import warn_of
 from roughmdr.cli.options import FILE, json_option
+from roughmdr.errors import StoreError
 from roughmdr.report.terminal import Command, print_document, print_text
 
 
@@ -17,8 +18,15 @@ from roughmdr.report.terminal import Command, print_document, print_text
 def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
     """Tell what RESULT contains.
 
-    Prints sizes, the pull-off force with its error, run time, seed, versions and the scene.
+    Prints sizes, the pull-off force with its error, run time, seed, versions and the scene. RESULT may also be
+    OUT.nc.parts, while a run is at work or after it was interrupted: prints how far it is.
     """
+    if result.name.endswith(".parts") and result.is_dir():
+        _info_parts(ctx, result, cells=cells, as_json=as_json)
+        return
+    parts = result.with_name(f"{result.name}.parts")
+    if parts.is_dir() and not result.exists():
+        raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.info import describe
     from roughmdr.storage.result_file import read_result
 
@@ -30,3 +38,14 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         print_document(ctx, result=result_table(data, result))
     else:
         print_text(describe(data, result, cells=cells))
+
+
+def _info_parts(ctx: click.Context, folder: Path, *, cells: bool, as_json: bool) -> None:
+    from roughmdr.batch.resume.kept import read_kept
+    from roughmdr.report.parts import describe_parts, parts_table
+
+    kept = read_kept(folder)
+    if as_json:
+        print_document(ctx, parts=parts_table(kept))
+    else:
+        print_text(describe_parts(kept, cells=cells))

@@ -1,33 +1,22 @@
-"""Reading the file of a fit, which anyone may have changed."""
+"""Validation of the file of a fit, which anyone may have changed."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
-from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_reading import read_netcdf
-from roughmdr.storage.result_file import FIT
 
 _TEXTS = ("title", "scene", "trust", "history")
 _ENDS = ("", "_standard_error", "_low", "_high")
 
 
-def read_fit(path: Path) -> Labelled:
-    """Return the file of a fit; StoreError if it is none, or not as ``fit`` writes it."""
-    try:
-        data = read_netcdf(path)
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: {error}") from None
-    if data.attrs.get("kind") != FIT:
-        raise StoreError(f"{path}: holds no fit")
+def fit_fault(data: Labelled) -> str:
+    """Return why arrays are no fit as ``fit`` writes it; empty if they are one."""
     for name, dims in _expected(data):
         array = (data.variables | data.coordinates).get(name)
         text = name in ("branch", "parameter_name")
         if array is None or array.dims != dims or (array.values.dtype.kind in "OU") != text:
-            raise StoreError(f"{path}: not a fit as roughmdr writes it: {name} is missing or of another kind")
-    if missing := [name for name in _TEXTS if not isinstance(data.attrs.get(name), str)]:
-        raise StoreError(f"{path}: not a fit as roughmdr writes it: it has no {', '.join(missing)}")
-    return data
+            return f"{name} is missing or of another kind"
+    missing = [name for name in _TEXTS if not isinstance(data.attrs.get(name), str)]
+    return f"it has no {', '.join(missing)}" if missing else ""
 
 
 def _expected(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:

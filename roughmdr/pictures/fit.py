@@ -37,9 +37,9 @@ def draw_fit(fit: Labelled) -> "Figure":
     for ax in (law, residual):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     law.set_ylabel(y.label)
-    law.legend(frameon=False)
+    figure.legend(*law.get_legend_handles_labels(), loc="outside lower center", frameon=False, fontsize=8, ncols=3)
     residual.set(xlabel=x.label, ylabel=r.label)
-    set_title(figure, str(fit.attrs["title"]), describe_parameters(fit))
+    set_title(figure, str(fit.attrs["title"]), [" ".join(line.split()) for line in describe_parameters(fit)])
     return figure
 
 
@@ -66,10 +66,18 @@ def _draw_points(ax: "Axes", fit: Labelled, names: tuple[str, str, str], scales:
 
 def _draw_fitted(ax: "Axes", fit: Labelled, names: tuple[str, str], scales: tuple[Scale, Scale]) -> None:
     """Draw the fitted law, each loading and unloading from where the one before ended."""
+    from matplotlib import rcParams
+
     (control, name), (x, y) = names, scales
     branch, steps, load = fit.coordinates["branch"].values, fit.coordinates[control].values, fit.variables[name].values
     turns = np.flatnonzero(branch[1:] != branch[:-1]) + 1
     ends = [0, *turns.tolist(), branch.size]
     for number, (first, last) in enumerate(pairwise(ends)):
         along = slice(max(first - 1, 0), last)
-        ax.plot(x(steps[along]), y(load[along]), color="#111111", lw=1.0, label=None if number else "fitted law")
+        ax.plot(
+            x(steps[along]),
+            y(load[along]),
+            color=rcParams["text.color"],
+            lw=1.0,
+            label=None if number else "fitted law",
+        )

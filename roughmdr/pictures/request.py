@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.fitting.stored import fit_fault
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.result_file import FIT
 from roughmdr.storage.result_validation import find_fault
 
 if TYPE_CHECKING:
@@ -79,16 +81,14 @@ def drawable(source: "str | Path | xr.Dataset") -> Drawable:
     else:
         raise StoreError(f"result is {short_repr(source)}; it must be a path or a Dataset as roughmdr.run returns it")
     content = _content(data)
-    if content == "result":
-        place = "result: not as roughmdr.run returns it"
-        if file is not None:
-            place = f"{file}: not a result as roughmdr writes it"
-        if fault := find_fault(data):
-            raise StoreError(f"{place}: {fault}")
+    if content != "ensemble" and (fault := find_fault(data) if content == "result" else fit_fault(data)):
+        made = f"{content}: not as roughmdr.{'run' if content == 'result' else 'fit'} returns it"
+        place = made if file is None else f"{file}: not a {content} as roughmdr writes it"
+        raise StoreError(f"{place}: {fault}")
     return Drawable(content, data, file)
 
 
 def _content(data: Labelled) -> Content:
-    if data.attrs.get("kind") == "fit":
+    if data.attrs.get("kind") == FIT:
         return "fit"
     return "ensemble" if {"asperity"} == set(data.sizes) and "height" in data.variables else "result"

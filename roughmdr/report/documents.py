@@ -146,6 +146,35 @@ class PlanTable(TypedDict):
     left_out: list[str]
 
 
+class PartCellTable(TypedDict):
+    """A cell of a batch that is not over."""
+
+    swept: dict[str, float | str]
+    done: int  # realisations that are kept
+    failed: int
+    total: int | None  # null with [accuracy]
+
+
+class PartsTable(TypedDict):
+    """A folder OUT.nc.parts: what a batch has done that is at work, or was interrupted."""
+
+    title: str | None
+    folder: str
+    output: str
+    done: int  # runs that are kept
+    total: int | None  # null where it is not known, as with [accuracy]
+    failed: int  # runs, which are repeated
+    remark: str | None  # why the first of them failed
+    cells: list[PartCellTable]  # none where other versions began the batch
+    began: str | None  # ISO 8601, UTC
+    last: str | None  # when something was kept last
+    holder: dict[str, int | str] | None  # "process", "host", "since" of the run at work; null for none
+    holder_known: bool  # false where it is on another machine
+    continued_by: str  # command
+    versions: str | None
+    scene: str | None  # TOML
+
+
 class Document(TypedDict):
     """The whole document. Where ``exit_status`` is not 0, ``faults`` says why."""
 
@@ -156,7 +185,7 @@ class Document(TypedDict):
     warnings: list[str]  # of the command; those of a result or a plan are in it
     result: ResultTable | None
     plan: PlanTable | None
-    parts: dict[str, Any] | None
+    parts: PartsTable | None
 
 
 def document(
@@ -165,7 +194,7 @@ def document(
     *,
     faults: Iterable[FaultTable] = (),
     warnings: Iterable[str] = (),
-    **told: ResultTable | PlanTable | None,
+    **told: ResultTable | PlanTable | PartsTable | None,
 ) -> Document:
     """Return a document about what was ``told``: result, plan or parts, or none of them."""
     made: Document = {

@@ -3,9 +3,11 @@
 import base64
 import shlex
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from roughmdr.errors import StoreError
 from roughmdr.pictures.kinds import draw_request
 from roughmdr.pictures.request import Drawable, Request
 from roughmdr.pictures.style import png_of, styled
@@ -118,12 +120,14 @@ def _summary(result: Labelled) -> Iterator[tuple[str, list[str]]]:
 
 
 def _figures(source: Drawable) -> Iterator[_Figure]:
-    """Yield the pictures: of a sweep its number, then each variable over the path."""
+    """Yield the pictures: of a sweep its number, each variable over the path, and how the errors converge."""
     swept = [size for size in swept_sizes(source.data).values() if size > 1]
     if swept:
         yield _figure(source, Request("sweep"), "the sweep")
     for name in stored_variables(source.data):
         yield _figure(source, Request("law", (name,)), f"{name.replace('_', ' ')} over the path")
+    with suppress(StoreError):  # of single realisations, statistics and expected laws there is no convergence
+        yield _figure(source, Request("convergence"), "errors over the number of realisations")
 
 
 def _figure(source: Drawable, request: Request, words: str) -> _Figure:

@@ -42,7 +42,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
     lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
-    return _format_table([*lines, *_indent("left out", plan.left_out)])
+    return format_table([*lines, *_indent("left out", plan.left_out)])
 
 
 def _memory(estimate: "Estimate") -> str:
@@ -73,7 +73,7 @@ def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
-    return _format_table([*summary_lines(result, elapsed), *_indent("left out", left_out_lines)])
+    return format_table([*summary_lines(result, elapsed), *_indent("left out", left_out_lines)])
 
 
 def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tuple[str, str]]:
@@ -132,7 +132,7 @@ def describe_ensemble(ensemble: Labelled) -> str:
             if attrs.get("asperity_model") == "hills"
             else ("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")
         ]
-    return _format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
+    return format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 
 def describe_origin(result: Labelled, size: float | None) -> str:
@@ -144,7 +144,7 @@ def describe_origin(result: Labelled, size: float | None) -> str:
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),
     ]
-    return _format_table([*lines, *_indent("scene", attrs["scene"].strip().splitlines())])
+    return format_table([*lines, *_indent("scene", attrs["scene"].strip().splitlines())])
 
 
 def describe_cells(result: Labelled) -> str:
@@ -213,7 +213,8 @@ def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:
     return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
 
 
-def _format_table(lines: list[tuple[str, str]]) -> str:
+def format_table(lines: list[tuple[str, str]]) -> str:
+    """Return lines of a name and a text as a table."""
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
 
 

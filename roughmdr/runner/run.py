@@ -151,8 +151,8 @@ def execute(
             with backend.pool() as pool:
                 if not resume:
                     writer.clear()
-                batch = _Batch(plan, rounds, writer, reusable, pool, backend.runs_per_task)
-                return batch.run(old, command, quiet=quiet)
+                batch = _Batch(plan, rounds, writer, reusable, pool, backend.runs_per_task, command)
+                return batch.run(old, quiet=quiet)
         except (StoreError, MemoryError) as error:
             message = str(error) or f"out of memory, with {describe_available_memory()}"
             if writer.saved_message:
@@ -179,6 +179,7 @@ class _Batch:
     _reusable: ReusableRows
     _pool: Pool
     _runs_per_task: int | None
+    _command: str
 
     def __post_init__(self) -> None:
         plan = self._plan
@@ -186,7 +187,7 @@ class _Batch:
         self._variables = _computed_variables(plan)
         self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
 
-    def run(self, old: Labelled | None, command: str, *, quiet: bool) -> Labelled:
+    def run(self, old: Labelled | None, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
             with progress(self._plan.scene.title, quiet=quiet) as display:
@@ -194,9 +195,9 @@ class _Batch:
                 while ranges:
                     self._round(ranges, display, stop)
                     ranges = self._rounds.next(self._collector)
-            return self._finish(old, command)
+            return self._finish(old)
 
-    def _finish(self, old: Labelled | None, command: str) -> Labelled:
+    def _finish(self, old: Labelled | None) -> Labelled:
         """Assemble the result and write it."""
         methods, none_done = self._rounds.methods, self._collector.none_done
         cells = [(method.key, method.realizations) for method in methods]
@@ -206,7 +207,7 @@ class _Batch:
             error = first_error(str(collected.diagnostics["remark"][failed][0]))
             name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
-        result = assemble(self._plan, methods, collected, self._variables, command)
+        result = assemble(self._plan, methods, collected, self._variables, self._command)
         if old is not None:
             result.attrs["history"] += f"\n{old.attrs['history']}"
             check_no_less(self._writer.target, old, result, self._rounds.keys)
@@ -234,7 +235,7 @@ class _Batch:
         if not isinstance(self._pool, Cluster):
             prepare_all(self._plan, missing)
         if len(tasks) > 1:
-            self._writer.begin(self._plan.scene.toml)
+            self._writer.begin(self._plan.scene.toml, self._command)
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:

@@ -146,7 +146,7 @@ def test_the_stated_errors_hold_against_a_finer_path() -> None:
                     error, off = rough[f"{each}_interpolation_error"], abs(rough[each] - exact[each])
                     known = np.isfinite(off.values)
                     assert (error.isnull() == rough[each].isnull()).all()
-                    tiny = 1e-9 * float(abs(fine[each]).max())
+                    tiny = 1e-9 * float(abs(exact[each]).max())
                     holds += (off <= error + exact[f"{each}_interpolation_error"] + tiny).values[known].tolist()
     assert len(holds) > 5000
     assert np.mean(holds) > 0.95
@@ -170,3 +170,14 @@ def test_what_a_result_lacks_is_named() -> None:
         result.roughmdr.at_force("1 kg")
     with pytest.raises(rm.StoreError, match="at_pressure needs 'force', which"):
         result.roughmdr.at_pressure(1.0)
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_the_pressure_at_a_contact_fraction_follows_from_the_force(keep: str) -> None:
+    made = rm.run(scene(output={"variables": ["force", "contact_area"], "keep": keep}))
+    suffix = "_mean" if keep == "statistics" else ""
+    there = made.roughmdr.at_contact_fraction(0.01)
+    over_area = there[f"force{suffix}"] / made.nominal_area
+    xr.testing.assert_allclose(there[f"pressure{suffix}"], over_area, rtol=1e-12)
+    assert there[f"pressure{suffix}"].attrs["units"] == "Pa"
+    assert (there[f"pressure{suffix}_interpolation_error"] >= 0.0).all()

@@ -16,6 +16,7 @@ import stat
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -26,9 +27,9 @@ from roughmdr.storage.files import convert_os_errors, sync_folder
 
 # Errors of disks without locks, such as some that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
-_LOCK, _MANIFEST, _FILE = "lock", "manifest.jsonl", "{:06d}.npz"
+LOCK, MANIFEST, _FILE = "lock", "manifest.jsonl", "{:06d}.npz"
 _FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
-_OWN_FILES = re.compile(rf"{re.escape(_MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
+_OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
 """Names of all that is written to the folder, but the lock: nothing else is removed."""
 
 
@@ -40,6 +41,15 @@ def store_folder(target: Path) -> Path:
 def _is_regular(path: Path) -> bool:
     """Return whether a path is a regular file: no link to another place, and nothing that may never end."""
     return stat.S_ISREG(path.lstat().st_mode)
+
+
+def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
+    """Yield the whole lines of a manifest: that of the batch, and those of its task results and failed runs."""
+    for text in content[: content.rfind(b"\n") + 1].splitlines():
+        with suppress(ValueError, RecursionError):
+            line = json.loads(text)
+            if isinstance(line, dict) and _FILE_NAME.fullmatch(str(line.get("file", _FILE.format(0)))):
+                yield line
 
 
 class CheckpointStore:
@@ -60,11 +70,13 @@ class CheckpointStore:
         """Whether no task result is stored."""
         return self._next == 1
 
-    def begin(self, scene: str, versions: str, replaces: str) -> None:
+    def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
         """Note the batch that the folder is for, if it is a new one."""
         if not self.scene:
             self.scene, self.versions, self.replaces = scene, versions, replaces
-            self._append({"scene": scene, "versions": versions, "replaces": replaces})
+            began = datetime.now(UTC).isoformat(timespec="seconds")
+            decisive = {"scene": scene, "versions": versions, "replaces": replaces}
+            self._append({**decisive, "command": command, "began": began})
 
     def readers(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield a function for each task result that reads it; it returns None for one that is damaged."""
@@ -95,13 +107,18 @@ class CheckpointStore:
                 raise
             sync_folder(self.folder)
         digest = hashlib.sha256(content).hexdigest()
-        self._append({"file": file, "sha256": digest, "realizations": result.realizations})
+        cells = {key: int(result.size[result.cell == i].sum()) for i, key in enumerate(result.keys)}
+        self._append({"file": file, "sha256": digest, "realizations": result.realizations, "cells": cells})
         self._next += 1
+
+    def note_failed(self, runs: list[tuple[str, int]], remark: str) -> None:
+        """Note runs that failed, as key of the cell and realisation, and why; the next batch repeats them."""
+        self._append({"failed": runs, "remark": remark})
 
     def clear(self) -> None:
         """Remove all that was written to the folder but the lock, since the folder stays locked while it exists."""
         with convert_os_errors(self.folder):
-            (self.folder / _MANIFEST).unlink(missing_ok=True)  # first: without it nothing else counts
+            (self.folder / MANIFEST).unlink(missing_ok=True)  # first: without it nothing else counts
             for path in self.folder.iterdir():
                 if _OWN_FILES.fullmatch(path.name):
                     shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
@@ -110,24 +127,23 @@ class CheckpointStore:
     def _read_manifest(self) -> list[dict[str, Any]]:
         """Return the lines of the manifest about task results; one that was not finished is cut off."""
         lines: list[dict[str, Any]] = []
-        manifest = self.folder / _MANIFEST
+        manifest = self.folder / MANIFEST
         if os.path.lexists(manifest) and not _is_regular(manifest):
             raise StoreError(f"{manifest}: is no ordinary file; remove it")
         content = manifest.read_bytes() if manifest.exists() else b""
         whole = content[: content.rfind(b"\n") + 1]
         if whole != content:
             os.truncate(manifest, len(whole))
-        for text in whole.splitlines():
-            with suppress(ValueError, RecursionError):
-                match json.loads(text):
-                    case {"scene": str(scene), "versions": str(versions), "replaces": str(replaces)}:
-                        self.scene, self.versions, self.replaces = scene, versions, replaces
-                    case {"file": str(file), "sha256": str()} as line if _FILE_NAME.fullmatch(file):
-                        lines.append(line)
+        for line in manifest_lines(whole):
+            match line:
+                case {"scene": str(scene), "versions": str(versions), "replaces": str(replaces)}:
+                    self.scene, self.versions, self.replaces = scene, versions, replaces
+                case {"file": str(), "sha256": str()}:
+                    lines.append(line)
         return lines
 
     def _append(self, line: dict[str, Any]) -> None:
-        manifest = self.folder / _MANIFEST
+        manifest = self.folder / MANIFEST
         with convert_os_errors(self.folder), manifest.open("ab") as file:
             before = file.tell()
             try:
@@ -160,11 +176,11 @@ def locked_store(target: Path) -> Iterator[CheckpointStore]:
         finally:
             if store.empty:
                 with suppress(OSError):
-                    (folder / _MANIFEST).unlink()
+                    (folder / MANIFEST).unlink()
     finally:
-        if {path.name for path in folder.glob("*")} == {_LOCK}:
+        if {path.name for path in folder.glob("*")} == {LOCK}:
             with suppress(OSError):
-                (folder / _LOCK).unlink()
+                (folder / LOCK).unlink()
                 folder.rmdir()
         os.close(lock)
 
@@ -176,7 +192,7 @@ def _acquire_lock(folder: Path, target: Path) -> int:
     while True:
         folder.mkdir(exist_ok=True)
         try:
-            lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+            lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         except FileNotFoundError:  # its last holder has just removed the folder
             continue
         try:
@@ -190,7 +206,7 @@ def _acquire_lock(folder: Path, target: Path) -> int:
                 os.close(lock)
                 raise
         with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(lock), os.stat(folder / _LOCK)):
+            if os.path.samestat(os.fstat(lock), os.stat(folder / LOCK)):
                 with suppress(OSError):  # the disk may be full; the holder is named only to be helpful
                     os.truncate(lock, 0)
                     os.write(lock, f"process {os.getpid()} on {platform.node()}\n".encode())

@@ -39,12 +39,15 @@ class CheckpointWriter:
         if self.store is not None:
             self.store.clear()
 
-    def begin(self, scene: str) -> None:
-        """Write checkpoints of this scene from now on; StoreError where there is no folder for them."""
+    def begin(self, scene: str, command: str) -> None:
+        """Write checkpoints of this scene from now on; StoreError where there is no folder for them.
+
+        ``command`` is what continues the batch, but for --fresh.
+        """
         if self._thread is None and self.target is not None:
             if self.store is None:
                 raise StoreError(f"{self.target}: the name is too long for a folder of parts; give a shorter one")
-            self.store.begin(scene, versions(), self._replaces)
+            self.store.begin(scene, versions(), self._replaces, command)
             self._thread = self._stack.enter_context(ThreadPoolExecutor(1, "roughmdr-writer"))
 
     @property
@@ -58,11 +61,17 @@ class CheckpointWriter:
         return store is not None and store.scene == scene and store.replaces == _stamp(self.target) != ""
 
     def put(self, result: TaskResult) -> None:
-        """Write a task result without its failed runs, if checkpoints are written; StoreError where that fails."""
-        done = result.select_rows((result.diagnostics["status"] != FAILED).nonzero()[0])
-        if self._thread is None or self.store is None or not len(done.first):
+        """Write a task result, and note its failed runs, if checkpoints are written; StoreError where that fails."""
+        if self._thread is None or self.store is None:
             return
-        self._pending.append(self._thread.submit(self.store.write, done))
+        failed = result.diagnostics["status"] == FAILED
+        if failed.any():
+            runs = [(result.keys[result.cell[row]], int(result.first[row])) for row in failed.nonzero()[0]]
+            remark = str(result.diagnostics["remark"][failed][0])
+            self._pending.append(self._thread.submit(self.store.note_failed, runs, remark))
+        if not failed.all():
+            done = result.select_rows((~failed).nonzero()[0])
+            self._pending.append(self._thread.submit(self.store.write, done))
         while self._pending and (self._pending[0].done() or len(self._pending) > _MAX_PENDING):
             self._pending.popleft().result()
 

@@ -1,0 +1,100 @@
+"""The text and the table of ``roughmdr info OUT.nc.parts``: how far a batch is that is not over."""
+
+import numpy as np
+
+from roughmdr.batch.resume.kept import Kept, Progress, progress_of
+from roughmdr.report.documents import PartCellTable, PartsTable
+from roughmdr.report.result_document import swept_table
+from roughmdr.report.summary import format_table
+from roughmdr.scene.sweep import describe_cell
+from roughmdr.schema.wording import printable
+
+_MAX_CELLS = 30
+
+
+def describe_parts(kept: Kept, *, cells: bool) -> str:
+    """Return how many runs are done, of which cells, and what goes on from there; of all ``cells``, or of the first."""
+    progress = progress_of(kept)
+    lines = [("kept", _counted(kept, progress))]
+    lines += _cells(kept, progress, len(progress.done) if cells else _MAX_CELLS)
+    if kept.failed:
+        reason = printable(kept.remark.partition("\n")[0])
+        lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
+    if kept.began:
+        lines.append(("begun", f"{kept.began}; something was kept last at {kept.last}"))
+    lines.append(("at work", _at_work(kept)))
+    lines.append(("goes on by", printable(kept.continued_by)))
+    return format_table(lines)
+
+
+def parts_table(kept: Kept) -> PartsTable:
+    """Return the same as a table for --json."""
+    progress = progress_of(kept)
+    scene = progress.scene
+    return {
+        "title": None if scene is None else scene.title,
+        "folder": str(kept.folder),
+        "output": str(kept.output),
+        "done": kept.runs,
+        "total": progress.total,
+        "failed": len(kept.failed),
+        "remark": kept.remark or None,
+        "cells": [_cell(progress, number) for number in range(len(progress.done))],
+        "began": kept.began or None,
+        "last": kept.last or None,
+        "holder": None if kept.holder is None else kept.holder._asdict(),
+        "holder_known": kept.holder_known,
+        "continued_by": kept.continued_by,
+        "versions": kept.versions or None,
+        "scene": kept.scene or None,
+    }
+
+
+def _cell(progress: Progress, number: int) -> PartCellTable:
+    assert progress.plan is not None  # or there would be no cells
+    sizes = progress.plan.sizes
+    index = tuple(int(each) for each in np.unravel_index(number, tuple(sizes.values()))) if sizes else ()
+    return {
+        "swept": swept_table(progress.plan.scene.sweep.coordinates(), sizes, index),
+        "done": progress.done[number],
+        "failed": progress.failed[number],
+        "total": progress.realizations if progress.total is not None else None,
+    }
+
+
+def _counted(kept: Kept, progress: Progress) -> str:
+    if not kept.scene:
+        return "nothing: a run has just begun here, or has just ended"
+    title = "" if progress.scene is None else f"{printable(progress.scene.title)}: "
+    if progress.total is not None:
+        return f"{title}{kept.runs} of {progress.total} runs"
+    more = ", of as many as the error asked for takes" if progress.scene is not None else ""
+    return f"{title}{kept.runs} runs{more}"
+
+
+def _cells(kept: Kept, progress: Progress, most: int) -> list[tuple[str, str]]:
+    """Return a line for each cell of a sweep."""
+    if progress.plan is None:
+        reason = "other versions began the batch" if progress.scene is not None else "its scene cannot be read here"
+        return [("cells", f"not told: {reason}")] if kept.scene else []
+    if not progress.plan.sizes:
+        return []
+    of = f" of {progress.realizations}" if progress.total is not None else ""
+    lines = []
+    for number, values in enumerate(progress.plan.scene.sweep.cells()):
+        if number == most:
+            lines.append(("", f"... and {len(progress.done) - most} more cells"))
+            break
+        fails = f", {progress.failed[number]} failed" if progress.failed[number] else ""
+        told = f"{progress.done[number]}{of}{fails}  {printable(describe_cell(values))}"
+        lines.append(("" if number else "cells", told))
+    return lines
+
+
+def _at_work(kept: Kept) -> str:
+    if kept.holder is None:
+        return "no run: it was interrupted, or is about to end"
+    process, host, since = kept.holder
+    if kept.holder_known:
+        return f"process {process} since {since}"
+    return f"perhaps process {process} on {printable(host)}, since {since}; that cannot be told from here"
