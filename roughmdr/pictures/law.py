@@ -107,7 +107,7 @@ def _style(curve: Curve, palette: Sequence[str], cells: int) -> dict[str, Any]:
     """Return colour and line style: by branch for a single cell, else by cell."""
     dashed = {"ls": BRANCH_LINESTYLES[curve.branch]}
     if cells == 1:
-        return {"color": BRANCH_COLOURS[curve.branch], "lw": 2.2, "zorder": 3, **dashed}
+        return {"color": BRANCH_COLOURS[curve.branch], "lw": 2.8, "zorder": 3, **dashed}
     return {"color": palette[curve.cell], "lw": 1.6 if cells <= MAX_NAMED else 0.8, "zorder": 3, **dashed}
 
 
@@ -120,7 +120,7 @@ def _overlay_style(label: str, overlays: list[str], colour: str | None) -> dict[
     from matplotlib.patheffects import Normal, withStroke
 
     behind, dark = rcParams["axes.facecolor"], rcParams["text.color"]
-    around = {"path_effects": [withStroke(linewidth=2.4, foreground=behind, alpha=0.7), Normal()], "zorder": 4}
+    around = {"path_effects": [withStroke(linewidth=1.8, foreground=behind, alpha=0.5), Normal()], "zorder": 4}
     if label == EXPECTED:
         return {"color": dark, "lw": 0.9, **around}
     if label == REFERENCE:
@@ -159,7 +159,8 @@ def _add_legend(
     grey = None if len(cells) == 1 else "0.4"
     handles += [Line2D([], [], label=label, **_overlay_style(label, overlays, grey)) for label in overlays]
     if handles:
-        columns = 4 if len(cells) == 1 else 2
+        width = 2.0 if len(cells) == 1 else 3.2  # [in] of an entry
+        columns = max(int(figure.get_figwidth() / width), 1)
         figure.legend(handles=handles, loc="outside lower center", frameon=False, fontsize=8, ncols=columns)
 
 

@@ -19,6 +19,8 @@ _MAX_RUNS, _SOME_RUNS = 64, 16
 _MOST = (0.05, 0.95)
 _DECADES = 4.0  # of a logarithmic axis at most
 _EXPONENTIAL = 1e3  # ratio of the largest to the least positive value from which an axis is logarithmic
+_INSETS = ((0.42, 0.5, 0.55, 0.46), (0.12, 0.12, 0.36, 0.24))
+"""Places of an inset, in shares of a panel: left, bottom, width and height."""
 _SIGNED = ("force", "pressure", "stiffness")
 
 Style = dict[str, Any]
@@ -165,9 +167,25 @@ def _add_tension_inset(
     tense = x[values < 0.02 * lowest]
     if not -0.2 * values.max() < lowest < 0.0 or np.ptp(tense) == 0.0:
         return
-    inset = ax.inset_axes((0.42, 0.5, 0.55, 0.46))
+    free = [box for box in _INSETS if not _crosses(ax, box, panel, scales)]
+    if not free:
+        return
+    inset = ax.inset_axes(free[0])
     draw_means(inset)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
     inset.set(xlim=(tense.min(), tense.max()), ylim=(1.4 * lowest, -1.4 * lowest))
     inset.tick_params(labelsize=7)
     inset.set_title("tension", fontsize=7, pad=2)
+
+
+def _crosses(ax: "Axes", box: tuple[float, float, float, float], panel: Panel, scales: tuple[Scale, Scale]) -> bool:
+    """Return whether a curve runs through a part of a panel, or close by."""
+    (left, bottom, width, height), (x_scale, scale), margin = box, scales, 0.04
+    to_shares = ax.transData + ax.transAxes.inverted()
+    for curve in panel.curves:
+        x, y = to_shares.transform(np.column_stack([x_scale(curve.x), scale(curve.middle)])).T
+        inside = (x > left - 2.0 * margin) & (x < left + width + margin)
+        inside &= (y > bottom - 2.0 * margin) & (y < bottom + height + margin)
+        if inside.any():
+            return True
+    return False

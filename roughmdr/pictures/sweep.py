@@ -23,6 +23,7 @@ _MAX_KEYS, _FLAT = 3, 2
 _MAX_PANELS = 12
 _MAX_TICKS = 7
 _MAX_WRITTEN = 36  # cells of a colour map in which the numbers are written
+_DECADES = 100.0  # ratio of numbers from which their axis is logarithmic
 _EVEN = 1e-6  # of a step of a logarithmic axis
 _LUMINANCE = (0.2126, 0.7152, 0.0722)  # of red, green and blue: ITU-R BT.709
 _DARK = 0.5
@@ -48,6 +49,13 @@ class Axis(NamedTuple):
         log = values.size > 2 and bool((values > 0.0).all()) and _is_even(np.log(values)) and not _is_even(values)
         return cls(name, scale, scale(values), (), log)
 
+    def spread_evenly(self) -> "Axis":
+        """Return the axis with cells of one width, under their values, where these are few and unevenly spaced."""
+        if self.names or self.log or self.places.size > _MAX_TICKS or _is_even(self.places):
+            return self
+        names = tuple(f"{place:.3g}" for place in self.places)
+        return self._replace(places=np.arange(self.places.size, dtype=np.float64), names=names)
+
     @property
     def edges(self) -> Floats:
         """Edges of the cells around its places."""
@@ -63,15 +71,15 @@ class Axis(NamedTuple):
 
 def _is_even(values: Floats) -> bool:
     steps = np.diff(values)
-    return bool(np.ptp(steps) <= _EVEN * np.abs(steps).max())
+    return values.size < 3 or bool(np.ptp(steps) <= _EVEN * np.abs(steps).max())
 
 
 def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
     """Draw a number of each cell of a sweep against its swept keys.
 
     The number is a variable of the result, the pull-off force where there is one unless it is named; of a law where
-    ``request.at`` says, or else at its largest. Bars are two standard errors, a band the error of the model. StoreError
-    where nothing was swept or computed, where there is no such variable, or where more than three keys were swept.
+    ``request.at`` says, or else at its largest. Bars are two standard errors. Numbers over two decades have a
+    logarithmic axis unless ``request.log`` says otherwise, those below 0 turned round. StoreError where nothing was swept or computed, where there is no such variable, or where more than three keys were swept.
     """
     from matplotlib.figure import Figure
 
@@ -79,6 +87,9 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
         raise StoreError("there is nothing to draw: no run was computed")
     axes = _axes(result, request.x)
     number = number_of(result, request)
+    log = _spans_decades(number.mean) if request.log is None else request.log
+    if log and np.nanmax(number.mean) < 0.0:
+        number = number._replace(name=f"minus {number.name}", mean=-number.mean)
     swept = list(swept_sizes(result))
     order = [swept.index(axis.name if axis.name in swept else "cell") for axis in axes]
     scale = Scale.of(number.mean, number.name, number.unit)
@@ -86,14 +97,14 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
     if len(axes) == 1:
         figure = Figure(figsize=(6.4, 4.8), layout="constrained")
         _draw_points(figure.subplots(), axes[0], mean, error, scale.label)
-        if request.log:
+        if log:
             figure.axes[0].set_yscale("log")
     else:
         panels = 1 if len(axes) == _FLAT else min(_MAX_PANELS, axes[_FLAT].places.size)
         columns = min(panels, 3)
         size = (2.2 + 4.4 * columns, 5.2) if panels == 1 else (2.2 + 3.4 * columns, 1.6 + 2.9 * -(-panels // columns))
         figure = Figure(figsize=size, layout="constrained")
-        _draw_maps(figure, axes, mean, error, scale.label, log=bool(request.log))
+        _draw_maps(figure, axes, mean, error, scale.label, log=log)
     notes = [note, _words(result, number, scale), _model_note(result, number)]
     set_title(figure, result.attrs["title"], [each for each in notes if each])
     return figure
@@ -139,13 +150,20 @@ def _words(result: Labelled, number: Number, scale: Scale) -> str:
     return ", ".join(part for part in told if part)
 
 
+def _spans_decades(numbers: Floats) -> bool:
+    """Return whether numbers of one sign lie over several decades."""
+    sizes = np.abs(numbers[np.isfinite(numbers)])
+    same = sizes.size > 0 and bool((numbers[np.isfinite(numbers)] > 0.0).all() or np.nanmax(numbers) < 0.0)
+    return same and bool(sizes.max() > _DECADES * sizes.min())
+
+
 def _model_note(result: Labelled, number: Number) -> str:
     """Return how far the model may be off, where the number is a force: of a pull-off, that of pull-offs."""
     if number.unit not in ("N", "Pa"):
         return ""
     lines = [text for _, text in trust_of_result(result)]
     own = [text for text in lines if text.startswith("the pull-off force itself")]
-    if number.name.startswith("pull_off") and own:
+    if "pull_off" in number.name and own:
         return f"model: {own[0]}"
     return f"model: {dict(trust_of_result(result))['trust']}"
 
@@ -191,6 +209,7 @@ def _draw_maps(figure: "Figure", axes: list[Axis], mean: Floats, error: Floats, 
     from matplotlib.colors import LogNorm, Normalize
 
     panels = [(0, "")] if len(axes) == _FLAT else _panel_titles(axes[_FLAT])
+    axes = [axis.spread_evenly() for axis in axes[:_FLAT]]
     mean, error = (values.reshape(*values.shape[:_FLAT], -1) for values in (mean, error))
     columns = min(len(panels), 3)
     grid = figure.subplots(-(-len(panels) // columns), columns, squeeze=False, sharex=True, sharey=True)

@@ -9,7 +9,7 @@ from typing import Any
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.wording import short_repr
 
-_PREFIX = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
+_PREFIX = {"f": -15, "p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9, "T": 12}
 _LENGTHS = {"nano": -9, "micro": -6, "milli": -3, "centi": -2, "": 0}
 _ENDINGS = ("er", "re", "ers", "res")
 _METRES = {f"{prefix}met{end}": Decimal(10) ** power for prefix, power in _LENGTHS.items() for end in _ENDINGS}
@@ -49,7 +49,7 @@ _EXAMPLES = {
     "m-2": '"1e9 /m^2"', "N": '"3 mN"',
     "N/m": '"0.1 N/m"',
 }  # fmt: skip
-_SHOWN = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_SHOWN = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2"}
 """Units as results have them, in the spelling of a scene."""
 _POWERS = {"m^2": 2, "/m^2": -2}

@@ -29,7 +29,7 @@ def two() -> xr.Dataset:
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_pull_off_over_one_key_with_its_error(keep: str) -> None:
     made = swept({"asperities.height.std": STD}, output={"keep": keep, "variables": ["force"]})
-    figure = rm.plot(made, kind="sweep")
+    figure = rm.plot(made, kind="sweep", log=False)
     ax = figure.axes[0]
     assert (ax.get_xscale(), ax.get_xlabel()) == ("log", "asperities.height.std [µm]")
     ((points, _, (bars,)),) = ax.containers
@@ -47,7 +47,7 @@ def test_the_pull_off_over_one_key_with_its_error(keep: str) -> None:
 
 
 def test_two_keys_are_a_colour_map_of_each_cell(two: xr.Dataset) -> None:
-    figure = rm.plot(two, kind="sweep")
+    figure = rm.plot(two, kind="sweep", log=False)
     ax, bar = figure.axes
     assert bar.get_ylabel() == "pull-off force [µN]"
     values = ax.collections[0].get_array()
@@ -56,13 +56,13 @@ def test_two_keys_are_a_colour_map_of_each_cell(two: xr.Dataset) -> None:
     assert len(written) == 12
     assert all("±" in text for text in written)
     assert_legible(figure)
-    other = rm.plot(two, kind="sweep", x="asperities.height.std")
+    other = rm.plot(two, kind="sweep", log=False, x="asperities.height.std")
     np.testing.assert_array_equal(other.axes[0].collections[0].get_array(), values.T)
 
 
 def test_three_keys_are_panels_with_one_colour_bar() -> None:
     made = swept({"adhesion.work": WORK, "asperities.height.std": STD, "asperities.radius.mean": RADIUS}, 2)
-    figure = rm.plot(made)
+    figure = rm.plot(made, log=False)
     panels = [ax for ax in figure.axes if ax.collections and ax.get_title()]
     assert [ax.get_title() for ax in panels] == [f"asperities.radius.mean = {r} µm" for r in (30, 60)]
     for number, ax in enumerate(panels):
@@ -136,3 +136,12 @@ def test_four_keys_need_a_choice() -> None:
     with pytest.raises(rm.StoreError, match="choose a value of"):
         rm.plot(made)
     assert_legible(rm.plot(made, select={"material.modulus": "2 MPa"}))
+
+
+def test_numbers_over_decades_have_a_logarithmic_axis_and_tensions_are_turned_round(two: xr.Dataset) -> None:
+    figure = rm.plot(two, kind="sweep")
+    lowest = two.pull_off_force.mean("realization")
+    assert float(lowest.min() / lowest.max()) > 100.0
+    assert figure.axes[1].get_ylabel() == "minus pull-off force [µN]"
+    values = figure.axes[0].collections[0].get_array()
+    np.testing.assert_allclose(values, -1e6 * lowest.T, rtol=1e-9)
