@@ -79,7 +79,8 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
 
     The number is a variable of the result, the pull-off force where there is one unless it is named; of a law where
     ``request.at`` says, or else at its largest. Bars are two standard errors. Numbers over two decades have a
-    logarithmic axis unless ``request.log`` says otherwise, those below 0 turned round. StoreError where nothing was swept or computed, where there is no such variable, or where more than three keys were swept.
+    logarithmic axis unless ``request.log`` says otherwise, those below 0 turned round. StoreError where nothing was
+    swept or computed, where there is no such variable, or where more than three keys were swept.
     """
     from matplotlib.figure import Figure
 
