@@ -140,6 +140,8 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
         (["fit", "curve.csv", "small.toml", "-o", "x.nc", "--free", "adhesion.work"], {"scipy", "numba"}),
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
+        (["plot", "out.nc", "-o", "x.png", "--kind", "map"], {"matplotlib", "scipy", "numba"}),
+        (["report", "out.nc", "-o", "x.html"], {"matplotlib"}),
         (["plot", "out.nc", "-o", "x.png", "--with-expected"], {"matplotlib", "scipy", "numba"}),
         (["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
     ],
