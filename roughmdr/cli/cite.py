@@ -13,7 +13,10 @@ from roughmdr.report.terminal import Command, print_text
 @click.argument("result", type=FILE)
 @click.option("--bibtex", is_flag=True, help="Print entries of BibTeX.")
 def cite(result: Path, bibtex: bool) -> None:
-    """Name the papers behind RESULT, which may also be a scene (.toml): those of all that it uses, and no others."""
+    """Name the papers behind RESULT.
+
+    Those of all that it uses, and no others. RESULT may also be a scene (.toml).
+    """
     from roughmdr.report.cite import describe_papers
 
     if result.suffix.lower() == ".toml":

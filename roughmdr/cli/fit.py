@@ -22,7 +22,9 @@ from roughmdr.report.terminal import Command, print_text
 @changes_option
 @fresh_option
 def fit(measured: Path, scene: Path, output: Path, free: str, changes: tuple[str, ...], fresh: bool) -> None:
-    """Fit parameters of SCENE to the curve in MEASURED, by its expected law.
+    """Fit parameters of SCENE to a measured curve.
+
+    The curve is that in MEASURED, the law the expected one of SCENE.
 
     MEASURED is CSV with columns such as "separation [um]", or "remote [um]" of a machine's spring, and "force [mN]" or
     "pressure [kPa]", in the order of the measurement, loading then unloading; "force_error [mN]" weights the points.

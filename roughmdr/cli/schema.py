@@ -12,9 +12,9 @@ from roughmdr.report.terminal import Command, print_text
 @click.option("-o", "--output", type=OUTPUT, help="JSON file to write; printed without it.")
 @fresh_option
 def schema(output: Path | None, fresh: bool) -> None:
-    """Print the JSON Schema of scenes, by which editors complete and check them.
+    """Print the JSON Schema of scenes.
 
-    "roughmdr new" writes it beside a new scene. An existing file is replaced only if it is such a schema.
+    Editors complete and check scenes by it; "roughmdr new" writes it beside a new scene. An existing file is replaced only if it is such a schema.
     """
     from roughmdr.scene.schema_file import check_schema_file, schema_text, write_schema
 

@@ -50,12 +50,12 @@ class CellTable(TypedDict):
     """One cell of a sweep; the only one without a sweep. Errors are the largest of its realisations."""
 
     swept: dict[str, float | str]  # swept key, dots as underscores: value in SI, or name
-    realisations: int
+    realizations: int
     status: dict[str, int]  # "done", "failed", "not_run": number of runs, or 1 where only statistics are kept
     remark: str  # why a run failed, or is doubtful
     pull_off: PullOffTable | None
     model_error: float
-    parts: dict[str, float]  # of the model error
+    parts: dict[str, float]  # of the model error, by their names in results
     largest_contact_fraction: float
     trusted_separation: float  # [m]
     numerical_error: float
@@ -78,7 +78,7 @@ class ResultTable(TypedDict):
     file_size: int | None  # bytes
     sizes: dict[str, int]  # swept dimensions, in their order
     coordinates: dict[str, CoordinateTable]  # swept keys; with mode "zip" all over the dimension cell
-    realisations: int  # of a cell, at most
+    realizations: int  # of a cell, at most
     steps: int
     control: str  # the quantity that the path controls
     variables: list[str]
@@ -124,7 +124,7 @@ class PlanTable(TypedDict):
     title: str
     sizes: dict[str, int]
     coordinates: dict[str, CoordinateTable]
-    realisations: int  # of a cell, in the first round
+    realizations: int  # of a cell, in the first round
     steps: int
     control: str
     variables: list[str]

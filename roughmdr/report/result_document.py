@@ -33,7 +33,7 @@ def result_table(result: Labelled, file: Path | None, elapsed: float | None = No
         "file_size": None if file is None else file.stat().st_size,
         "sizes": sizes,
         "coordinates": coordinate_tables(result.coordinates, sizes),
-        "realisations": layout.realizations_of(result),
+        "realizations": layout.realizations_of(result),
         "steps": result.sizes["step"],
         "control": layout.control_of(result),
         "variables": layout.stored_variables(result),
@@ -86,12 +86,12 @@ def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
     accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
     return {
         "swept": swept_table(result.coordinates, layout.swept_sizes(result), cell),
-        "realisations": status.size if np.isnan(counts).any() else int(counts[0]),
+        "realizations": status.size if np.isnan(counts).any() else int(counts[0]),
         "status": {name: int((status == code).sum()) for code, name in enumerate(STATUSES)},
         "remark": first_remark(result, cell),
         "pull_off": _pull_off(result, cell),
         "model_error": largest("model_error"),
-        "parts": {name.removesuffix("_error"): largest(name) for name in PARTS},
+        "parts": {name: largest(name) for name in PARTS},
         "largest_contact_fraction": largest("largest_contact_fraction"),
         "trusted_separation": largest("trusted_separation"),
         "numerical_error": largest("numerical_error"),

@@ -64,7 +64,7 @@ def assert_keys(table: dict[str, Any], declared: Any) -> None:
 def test_a_run_and_what_info_finds_in_it() -> None:
     result = told("run", "few.toml", "-o", "out.nc", "--set", "path.separation.start=6 sigma")["result"]
     assert_keys(result, documents.ResultTable)
-    assert (result["title"], result["file"], result["realisations"], result["steps"]) == (
+    assert (result["title"], result["file"], result["realizations"], result["steps"]) == (
         "A small scene",
         "out.nc",
         3,
@@ -79,7 +79,7 @@ def test_a_run_and_what_info_finds_in_it() -> None:
     assert cell["pull_off"]["standard_error"] == pytest.approx(force.std(ddof=1) / math.sqrt(3.0), rel=1e-12)
     assert cell["pull_off"]["of_mean"] == float(data.pull_off_force_of_mean)
     assert cell["model_error"] == float(data.model_error.max())
-    assert cell["parts"]["slope"] == float(data.slope_error.max())
+    assert cell["parts"]["slope_error"] == float(data.slope_error.max())
     assert cell["status"] == {"done": 3, "failed": 0, "not_run": 0}
     assert result["seed"] == 7
     assert result["elapsed"] > 0.0
@@ -110,7 +110,7 @@ def test_statistics_an_error_asked_for_and_a_path_of_one_way() -> None:
     write("s.toml", {**FEW, "output": {"keep": "statistics"}, "sweep": {"mode": "zip", "adhesion.work": [0.01, 0.05]}})
     kept = told("run", "s.toml", "-o", "s.nc")["result"]
     assert kept["sizes"] == {"cell": 2}
-    assert [cell["realisations"] for cell in kept["cells"]] == [3, 3]
+    assert [cell["realizations"] for cell in kept["cells"]] == [3, 3]
     write("a.toml", {**FEW, "batch": {}, "accuracy": {"relative": 0.5, "max_realizations": 8}})
     (cell,) = told("run", "a.toml", "-o", "a.nc")["result"]["cells"]
     assert cell["accuracy"]["method"] in ("sampled", "stratified", "expected")
@@ -125,7 +125,7 @@ def test_a_plan() -> None:
     write("swept.toml", SWEPT)
     plan = told("plan", "swept.toml", "--workers", "1")["plan"]
     assert_keys(plan, documents.PlanTable)
-    assert (plan["runs"], plan["workers"], plan["realisations"], plan["steps"]) == (12, 1, 3, 80)
+    assert (plan["runs"], plan["workers"], plan["realizations"], plan["steps"]) == (12, 1, 3, 80)
     assert plan["time"]["total"] > plan["time"]["start_up"] > 0.0
     assert any("asperities.radius = 1e300 m" in failure for failure in plan["failures"])
     for cell in plan["cells"]:
