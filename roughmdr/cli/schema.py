@@ -14,7 +14,8 @@ from roughmdr.report.terminal import Command, print_text
 def schema(output: Path | None, fresh: bool) -> None:
     """Print the JSON Schema of scenes.
 
-    Editors complete and check scenes by it; "roughmdr new" writes it beside a new scene. An existing file is replaced only if it is such a schema.
+    Editors complete and check scenes by it; "roughmdr new" writes it beside a new scene. An existing file is replaced
+    only if it is such a schema.
     """
     from roughmdr.scene.schema_file import check_schema_file, schema_text, write_schema
 
