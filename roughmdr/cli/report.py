@@ -16,8 +16,8 @@ from roughmdr.report.terminal import Command, print_text
 def report(result: Path, output: Path, fresh: bool) -> None:
     """Write RESULT as one page of HTML.
 
-    It shows pictures, errors, scene, provenance, and what to cite, and needs no other file. A page that is there already
-    is replaced, since RESULT writes it again.
+    It shows pictures, errors, scene, provenance, and what to cite, and needs no other file. A page that is there
+    already is replaced, since RESULT writes it again.
     """
     from roughmdr.report.page import check_page, page_of
     from roughmdr.storage.files import replace_atomically
