@@ -39,7 +39,7 @@ class Cost(NamedTuple):
 
 
 class _Time(NamedTuple):
-    """Time [s] of a part of a run."""
+    """Time [s] of a part of a run: that of its thread, which others on the machine do not lengthen."""
 
     drawing: float
     summing: float
@@ -81,7 +81,7 @@ def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float
     run_part(1, 1)  # what is loaded at its first use does not count
     least = run_part(1, 1)
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, *sizes[size + 1]), len(sizes), budget)
-    taken = _Time(*np.mean(times, axis=0).tolist())
+    taken = _Time(*np.median(times, axis=0).tolist())
     least_known = law_seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
     whole = max(scaled(taken, size, count, cell.steps), least_known)
     return Cost(whole, memory * count / sizes[size][0], *sizes[size])
@@ -104,18 +104,18 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
         return Cost(foreseen[-1], 0.0)
 
     def run(size: int) -> _Time:
-        started = time.perf_counter()
+        started = time.thread_time()
         if drawn:
             simulate_ensemble(cell.scene, parts[size].path, _drawn(cell.scene, sizes[size][0], estimator), variables)
         else:
             simulate_realization(cell.scene, parts[size].path, 0, variables, estimator)
-        return _Time(0.0, time.perf_counter() - started)
+        return _Time(0.0, time.thread_time() - started)
 
     def scaled(taken: _Time, size: int, other: int) -> float:
         return taken.total * foreseen[other] / foreseen[size]
 
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, size + 1), len(parts), budget)
-    taken = _Time(*np.mean(times, axis=0).tolist())
+    taken = _Time(*np.median(times, axis=0).tolist())
     more = total / sections[size].expected_count if drawn else 1.0
     return Cost(scaled(taken, size, -1), memory * more, *sizes[size])
 
@@ -167,13 +167,13 @@ def _thinned(cell: Cell, steps: int) -> LoadingPath:
 
 
 def _draw_and_sum(scene: Scene, path: LoadingPath, count: int, estimator: str, variables: list[str]) -> _Time:
-    started = time.perf_counter()
+    started = time.thread_time()
     ensemble = _drawn(scene, count, estimator)
-    drawn = time.perf_counter()
+    drawn = time.thread_time()
     some = _some_of(ensemble, count)
-    began = time.perf_counter()
+    began = time.thread_time()
     simulate_ensemble(scene, path, some, variables)
-    return _Time(drawn - started, time.perf_counter() - began)
+    return _Time(drawn - started, time.thread_time() - began)
 
 
 def _drawn(scene: Scene, count: int, estimator: str) -> Ensemble:
