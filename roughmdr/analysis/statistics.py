@@ -23,14 +23,21 @@ if TYPE_CHECKING:
 _NAMES = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
 _INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
 _OVER_CELLS = ("pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area")
+_ERROR = "_interpolation_error"
 _OF_CURVES = ("cell_key", "remark")
 """Coordinates that describe the runs whose curves were kept."""
 
 
 def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
-    """Return mean, standard error, least and greatest over the realisations of each curve, and the rest merged."""
+    """Return mean, standard error, least and greatest over the realisations of each curve, and the rest merged.
+
+    Of values that were found on curves likewise, over the realisations that have them, with the largest of their
+    interpolation errors.
+    """
     import xarray as xr
 
+    if _is_found(dataset):
+        return _of_found(dataset)
     check_result(dataset)
     if keeps_statistics(dataset):
         raise StoreError("statistics needs the curves of realisations; this result has their statistics already")
@@ -64,6 +71,26 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     return result.set_coords("remark") if "remark" in bare else result
 
 
+def _is_found(dataset: "xr.Dataset") -> bool:
+    """Return whether a dataset holds values that were found on the curves of realisations."""
+    return "realization" in dataset.dims and any(str(name).endswith(_ERROR) for name in dataset.data_vars)
+
+
+def _of_found(dataset: "xr.Dataset") -> "xr.Dataset":
+    """Return the statistics of values that were found on curves."""
+    import xarray as xr
+
+    found: dict[str, xr.DataArray] = {}
+    for name in map(str, dataset.data_vars):
+        array = dataset[name]
+        if name.endswith(_ERROR):
+            found[name] = array.max("realization", keep_attrs=True) if "realization" in array.dims else array
+        else:
+            found |= _statistics(dataset, name, array.notnull())
+    coordinates = {name: array for name, array in dataset.coords.items() if "realization" not in array.dims}
+    return xr.Dataset(found, coords=coordinates, attrs=dataset.attrs)
+
+
 def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "dict[str, xr.DataArray]":
     """Return the statistics of a variable over the realisations that are counted."""
     import xarray as xr
@@ -89,7 +116,7 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
     }
     if name not in PULL_OFF:
         attrs["mean"]["ancillary_variables"] = f"{name}_sem"
-    if name == "stiffness" and (known := _has_variance(dataset)) is not None:
+    if name == "stiffness" and "step" in dataset.dims and (known := _has_variance(dataset)) is not None:
         parts["sem"] = parts["sem"].where(known)
         attrs["sem"]["comment"] = _INFINITE_VARIANCE
     return {f"{name}_{statistic}": part.assign_attrs(attrs[statistic]) for statistic, part in parts.items()}

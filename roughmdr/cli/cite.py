@@ -15,7 +15,7 @@ from roughmdr.report.terminal import Command, print_text
 def cite(result: Path, bibtex: bool) -> None:
     """Name the papers behind RESULT.
 
-    Those of all that it uses, and no others. RESULT may also be a scene (.toml).
+    Those of all that it uses, and no others. RESULT may also be a scene (.toml) or a fit.
     """
     from roughmdr.report.cite import describe_papers
 
@@ -24,8 +24,13 @@ def cite(result: Path, bibtex: bool) -> None:
 
         print_text(describe_papers(read(result).toml, None, bibtex=bibtex))
         return
-    from roughmdr.storage.result_file import read_result
+    from roughmdr.storage.result_file import is_fit, read_result
 
+    if is_fit(result):
+        from roughmdr.fitting.stored import read_fit
+
+        print_text(describe_papers(read_fit(result).attrs["scene"], None, bibtex=bibtex))
+        return
     data = read_result(result)
     warn_of(result, data.integrity_fault())
     print_text(describe_papers(data.attrs["scene"], data, bibtex=bibtex))

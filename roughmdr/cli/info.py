@@ -28,7 +28,14 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
     if parts.is_dir() and not result.exists():
         raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.info import describe
-    from roughmdr.storage.result_file import read_result
+    from roughmdr.storage.result_file import is_fit, read_result
+
+    if not as_json and is_fit(result):
+        from roughmdr.fitting.stored import read_fit
+        from roughmdr.fitting.words import describe_fit
+
+        print_text(describe_fit(read_fit(result)))
+        return
 
     data = read_result(result)
     warn_of(result, data.integrity_fault())

@@ -1,11 +1,28 @@
-"""Validation of the file of a fit, which anyone may have changed."""
+"""Reading the file of a fit, which anyone may have changed."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
+from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.result_file import FIT
 
 _TEXTS = ("title", "scene", "trust", "history")
 _ENDS = ("", "_standard_error", "_low", "_high")
+
+
+def read_fit(path: Path) -> Labelled:
+    """Return the file of a fit; StoreError if it is none, or not as ``fit`` writes it."""
+    try:
+        data = read_netcdf(path)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if data.attrs.get("kind") != FIT:
+        raise StoreError(f"{path}: holds no fit")
+    if fault := fit_fault(data):
+        raise StoreError(f"{path}: not a fit as roughmdr writes it: {fault}")
+    return data
 
 
 def fit_fault(data: Labelled) -> str:

@@ -19,21 +19,26 @@ def describe_parameters(fit: Labelled) -> list[str]:
     return [f"{key:<{widest}}  {_with_interval(fit, key.replace('.', '_'))}" for key in keys]
 
 
+def describe_shifts(fit: Labelled) -> str:
+    """Return by how much the error of the law may shift the parameters; empty where that is not known."""
+    shifts = [_shift(fit, key) for key in parameter_keys(fit) if _has_shift(fit, key.replace(".", "_"))]
+    return f"not in the intervals: that of the law may shift {', '.join(shifts)}" if shifts else ""
+
+
 def parameter_keys(fit: Labelled) -> list[str]:
     """Return the keys of the fitted parameters."""
     return list(map(str, fit.coordinates["parameter_name"].values))
 
 
 def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
-    keys = parameter_keys(fit)
     for i, line in enumerate(describe_parameters(fit)):
         yield "" if i else "fitted", line
     yield "intervals", "± one standard error; in parentheses 95 %"
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
     yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
-    if shifts := [_shift(fit, key) for key in keys if _has_shift(fit, key.replace(".", "_"))]:
-        yield "model error", f"not in the intervals: that of the law may shift {', '.join(shifts)}"
+    if shifts := describe_shifts(fit):
+        yield "model error", shifts
     yield "trust", str(fit.attrs["trust"])
     yield "computed", f"{_number(fit, 'evaluation_count'):.0f} laws in {format_seconds(_number(fit, 'run_time'))}"
     for text in str(fit.attrs.get("warnings", "")).splitlines():

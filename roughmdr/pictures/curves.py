@@ -84,6 +84,11 @@ def drawn_against(result: Labelled, asked: str | None) -> str:
     return asked
 
 
+def adheres(result: Labelled) -> bool:
+    """Return whether the scene of a result has adhesion, so that contacts detach in jumps."""
+    return "adhesion" in parse_toml(result.attrs["scene"])
+
+
 def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
     """Yield the curves of a quantity over another, cell by cell."""
     branches = result.coordinates["branch"].values
@@ -96,14 +101,14 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
     model_error = _model_error(result, name, mean)
     mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
     x_mean, xs = x.scaled(x_mean), x.scaled(xs)
-    adheres = "adhesion" in parse_toml(result.attrs["scene"])
+    sticky = adheres(result)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         of_cell, x_of_cell = (values[cell][done[cell]] if runs.size else values[cell] for values in (runs, xs))
         for leg, steps in enumerate(legs):
             branch, some = str(branches[steps[0]]), of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off
-            if name == "stiffness" and adheres and branch == "unloading":  # its variance is infinite
+            if name == "stiffness" and sticky and branch == "unloading":  # its variance is infinite
                 middle, low, high = _medians(middle, some)
                 some = some[:0]
             yield Curve(

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.fitting.words import describe_parameters
+from roughmdr.fitting.words import describe_parameters, describe_shifts
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
 from roughmdr.storage.labelled import Labelled
 
@@ -39,7 +39,10 @@ def draw_fit(fit: Labelled) -> "Figure":
     law.set_ylabel(y.label)
     figure.legend(*law.get_legend_handles_labels(), loc="outside lower center", frameon=False, fontsize=8, ncols=3)
     residual.set(xlabel=x.label, ylabel=r.label)
-    set_title(figure, str(fit.attrs["title"]), [" ".join(line.split()) for line in describe_parameters(fit)])
+    notes = [" ".join(line.split()) for line in describe_parameters(fit)]
+    if shifts := describe_shifts(fit):
+        notes.append(f"model error {shifts}")
+    set_title(figure, str(fit.attrs["title"]), notes)
     return figure
 
 

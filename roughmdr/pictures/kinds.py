@@ -10,6 +10,7 @@ from roughmdr.pictures.select import along_longest, cell_of, select
 from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import LAW_VARIABLES
 
 
 class Kind(NamedTuple):
@@ -23,7 +24,7 @@ class Kind(NamedTuple):
 
 def draw_request(source: Drawable, request: Request) -> Picture:
     """Return the picture that is asked for; StoreError where its kind has no such data or option."""
-    name = _usual(source) if request.kind is None else request.kind
+    name = _usual(source, request) if request.kind is None else request.kind
     if name not in KINDS:
         raise StoreError(f"kind is {name!r}, which is none{suggestion(name, [*KINDS])}")
     kind = KINDS[name]
@@ -36,10 +37,17 @@ def draw_request(source: Drawable, request: Request) -> Picture:
     return kind.draw(source, request)
 
 
-def _usual(source: Drawable) -> str:
-    """Return the kind of picture that answers the usual question: of many cells the sweep, else the law."""
+def _usual(source: Drawable, request: Request) -> str:
+    """Return the kind of picture that the options mean, or else the usual one: of many cells the sweep, else the law."""
     if source.content != "result":
         return "map" if source.content == "ensemble" else "fit"
+    curves = set(LAW_VARIABLES)
+    if request.at or any(name not in curves for name in request.variables):
+        return "sweep" if len(cells_of(source.data)) > 1 else "law"
+    if request.x in curves:
+        return "law"
+    if request.x is not None:
+        return "sweep"
     return "sweep" if len(cells_of(source.data)) > MAX_NAMED else "law"
 
 

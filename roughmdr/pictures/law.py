@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
+from roughmdr.pictures.curves import Curve, Quantity, adheres, curves_of, drawn_against
 from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
-from roughmdr.pictures.panel import MAX_NAMED, Mark, Panel, draw_panel
+from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
 from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, THEORY_COLOURS, Scale, colours, set_title
 from roughmdr.report.trust import trust_of_result
-from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, swept_sizes
+from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, realizations_of, swept_sizes
 from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.labelled import Array, Labelled
@@ -85,7 +85,7 @@ def draw_law(
         )  # fmt: skip
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
-    _add_legend(figure, result, overlays, palette, marked=marked, shaded=shaded)
+    _add_legend(figure, result, _entries(result, names, marked=marked, shaded=shaded), overlays, palette)
     notes = [options.note, _words(result, len(cells)), *_trust_note(result)]
     set_title(figure, result.attrs["title"], [note for note in notes if note])
     return figure
@@ -130,25 +130,43 @@ def _overlay_style(label: str, overlays: list[str], colour: str | None) -> dict[
     return {"color": shown, "ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 2.0, **around}
 
 
-def _add_legend(
-    figure: "Figure", result: Labelled, overlays: list[str], palette: Sequence[str], *, marked: bool, shaded: bool
-) -> None:
-    """Add a legend below the panels, and a colour bar of the swept values where cells are too many to name."""
+def _entries(result: Labelled, names: Sequence[str], *, marked: bool, shaded: bool) -> list[Any]:
+    """Return the entries of the legend of a single cell: its branches, bands and marks."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
+    branches, blue = dict.fromkeys(map(str, result.coordinates["branch"].values)), BRANCH_COLOURS["loading"]
+    entries: list[Any] = [
+        Line2D([], [], color=BRANCH_COLOURS[each], ls=BRANCH_LINESTYLES[each], lw=2.2, label=each) for each in branches
+    ]
+    if realizations_of(result) > 1:
+        entries.append(Patch(color=blue, alpha=0.3, lw=0, label="± 2 standard errors"))
+    if result.sizes.get("realization", 0) > MAX_RUNS:
+        entries.append(Patch(color=blue, alpha=0.12, lw=0, label="9 of 10 realisations"))
+    if "stiffness" in names and "unloading" in branches and adheres(result):
+        entries.append(Patch(color=BRANCH_COLOURS["unloading"], alpha=0.3, lw=0, label="stiffness: median, 2 of 3"))
+    if holds(result, "model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
+        entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))
+    if shaded:
+        entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="contact beyond the range of trust"))
+    if marked:
+        style: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 4.5, "mfc": "white"}
+        entries.append(Line2D([], [], label="pull-off", color=BRANCH_COLOURS["unloading"], **style))
+    return entries
+
+
+def _add_legend(
+    figure: "Figure", result: Labelled, entries: list[Any], overlays: list[str], palette: Sequence[str]
+) -> None:
+    """Add a legend below the panels, and a colour bar of the swept values where cells are too many to name.
+
+    ``entries`` are those of a single cell.
+    """
+    from matplotlib.lines import Line2D
+
     cells, handles = cells_of(result), list[Any]()
     if len(cells) == 1:
-        branches = dict.fromkeys(map(str, result.coordinates["branch"].values))
-        handles += [
-            Line2D([], [], color=BRANCH_COLOURS[each], ls=BRANCH_LINESTYLES[each], lw=2.2, label=each)
-            for each in branches
-        ]
-        if shaded:
-            handles.append(Patch(color="0.5", alpha=0.2, lw=0, label="contact beyond the range of trust"))
-        if marked:
-            style: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 4.5, "mfc": "white"}
-            handles.append(Line2D([], [], label="pull-off", color=BRANCH_COLOURS["unloading"], **style))
+        handles += entries
     elif len(cells) <= MAX_NAMED:
         labels = [escape_controls(cell_label(result, cell)).replace("$", r"\$") for cell in cells]  # no mathematics
         handles += [
@@ -159,7 +177,7 @@ def _add_legend(
     grey = None if len(cells) == 1 else "0.4"
     handles += [Line2D([], [], label=label, **_overlay_style(label, overlays, grey)) for label in overlays]
     if handles:
-        width = 2.0 if len(cells) == 1 else 3.2  # [in] of an entry
+        width = 2.3 if len(cells) == 1 else 3.2  # [in] of an entry
         columns = max(int(figure.get_figwidth() / width), 1)
         figure.legend(handles=handles, loc="outside lower center", frameon=False, fontsize=8, ncols=columns)
 

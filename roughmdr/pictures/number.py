@@ -13,7 +13,7 @@ from roughmdr.result.layout import stored_variables, swept_sizes
 from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import PULL_OFF, RUN_VARIABLES
+from roughmdr.variables import LAW_VARIABLES, PULL_OFF, RUN_VARIABLES
 
 _PULL_OFF = "pull_off_force"
 _PER_AREA = {
@@ -43,7 +43,7 @@ def number_of(result: Labelled, request: Request) -> Number:
     if len(request.at) > 1:
         raise StoreError(f"at names {', '.join(request.at)}; a law is taken at one of them")
     name = request.variables[0] if request.variables else _usual(result, request)
-    if name in stored_variables(result):
+    if name in stored_variables(result) or (request.at and name in LAW_VARIABLES):
         return _of_curve(result, name, request)
     if request.per_area:
         name = _PER_AREA.get(name, name)
@@ -85,7 +85,12 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
             found = Labelled.of(at_value(result.to_xarray(), place, cast("ArrayLike", value), "loading"))
         except RoughmdrError as refused:
             raise StoreError(f"at {place} = {value}: {refused}") from None
+        if not holds(found, name):
+            available = [each.removesuffix("_mean") for each in found.variables if "interpolation" not in each]
+            raise StoreError(f"variable {name!r} is not in the result{suggestion(name, available)}")
         mean, error = mean_of(found, name)
+        if np.isnan(mean).all():
+            raise StoreError(f"at {place} = {value}: no loading reaches it")
         where = f"where loading reaches {place.replace('_', ' ')} {value}"
     shape = tuple(swept_sizes(result).values())
     mean, error = (quantity.scaled(values.reshape(shape)) for values in (mean, error))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MAX_NAMED = 8
 """Cells that a legend names, and whose errors are drawn; more are told apart by a colour bar."""
-_MAX_RUNS, _SOME_RUNS = 64, 16
+MAX_RUNS, _SOME_RUNS = 64, 16
 """Realisations that are drawn as lines; of more, the range of most of them is a band, and some are lines."""
 _MOST = (0.05, 0.95)
 _DECADES = 4.0  # of a logarithmic axis at most
@@ -100,7 +100,7 @@ def _draw_bands(ax: "Axes", curve: Curve, colour: str, scales: tuple[Scale, Scal
         ax.fill_between(x, middle - off, middle + off, color="0.5", alpha=0.25, lw=0, zorder=0.5)
     if alone and len(curve.runs) > 1:
         shown = len(curve.runs)
-        if shown > _MAX_RUNS:
+        if shown > MAX_RUNS:
             shown = _SOME_RUNS
             low, high = quantiles(curve.runs, list(_MOST), axis=0)
             ax.fill_between(x, scale(low), scale(high), color=colour, alpha=0.12, lw=0, zorder=1)
@@ -114,7 +114,7 @@ def _draw_bands(ax: "Axes", curve: Curve, colour: str, scales: tuple[Scale, Scal
 def _visible(panel: Panel) -> Floats:
     """Return the values that the axis must show."""
     shown = [curve.middle for curve in panel.curves] + [values for _, values, _ in panel.overlays]
-    shown.append(np.array([mark.y for mark in panel.marks]))
+    shown += [mark.y + np.array([-2.0, 2.0]) * np.nan_to_num(mark.y_error) for mark in panel.marks]
     if panel.quantity.variable != "stiffness" and panel.cells <= MAX_NAMED:
         shown += [edge for curve in panel.curves for edge in (curve.low, curve.high)]
     if panel.cells == 1 and panel.quantity.variable != "stiffness":
@@ -164,6 +164,8 @@ def _add_tension_inset(
     if not values.size or x.size != values.size:
         return
     lowest = float(values.min())
+    marks = [float(scale(mark.y - 2.0 * np.nan_to_num(mark.y_error))) for mark in panel.marks]
+    deepest = min([lowest, *marks])
     tense = x[values < 0.02 * lowest]
     if not -0.2 * values.max() < lowest < 0.0 or np.ptp(tense) == 0.0:
         return
@@ -173,7 +175,7 @@ def _add_tension_inset(
     inset = ax.inset_axes(free[0])
     draw_means(inset)
     inset.axhline(0.0, color="0.6", lw=0.6, zorder=0)
-    inset.set(xlim=(tense.min(), tense.max()), ylim=(1.4 * lowest, -1.4 * lowest))
+    inset.set(xlim=(tense.min(), tense.max()), ylim=(1.4 * deepest, -1.4 * deepest))
     inset.tick_params(labelsize=7)
     inset.set_title("tension", fontsize=7, pad=2)
 

@@ -64,6 +64,7 @@ def colours(count: int) -> list[str]:
 def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
     """Write a title, and smaller notes under it, above a figure, in lines that are not wider than the figure."""
     letters = int(_LETTERS_PER_INCH * figure.get_figwidth())
+    figure.set_label("\n".join(map(escape_controls, notes)))  # for those who write the title elsewhere
     lines = textwrap.wrap(escape_controls(title), int(0.9 * letters)) or [""]
     lines += [line for note in notes for line in textwrap.wrap(escape_controls(note), letters)]
     figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)

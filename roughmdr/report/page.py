@@ -34,6 +34,7 @@ class _Figure(NamedTuple):
     """A picture twice, each as PNG in base64, and in words for those who cannot see it."""
 
     words: str
+    caption: str
     light: str
     dark: str
 
@@ -131,10 +132,11 @@ def _figures(source: Drawable) -> Iterator[_Figure]:
 
 
 def _figure(source: Drawable, request: Request, words: str) -> _Figure:
-    pictures = []
+    pictures, caption = [], ""
     for style in (None, _DARK):
         with styled(style):
             figure = draw_request(source, request).figure
             figure.suptitle("")
+            caption = str(figure.get_label())
             pictures.append(base64.b64encode(png_of(figure)).decode())
-    return _Figure(words, *pictures)
+    return _Figure(words, caption, *pictures)

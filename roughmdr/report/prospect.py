@@ -12,6 +12,8 @@ from roughmdr.schema.units import format_quantity
 if TYPE_CHECKING:
     from roughmdr.batch.foresee import Foreseen, Prospect
 
+_ROUNDING = 1e-9  # of the largest pressure
+
 
 def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     """Yield the lines of the cells that were foreseen; only that nothing is known where none could be."""
@@ -60,5 +62,7 @@ def pressure_at_closest(cell: "Foreseen") -> float:
 
 
 def largest_tension(cell: "Foreseen") -> float:
-    """Return the largest tension of a cell with a nominal area [Pa]; 0 for none."""
-    return max(0.0, -float(cell.law.variables["pressure"].min()))
+    """Return the largest tension of a cell with a nominal area [Pa]; 0 for none, or for what is but rounding."""
+    pressure = cell.law.variables["pressure"]
+    tension = max(0.0, -float(pressure.min()))
+    return tension if tension > _ROUNDING * float(pressure.max()) else 0.0

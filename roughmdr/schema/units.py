@@ -15,6 +15,7 @@ _ENDINGS = ("er", "re", "ers", "res")
 _METRES = {f"{prefix}met{end}": Decimal(10) ** power for prefix, power in _LENGTHS.items() for end in _ENDINGS}
 _MICRON, _ANGSTROM = Decimal("1e-6"), Decimal("1e-10")
 _ALONE = {
+    "1": {"%": Decimal("0.01")},
     "m": {**_METRES, "micron": _MICRON, "microns": _MICRON, "angstrom": _ANGSTROM, "Å": _ANGSTROM},
     "J/m^2": {"erg/cm^2": Decimal("1e-3")},
 }
@@ -84,6 +85,8 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     if unit in ("", dimension):
         return Decimal(1)
     if dimension == DIMENSIONLESS:
+        if unit in _ALONE[DIMENSIONLESS]:
+            return _ALONE[DIMENSIONLESS][unit]
         raise RoughmdrError(f"has the unit {short_repr(unit)}, but is a plain number")
     spelled = unit.removeprefix("1").lstrip() if unit.startswith("1/") else unit
     spelled = spelled.replace("**", "^").replace("²", "^2").replace(" m-2", "/m^2").replace(" m^-2", "/m^2")

@@ -79,7 +79,8 @@ def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
         with LOCK, warnings.catch_warnings(action="ignore"), netCDF4.Dataset(path) as file:
             yield file
     except Exception as error:  # a damaged or foreign file can make the library raise anything
-        raise RoughmdrError(f"not a netCDF file that can be read ({error})") from None
+        reason = "a scene, of which roughmdr run makes a result" if path.suffix.lower() == ".toml" else error
+        raise RoughmdrError(f"not a netCDF file that can be read ({reason})") from None
 
 
 def _read_values(variable: "netCDF4.Variable[Any]") -> np.ndarray[Any, Any]:

@@ -42,9 +42,18 @@ def read_result(path: Path) -> Labelled:
         data = read_netcdf(path)
     except RoughmdrError as error:
         raise StoreError(f"{path}: {error}") from None
+    if data.attrs.get("kind") == FIT:
+        raise StoreError(f"{path}: holds a fit, no result; info, plot and cite show it, and run computes its scene")
     if fault := find_fault(data):
         raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
     return data
+
+
+def is_fit(path: Path) -> bool:
+    """Return whether a file holds a fit."""
+    with suppress(RoughmdrError):
+        return read_attribute(path, "kind") == FIT
+    return False
 
 
 def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
@@ -67,8 +76,7 @@ def check_same_kind(path: Path, kind: str) -> None:
         with suppress(RoughmdrError):
             same = read_dimensions(path).get("height") == ("asperity",)
     elif kind == FIT:
-        with suppress(RoughmdrError):
-            same = read_attribute(path, "kind") == FIT
+        same = is_fit(path)
     else:
         try:
             with path.open("rb") as file:

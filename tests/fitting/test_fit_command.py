@@ -103,7 +103,7 @@ def test_the_picture(folder: Path) -> None:
 
     figure = draw_fit(read_fit(folder / "fit.nc"))
     law, residual = figure.axes
-    assert [text.get_text() for text in law.get_legend().get_texts()] == [
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "fitted law",
         "measured, loading",
         "measured, unloading",
