@@ -52,7 +52,7 @@ class Quantity(NamedTuple):
         """Return numbers of the variable, over the swept keys and more, as they are drawn."""
         if self.area is None:
             return values
-        return np.asarray(values / self.area.reshape(*self.area.shape, *([1] * (values.ndim - self.area.ndim))))
+        return np.asarray(values / self.area.reshape((*self.area.shape, *([1] * (values.ndim - self.area.ndim)))))
 
     def in_cell(self, values: Floats, cell: tuple[int, ...]) -> Floats:
         """Return numbers of the variable in one cell as they are drawn."""

@@ -64,6 +64,16 @@ def test_a_variable_over_another_and_per_area(keep: str) -> None:
     assert counts.axes[0].get_ylabel() == "contacts per area [/mm²]"
 
 
+@pytest.mark.parametrize("changes", [{}, {"sweep": {"adhesion.work": [0.01, 0.05]}}])
+def test_the_pull_off_is_marked_per_area(changes: dict[str, Any]) -> None:
+    made = rm.run(scene(asperities=FEW, path=CLEAR, **changes))
+    figure = rm.plot(made, variables="force", per_area=True)
+    marks = [each for each in figure.axes[0].get_lines() if each.get_marker() == "o" and len(each.get_xydata()) == 1]
+    expected = np.ravel(made.pull_off_force.mean("realization") / made.nominal_area)
+    drawn = [float(each.get_ydata()[0]) * unit_of(figure.axes[0].get_ylabel()) for each in marks]
+    np.testing.assert_allclose(drawn, expected, rtol=1e-9)
+
+
 def test_an_exponential_law_has_a_logarithmic_axis_and_one_with_tension_none(
     result: xr.Dataset, without_adhesion: xr.Dataset
 ) -> None:
