@@ -136,3 +136,24 @@ def test_four_keys_need_a_choice() -> None:
     with pytest.raises(rm.StoreError, match="choose a value of"):
         rm.plot(made)
     assert_legible(rm.plot(made, select={"material.modulus": "2 MPa"}))
+
+
+@pytest.fixture(scope="module")
+def together() -> xr.Dataset:
+    return swept({"mode": "zip", "adhesion.work": [0.01, 0.05], "asperities.height.std": ["1 um", "2 um"]})
+
+
+def test_what_is_swept_together_is_named(together: xr.Dataset) -> None:
+    figure = rm.plot(together, kind="sweep")
+    assert "asperities.height.std changes along with it" in figure.axes[0].get_title() + str(figure.get_suptitle())
+
+
+def test_a_tension_has_no_logarithm(together: xr.Dataset) -> None:
+    with pytest.raises(rm.StoreError, match="some are not above 0"):
+        rm.plot(together, kind="sweep", log=True)
+
+
+def test_at_a_force_another_variable_is_drawn(together: xr.Dataset) -> None:
+    assert "contact area" in rm.plot(together, kind="sweep", at={"force": "10 uN"}).axes[0].get_ylabel()
+    with pytest.raises(rm.StoreError, match="does not go with force itself"):
+        rm.plot(together, kind="sweep", variables="force", at={"force": "10 uN"})
