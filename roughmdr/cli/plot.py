@@ -20,7 +20,7 @@ from roughmdr.report.terminal import Command, print_text
 @click.option("--log/--linear", default=None, help="Logarithmic axis or not. Default: where a law is exponential.")
 @click.option("--at", metavar="QUANTITY=VALUE", help='Of a sweep: where on the loading, as "force=1 mN".')
 @click.option("--select", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one value of a key; repeatable.")
-@click.option("--step", type=click.IntRange(min=0), help="Of a map or an asperity: step, from 0.")
+@click.option("--step", metavar="STEP", help='Of a map or an asperity: step, from 0, or "pull-off".')
 @click.option("--realization", type=click.IntRange(min=0), help="Of a map or an asperity: realisation, from 0.")
 @click.option("--asperity", type=click.IntRange(min=0), help="Of an asperity: its number, from the highest down.")
 @click.option("--with-expected", is_flag=True, help="Also draw the expected law of the scene.")
@@ -41,6 +41,8 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | Non
 
     check_picture(output, [file], fresh=fresh)
     options["variables"] = tuple(options["variables"])
+    if (step := options["step"]) is not None and step.isdigit():
+        options["step"] = int(step)
     options["select"] = dict(_pair("--select", each) for each in options["select"])
     options["at"] = {} if at is None else dict([_pair("--at", at)])
     source = drawable(file)

@@ -8,6 +8,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.pictures.curves import quantiles
 from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
 from roughmdr.result.layout import cell_label, cells_of, control_of, done_of, method_of
 from roughmdr.schema.toml_text import parse_toml
@@ -47,8 +48,9 @@ class Convergence(NamedTuple):
 
 
 def _scatter(values: Floats, span: float) -> float:
-    """Return the standard deviation over the magnitude of the mean, or over a span."""
-    return float(np.std(values, ddof=1) / (span or abs(np.mean(values))))
+    """Return the standard deviation over the magnitude of the mean, or over a span; NaN where all values are 0."""
+    magnitude = span or abs(float(np.mean(values)))
+    return float(np.std(values, ddof=1)) / magnitude if magnitude else math.nan
 
 
 def draw_convergence(result: Labelled) -> "Figure":
@@ -120,7 +122,7 @@ def _quantities(result: Labelled) -> Iterator[Convergence]:
 
 
 def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float:
-    """Draw one quantity of all cells, and the line 1/sqrt(n); return the least error."""
+    """Draw one quantity of all cells, and the line 1/sqrt(n); return the least error above 0."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     curves, cells = [each.running() for each in found], cells_of(result)
@@ -135,9 +137,9 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
     else:
         grid = np.unique(np.geomspace(2, min(int(counts[-1]) for counts, _ in curves), _POINTS).round())
         errors = np.array([np.interp(np.log(grid), np.log(counts), each) for counts, each in curves])
-        low, high = errors.min(axis=0), errors.max(axis=0)
+        low, middle_error, high = quantiles(errors, [0.0, 0.5, 1.0], axis=0)
         ax.fill_between(grid, low, high, color=first, alpha=0.25, lw=0.0, label="all cells")
-        ax.plot(grid, np.median(errors, axis=0), color=first, lw=1.8, label="median of the cells")
+        ax.plot(grid, middle_error, color=first, lw=1.8, label="median of the cells")
     middle = float(np.median([each.scatter for each in found]))
     n = np.array([2.0, max(2.0 * largest, 10.0)])
     ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
@@ -146,7 +148,7 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(color="0.93", zorder=0)
-    return min(float(errors.min()) for _, errors in curves)
+    return min(float(errors[errors > 0.0].min(initial=math.inf)) for _, errors in curves)
 
 
 def _levels(result: Labelled) -> Iterator[tuple[float, dict[str, Any], str]]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.layout import abscissa_of, control_of, controlled_values, done_of, stored_variables, swept_sizes
 from roughmdr.result.means import mean_of
 from roughmdr.schema.toml_text import parse_toml
@@ -52,7 +52,7 @@ class Quantity(NamedTuple):
         """Return numbers of the variable, over the swept keys and more, as they are drawn."""
         if self.area is None:
             return values
-        return np.asarray(values / self.area.reshape(*self.area.shape, *([1] * (values.ndim - self.area.ndim))))
+        return np.asarray(values / self.area.reshape((*self.area.shape, *([1] * (values.ndim - self.area.ndim)))))
 
     def in_cell(self, values: Floats, cell: tuple[int, ...]) -> Floats:
         """Return numbers of the variable in one cell as they are drawn."""
@@ -92,7 +92,7 @@ def adheres(result: Labelled) -> bool:
 def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
     """Yield the curves of a quantity over another, cell by cell."""
     branches = result.coordinates["branch"].values
-    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    legs = _legs(result)
     done, name = done_of(result), quantity.variable
     runs = _runs(result, name)
     mean, error = _mean(result, name)
@@ -105,7 +105,7 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         of_cell, x_of_cell = (values[cell][done[cell]] if runs.size else values[cell] for values in (runs, xs))
         for leg, steps in enumerate(legs):
-            branch, some = str(branches[steps[0]]), of_cell[:, steps]
+            branch, some = str(branches[steps[-1]]), of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off
             if name == "stiffness" and sticky and branch == "unloading":  # its variance is infinite
@@ -117,10 +117,20 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
             )  # fmt: skip
 
 
+def _legs(result: Labelled) -> list[Ints]:
+    """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat."""
+    branches, control = result.coordinates["branch"].values, controlled_values(result)
+    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    return [
+        leg if leg[0] == 0 or (control[..., leg[0]] == control[..., leg[0] - 1]).all() else np.append(leg[0] - 1, leg)
+        for leg in legs
+    ]
+
+
 def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the median of the realisations with a band of two thirds of them; of few with those of some steps."""
     values = runs if len(runs) else mean[None]
-    width = 1 if len(values) >= _FEW else _ROBUST
+    width = 1 if len(values) >= _FEW else min(_ROBUST, 1 + 2 * (mean.size // 8))
     padded = np.pad(values, ((0, 0), (width // 2, width // 2)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=1)
     low, middle, high = quantiles(windows, [_BAND[0], 0.5, _BAND[1]], axis=(0, 2))

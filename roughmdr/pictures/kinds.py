@@ -6,11 +6,13 @@ from typing import NamedTuple
 from roughmdr.errors import StoreError
 from roughmdr.pictures.panel import MAX_NAMED
 from roughmdr.pictures.request import Content, Drawable, Picture, Request
-from roughmdr.pictures.select import along_longest, cell_of, select
+from roughmdr.pictures.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LAW_VARIABLES
+
+_PULL_OFF = "pull-off"
 
 
 class Kind(NamedTuple):
@@ -38,16 +40,14 @@ def draw_request(source: Drawable, request: Request) -> Picture:
 
 
 def _usual(source: Drawable, request: Request) -> str:
-    """Return the kind of picture that the options mean, or else the usual one: of many cells the sweep, else the law."""
+    """Return the kind of picture that the options mean, or else the usual one: of many cells the sweep, or the law."""
     if source.content != "result":
         return "map" if source.content == "ensemble" else "fit"
     curves = set(LAW_VARIABLES)
     if request.at or any(name not in curves for name in request.variables):
         return "sweep" if len(cells_of(source.data)) > 1 else "law"
-    if request.x in curves:
-        return "law"
     if request.x is not None:
-        return "sweep"
+        return "law" if request.x in curves or not swept_sizes(source.data) else "sweep"
     return "sweep" if len(cells_of(source.data)) > MAX_NAMED else "law"
 
 
@@ -100,18 +100,27 @@ def _map(source: Drawable, request: Request) -> Picture:
             raise StoreError(f"{unfit[0]} does not go with asperities, which have no path")
         ensemble = Ensemble.from_dataset(source.data.to_xarray())
         return Picture(draw_ensemble(ensemble, str(source.data.attrs.get("title", "asperities"))), [])
-    cell, realization = cell_of(source.data, request.select), request.realization or 0
-    return Picture(draw_map(source.data, source.file, cell=cell, realization=realization, step=request.step), [])
+    cell, realization, step = _place(source.data, request)
+    return Picture(draw_map(source.data, source.file, cell=cell, realization=realization, step=step), [])
 
 
 def _asperity(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.asperity import draw_asperity
 
+    cell, realization, step = _place(source.data, request)
     figure = draw_asperity(
-        source.data, source.file, cell=cell_of(source.data, request.select), realization=request.realization or 0,
-        step=request.step, asperity=request.asperity,
-    )  # fmt: skip
+        source.data, source.file, cell=cell, realization=realization, step=step, asperity=request.asperity
+    )
     return Picture(figure, [])
+
+
+def _place(result: Labelled, request: Request) -> tuple[tuple[int, ...], int, int | None]:
+    """Return the cell, the realisation and the step that are asked for; None for the closest approach."""
+    cell, realization = cell_of(result, request.select), request.realization or 0
+    step = request.step
+    if isinstance(step, str) and step != _PULL_OFF:
+        raise StoreError(f"step is {step!r}; it must be a number from 0, or {_PULL_OFF!r}")
+    return cell, realization, pull_off_step(result, cell, realization) if isinstance(step, str) else step
 
 
 def _convergence(source: Drawable, request: Request) -> Picture:

@@ -1,5 +1,6 @@
 """The law of a result: its variables over the separation, or over each other, loading and unloading."""
 
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,7 @@ from roughmdr.storage.labelled import Array, Labelled
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_HANDLE, _LETTER = 0.6, 0.066  # inches, in a legend
 _PULL_OFF = {"force": "pull_off_force", "pressure": "pull_off_pressure"}
 
 
@@ -73,7 +75,7 @@ def draw_law(
             for line in lines
             if line.variable == name
         ]
-        marks = _pull_offs(result, quantity, against, palette)
+        marks = [] if options.log else _pull_offs(result, quantity, against, palette)
         marked = marked or bool(marks)
         draw_panel(
             ax,
@@ -177,8 +179,12 @@ def _add_legend(
     grey = None if len(cells) == 1 else "0.4"
     handles += [Line2D([], [], label=label, **_overlay_style(label, overlays, grey)) for label in overlays]
     if handles:
-        width = 2.3 if len(cells) == 1 else 3.2  # [in] of an entry
-        columns = max(int(figure.get_figwidth() / width), 1)
+        width = float(figure.get_figwidth())
+        longest = max(len(str(each.get_label())) for each in handles)
+        columns = max(1, int(width / (_HANDLE + _LETTER * longest)))
+        for each in handles:
+            letters = int((width - _HANDLE) / _LETTER)
+            each.set_label(textwrap.fill(str(each.get_label()), letters))
         figure.legend(handles=handles, loc="outside lower center", frameon=False, fontsize=8, ncols=columns)
 
 

@@ -64,7 +64,8 @@ def _usual(result: Labelled, request: Request) -> str:
     if not request.at and holds(result, _PULL_OFF) and np.isfinite(mean_of(result, _PULL_OFF)[0]).any():
         return _PULL_OFF
     available = stored_variables(result)
-    return next((name for name in ("force", "pressure") if name in available and name not in request.at), available[0])
+    others = [name for name in available if name not in request.at] or available
+    return next((name for name in ("force", "pressure") if name in others), others[0])
 
 
 def _of_curve(result: Labelled, name: str, request: Request) -> Number:
@@ -79,6 +80,8 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
         ((place, value),) = request.at.items()
         if place not in _PLACES:
             raise StoreError(f"at is {place!r}, which is none{suggestion(place, list(_PLACES))}")
+        if place == name:
+            raise StoreError(f"at {place} = {value} does not go with {name} itself: name another variable")
         from roughmdr.analysis.interpolation import at_value
 
         try:

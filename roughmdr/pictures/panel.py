@@ -60,7 +60,8 @@ def draw_panel(ax: "Axes", panel: Panel) -> None:
 
     def draw_means(axes: "Axes") -> None:
         for curve, style in zip(panel.curves, panel.styles, strict=True):
-            axes.plot(x_scale(curve.x), _drawn(scale(curve.middle), log=log), **style)
+            alone: Style = {"marker": "o", "ms": 4.5} if curve.x.size == 1 else {}
+            axes.plot(x_scale(curve.x), _drawn(scale(curve.middle), log=log), **style, **alone)
         for over, values, style in panel.overlays:
             axes.plot(x_scale(over), _drawn(scale(values), log=log), **style)
         for mark in panel.marks:

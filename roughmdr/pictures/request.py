@@ -52,7 +52,7 @@ class Request:
     at: Mapping[str, object] = field(default_factory=dict)
     select: Mapping[str, object] = field(default_factory=dict)
     log: bool | None = None
-    step: int | None = None
+    step: int | str | None = None
     realization: int | None = None
     asperity: int | None = None
     with_expected: bool = False

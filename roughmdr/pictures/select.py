@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.result.layout import cell_label, swept_sizes
+from roughmdr.result.layout import cell_label, controlled_values, swept_sizes
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.labelled import Array, Labelled
@@ -25,6 +25,20 @@ def cell_of(result: Labelled, chosen: Mapping[str, object]) -> tuple[int, ...]:
     """Return the index of a cell: the first value of the swept keys that are not chosen. Errors as ``indices_of``."""
     indices = indices_of(result, chosen)
     return tuple(indices.get(name, 0) for name in swept_sizes(result))
+
+
+def pull_off_step(result: Labelled, cell: tuple[int, ...], realization: int) -> int:
+    """Return the step of the unloading nearest to the pull-off of a realisation; StoreError where there is none."""
+    if "pull_off_separation" not in result.variables or "realization" not in result.sizes:
+        raise StoreError("step is 'pull-off', and the result holds none of single realisations; give its number")
+    run = (*cell, realization)
+    place = result.variables["pull_off_separation"].values[run] if realization < result.sizes["realization"] else np.nan
+    if np.isnan(place):
+        raise StoreError(f"step is 'pull-off', and realisation {realization} has none; give the number of a step")
+    of_run = result.variables.get("separation")
+    separation = controlled_values(result)[cell] if of_run is None else of_run.values[run]
+    away = np.where(result.coordinates["branch"].values == "unloading", np.abs(separation - place), np.inf)
+    return int(np.nanargmin(away))
 
 
 def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]:

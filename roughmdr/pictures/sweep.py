@@ -95,6 +95,8 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
     order = [swept.index(axis.name if axis.name in swept else "cell") for axis in axes]
     scale = Scale.of(number.mean, number.name, number.unit)
     mean, error = (scale(values).transpose(order) for values in (number.mean, number.error))
+    if request.log and not (mean[np.isfinite(mean)] > 0.0).all():
+        raise StoreError("log does not go with these numbers: some are not above 0")
     if len(axes) == 1:
         figure = Figure(figsize=(6.4, 4.8), layout="constrained")
         _draw_points(figure.subplots(), axes[0], mean, error, scale.label)
@@ -106,7 +108,8 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
         size = (2.2 + 4.4 * columns, 5.2) if panels == 1 else (2.2 + 3.4 * columns, 1.6 + 2.9 * -(-panels // columns))
         figure = Figure(figsize=size, layout="constrained")
         _draw_maps(figure, axes, mean, error, scale.label, log=log)
-    notes = [note, _words(result, number, scale), _model_note(result, number)]
+    together = _swept_together(result, axes[0].name)
+    notes = [note, together, _words(result, number, scale), _model_note(result, number)]
     set_title(figure, result.attrs["title"], [each for each in notes if each])
     return figure
 
@@ -117,11 +120,7 @@ def _axes(result: Labelled, asked: str | None) -> list[Axis]:
     if not sizes:
         raise StoreError("nothing was swept: the result has one cell, of which the law can be drawn")
     together = sizes.keys() == {"cell"}
-    names = [
-        name
-        for name, array in result.coordinates.items()
-        if len(array.dims) == 1 and array.dims[0] in sizes and name not in AUXILIARY_COORDINATES
-    ]
+    names = _swept_keys(result)
     if asked is not None:
         first = asked.replace(".", "_")
         if first not in names:
@@ -137,6 +136,23 @@ def _axes(result: Labelled, asked: str | None) -> list[Axis]:
     return [Axis.of(name, result.coordinates[name]) for name in names]
 
 
+def _swept_keys(result: Labelled) -> list[str]:
+    """Return the coordinates along one swept dimension each."""
+    sizes = swept_sizes(result)
+    return [
+        name
+        for name, array in result.coordinates.items()
+        if len(array.dims) == 1 and array.dims[0] in sizes and name not in AUXILIARY_COORDINATES
+    ]
+
+
+def _swept_together(result: Labelled, shown: str) -> str:
+    """Name the keys that change along with the one that is shown."""
+    others = [name for name in _swept_keys(result) if name != shown] if "cell" in swept_sizes(result) else []
+    labels = [str(result.coordinates[name].attrs.get("long_name", name)).removeprefix("swept ") for name in others]
+    return f"{', '.join(labels)} {'changes' if len(labels) == 1 else 'change'} along with it" if labels else ""
+
+
 def _words(result: Labelled, number: Number, scale: Scale) -> str:
     """Describe where the number is taken, of how many realisations it is the mean, and its error."""
     count = realizations_of(result)
@@ -144,7 +160,8 @@ def _words(result: Labelled, number: Number, scale: Scale) -> str:
     errors = number.error[np.isfinite(number.error)]
     if errors.size:
         unit = scale.label.partition("[")[2].rstrip("]")
-        told.append(f"standard error at most {float(scale(errors.max())):.2g} {unit}".rstrip())
+        kind = "bars: ± 2 standard errors, one" if number.mean.ndim == 1 else "standard error"
+        told.append(f"{kind} at most {float(f'{float(scale(errors.max())):.2g}'):g} {unit}".rstrip())
     missing = int(np.isnan(number.mean).sum())
     if missing:
         told.append(f"none in {missing} of {number.mean.size} cells")
@@ -215,8 +232,6 @@ def _draw_maps(figure: "Figure", axes: list[Axis], mean: Floats, error: Floats, 
     columns = min(len(panels), 3)
     grid = figure.subplots(-(-len(panels) // columns), columns, squeeze=False, sharex=True, sharey=True)
     finite = mean[np.isfinite(mean)]
-    if log and not (finite > 0.0).all():
-        raise StoreError("log does not go with these numbers: some are not above 0")
     low, high = float(finite.min()), float(finite.max())
     norm = LogNorm(low, high) if log and high > low else Normalize(low, high)
     mesh: Any = None

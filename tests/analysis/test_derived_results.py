@@ -143,3 +143,14 @@ def test_every_variable_has_its_unit_and_its_name(curves: xr.Dataset) -> None:
         for name, array in getattr(curves.roughmdr, method)(*arguments[method]).data_vars.items():
             assert array.attrs.get("long_name"), (method, name)
             assert "units" in array.attrs or "flag_meanings" in array.attrs, (method, name)
+
+
+def test_statistics_of_values_that_were_found(curves: xr.Dataset) -> None:
+    there = curves.roughmdr.at_contact_fraction([1e-3, 2e-3])
+    found = there.roughmdr.statistics()
+    xr.testing.assert_allclose(found.pressure_mean, there.pressure.mean("realization"), rtol=1e-12)
+    sem = there.pressure.std("realization", ddof=1) / np.sqrt(there.pressure.count("realization"))
+    xr.testing.assert_allclose(found.pressure_sem, sem, rtol=1e-9)
+    worst = there.pressure_interpolation_error.max("realization")
+    xr.testing.assert_allclose(found.pressure_interpolation_error, worst)
+    assert found.pressure_sem.attrs["units"] == "Pa"

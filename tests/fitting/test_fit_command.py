@@ -127,3 +127,13 @@ def test_files_of_another_kind_are_no_fit(folder: Path) -> None:
     xr.Dataset().to_netcdf(folder / "empty.nc")
     with pytest.raises(StoreError, match="holds no fit"):
         read_fit(folder / "empty.nc")
+
+
+def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> None:
+    told = roughmdr("info", "fit.nc", cwd=folder)
+    assert told.returncode == 0
+    assert told.stdout.startswith("fitted       adhesion.work")
+    assert "Johnson" in roughmdr("cite", "fit.nc", cwd=folder).stdout
+    refused = roughmdr("report", "fit.nc", "-o", "page.html", cwd=folder)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "holds a fit, no result" in refused.stderr

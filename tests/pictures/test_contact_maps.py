@@ -175,3 +175,18 @@ def test_a_result_by_boundary_elements_is_said_to_be_one() -> None:
     by_elements = bool(found.variables["grid_points"].values[0] > 0.0)
     assert by_elements
     assert "by boundary elements" in Snapshot.of(found, None, placed=True).place
+
+
+def test_the_step_of_the_pull_off(sticky: Labelled) -> None:
+    way = {"start": "clear", "stop": "0.5 sigma", "steps": 40}
+    made = rm.run(scene(asperities=asperities(), batch={"realizations": 2}, path={"separation": way, "unload": True}))
+    for realization in (0, 1):
+        figure = rm.plot(made, kind="map", step="pull-off", realization=realization)
+        place = float(made.pull_off_separation[realization])
+        step = 40 + int(np.argmin(np.abs(made.separation.values[40:] - place)))
+        assert f"step {step} of 80 (unloading)" in figure.get_suptitle().replace("\n", " ")
+    with pytest.raises(StoreError, match="must be a number from 0, or 'pull-off'"):
+        rm.plot(made, kind="map", step="pulloff")
+    up_and_no_further = rm.run(scene(asperities=asperities(), batch=None, path={"separation": ["3 um", "1 um"]}))
+    with pytest.raises(StoreError, match="give its number"):
+        rm.plot(up_and_no_further, kind="map", step="pull-off")

@@ -81,6 +81,16 @@ def test_few_cells_are_lines_and_many_a_band(number: int, bands: int) -> None:
     assert ("adhesion_work = 20 mJ/m^2" in labels) == (not bands)
 
 
+def test_realisations_without_a_contact_at_first_have_no_error_yet() -> None:
+    runs = result()
+    runs.variables["force"].values[:3] = 0.0
+    ax = draw_convergence(runs).axes[0]
+    errors = curve(ax, 0)[1]
+    assert np.isnan(errors[:2]).all()
+    assert np.isfinite(errors[2:]).all()
+    assert 0.0 < ax.get_ylim()[0] < errors[2:].min()
+
+
 def test_under_a_dead_load_the_separation_converges() -> None:
     figure = draw_convergence(result(path={"force": {"stop": "1 mN", "steps": 5}}, adhesion=None))
     assert [ax.get_title() for ax in figure.axes] == ["separation at the largest load, over its range"]

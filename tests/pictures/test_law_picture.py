@@ -64,6 +64,16 @@ def test_a_variable_over_another_and_per_area(keep: str) -> None:
     assert counts.axes[0].get_ylabel() == "contacts per area [/mm²]"
 
 
+@pytest.mark.parametrize("changes", [{}, {"sweep": {"adhesion.work": [0.01, 0.05]}}])
+def test_the_pull_off_is_marked_per_area(changes: dict[str, Any]) -> None:
+    made = rm.run(scene(asperities=FEW, path=CLEAR, **changes))
+    figure = rm.plot(made, variables="force", per_area=True)
+    marks = [each for each in figure.axes[0].get_lines() if each.get_marker() == "o" and len(each.get_xydata()) == 1]
+    expected = np.ravel(made.pull_off_force.mean("realization") / made.nominal_area)
+    drawn = [float(each.get_ydata()[0]) * unit_of(figure.axes[0].get_ylabel()) for each in marks]
+    np.testing.assert_allclose(drawn, expected, rtol=1e-9)
+
+
 def test_an_exponential_law_has_a_logarithmic_axis_and_one_with_tension_none(
     result: xr.Dataset, without_adhesion: xr.Dataset
 ) -> None:
@@ -189,3 +199,33 @@ def test_paths_of_machines_are_drawn(path: dict[str, Any]) -> None:
     made = rm.run(scene(asperities=FEW, batch={"realizations": 4}, path=path))
     assert_legible(rm.plot(made))
     assert Labelled.of(made).sizes["step"] in (40, 41)
+
+
+def test_a_path_that_turns_without_a_repeated_step_is_drawn_whole() -> None:
+    path = {"separation": ["3 um", "1 um", "2 um", "0.5 um", "1.5 um"]}
+    made = rm.run(scene(asperities=FEW, path=path))
+    figure = rm.plot(made, variables="contact_area")
+    drawn = [each.get_xdata() for each in figure.axes[0].get_lines() if each.get_linewidth() > 2.0]
+    assert [np.round(each, 9).tolist() for each in drawn] == [[3.0, 1.0], [1.0, 2.0], [2.0, 0.5], [0.5, 1.5]]
+
+
+def test_a_single_step_is_a_point() -> None:
+    figure = rm.plot(rm.run(scene(asperities=FEW, path={"separation": ["1 um"]})), variables="force")
+    assert any(each.get_marker() == "o" for each in figure.axes[0].get_lines())
+
+
+def test_the_legend_of_a_narrow_picture_is_not_cut_off() -> None:
+    sweep = {"mode": "zip", "adhesion.work": [0.01, 0.05], "asperities.height.std": ["1 um", "2 um"]}
+    assert_legible(rm.plot(rm.run(scene(asperities=FEW, sweep=sweep)), variables="force"))
+
+
+def test_a_stiffness_of_few_steps_is_not_smoothed_over_all_of_them() -> None:
+    made = rm.run(scene(asperities=FEW, path={"separation": ["2 um", "0.5 um"], "unload": True}))
+    drawn = line(rm.plot(made, variables="stiffness"), 0, "unloading")
+    unloading = made.stiffness[:, made.branch == "unloading"]
+    np.testing.assert_allclose(drawn[:, 1], unloading.median("realization"), rtol=1e-9)
+
+
+def test_no_pull_off_is_named_where_a_logarithmic_axis_cannot_show_it(result: xr.Dataset) -> None:
+    figure = rm.plot(result, variables="force", log=True)
+    assert "pull-off" not in [each.get_text() for each in figure.legends[0].get_texts()]

@@ -145,3 +145,45 @@ def test_numbers_over_decades_have_a_logarithmic_axis_and_tensions_are_turned_ro
     assert figure.axes[1].get_ylabel() == "minus pull-off force [µN]"
     values = figure.axes[0].collections[0].get_array()
     np.testing.assert_allclose(values, -1e6 * lowest.T, rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def together() -> xr.Dataset:
+    return swept({"mode": "zip", "adhesion.work": [0.01, 0.05], "asperities.height.std": ["1 um", "2 um"]})
+
+
+def test_what_is_swept_together_is_named(together: xr.Dataset) -> None:
+    figure = rm.plot(together, kind="sweep")
+    assert "asperities.height.std changes along with it" in figure.axes[0].get_title() + str(figure.get_suptitle())
+
+
+def test_numbers_of_both_signs_have_no_logarithm(together: xr.Dataset) -> None:
+    changed = together.assign(pull_off_force=together.pull_off_force * [[-1.0], [1.0]])
+    with pytest.raises(rm.StoreError, match="some are not above 0"):
+        rm.plot(changed, kind="sweep", log=True)
+
+
+def test_at_a_force_another_variable_is_drawn(together: xr.Dataset) -> None:
+    assert "contact area" in rm.plot(together, kind="sweep", at={"force": "10 uN"}).axes[0].get_ylabel()
+    with pytest.raises(rm.StoreError, match="does not go with force itself"):
+        rm.plot(together, kind="sweep", variables="force", at={"force": "10 uN"})
+
+
+def test_options_choose_the_kind_of_picture() -> None:
+    few = swept({"adhesion.work": [0.01, 0.05]}, 2)
+    for options in ({"variables": "pull_off_force"}, {"at": {"force": "1 uN"}}, {"x": "adhesion.work"}):
+        assert rm.plot(few, **options).axes[0].get_xlabel() == "adhesion.work [mJ/m²]"
+    assert rm.plot(few, variables="force").axes[0].get_xlabel() == "separation [µm]"
+    many = swept({"adhesion.work": {"linspace": [0.01, 0.05], "num": 9}}, 2)
+    assert rm.plot(many, variables="contact_area", x="force").axes[0].get_xlabel().startswith("force")
+
+
+def test_a_pressure_that_the_result_does_not_hold_at_a_contact_fraction(two: xr.Dataset) -> None:
+    drawn = rm.plot(two, variables="pressure", at={"contact_fraction": "1 %"}, log=False).axes[0]
+    by_hand = two.roughmdr.at_contact_fraction(0.01).pressure.mean("realization")
+    values = drawn.collections[0].get_array()
+    np.testing.assert_allclose(values / values.max(), by_hand.T / by_hand.max(), rtol=1e-9)
+    with pytest.raises(rm.StoreError, match="no loading reaches it"):
+        rm.plot(two, variables="pressure", at={"contact_fraction": "90 %"})
+    with pytest.raises(rm.StoreError, match="must be at most 1"):
+        rm.plot(two, variables="pressure", at={"contact_fraction": 2.0})

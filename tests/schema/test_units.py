@@ -27,6 +27,8 @@ from roughmdr.schema.units import _BASES, format_quantity, quantity
         ("50 mN/m", "J/m^2", 0.05),
         ("72 erg/cm^2", "J/m^2", 0.072),
         ("0.3", "1", 0.3),
+        ("2 %", "1", 0.02),
+        ("3 fN", "N", 3e-15),
         (4, "m", 4.0),
     ],
 )
