@@ -142,12 +142,12 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
         ax.plot(grid, middle_error, color=first, lw=1.8, label="median of the cells")
     middle = float(np.median([each.scatter for each in found]))
     n = np.array([2.0, max(2.0 * largest, 10.0)])
-    ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
+    ax.plot(n, middle / np.sqrt(n), color="0.5", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
     ax.set(xscale="log", yscale="log", xlabel="realisations n", title=found[0].name, xlim=(1.8, float(n[1])))
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.grid(color="0.93", zorder=0)
+    ax.grid(color="0.5", alpha=0.15, zorder=0)
     return min(float(errors[errors > 0.0].min(initial=math.inf)) for _, errors in curves)
 
 

@@ -122,3 +122,13 @@ def test_with_a_preload_the_separation_converges() -> None:
     path = {"preload": "1 mN", "steps": 5, "unload": True}
     titles = [ax.get_title() for ax in draw_convergence(result(path=path)).axes]
     assert titles == ["separation at the largest load, over its range", "pull-off force"]
+
+
+def test_lines_of_cells_are_seen_on_a_dark_ground() -> None:
+    from matplotlib import style
+    from matplotlib.colors import to_rgb
+
+    from roughmdr.pictures.style import colours
+
+    with style.context("dark_background"):
+        assert all(sum(to_rgb(each)) > 1.0 for each in colours(5))

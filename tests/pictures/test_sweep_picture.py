@@ -157,3 +157,8 @@ def test_at_a_force_another_variable_is_drawn(together: xr.Dataset) -> None:
     assert "contact area" in rm.plot(together, kind="sweep", at={"force": "10 uN"}).axes[0].get_ylabel()
     with pytest.raises(rm.StoreError, match="does not go with force itself"):
         rm.plot(together, kind="sweep", variables="force", at={"force": "10 uN"})
+
+
+def test_the_message_about_another_kind_of_file_is_a_sentence(together: xr.Dataset) -> None:
+    with pytest.raises(rm.StoreError, match="kind 'fit' is drawn from a fit, and this is a result"):
+        rm.plot(together, kind="fit")
