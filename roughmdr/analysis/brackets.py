@@ -57,6 +57,8 @@ def _joined(y: Floats, steps: Steps) -> tuple[NDArray[np.int64], Floats, NDArray
 
 def _first(y: Floats, value: float, before: NDArray[np.int64], usable: NDArray[np.bool_], steps: Steps) -> Floats:
     """Return the first bracket of a value on each curve: [..., part]."""
+    if steps.kept.size < 2:
+        return np.full((*y.shape[:-1], 3), np.nan)
     below, above = y <= value, y >= value
     crossed = (below[..., :-1] & above[..., 1:]) | (above[..., :-1] & below[..., 1:])
     crossed &= usable

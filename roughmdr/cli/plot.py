@@ -1,5 +1,6 @@
 """roughmdr plot: draw a result."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +44,8 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | Non
     options["variables"] = tuple(options["variables"])
     if (step := options["step"]) is not None and step.isdigit():
         options["step"] = int(step)
-    options["select"] = dict(_pair("--select", each) for each in options["select"])
-    options["at"] = {} if at is None else dict([_pair("--at", at)])
+    options["select"] = _pairs("--select", options["select"])
+    options["at"] = _pairs("--at", [] if at is None else [at])
     source = drawable(file)
     warn_of(file, source.doubt)
     with styled(style):
@@ -53,6 +54,17 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | Non
             print_text(f"{title:<12} {remark}")
         save(picture.figure, output)
     print_text(f"picture      {click.format_filename(output)}")
+
+
+def _pairs(option: str, texts: Sequence[str]) -> dict[str, object]:
+    """Read KEY=VALUE of different keys."""
+    pairs: dict[str, object] = {}
+    for text in texts:
+        key, value = _pair(option, text)
+        if key in pairs:
+            raise click.UsageError(f"{option} {text}: {key} has a value already, {pairs[key]}")
+        pairs[key] = value
+    return pairs
 
 
 def _pair(option: str, text: str) -> tuple[str, object]:

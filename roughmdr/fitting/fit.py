@@ -5,12 +5,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughmdr.errors import warn_limits
+from roughmdr.errors import StoreError, warn_limits
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model, scene_to_fit
 from roughmdr.fitting.result import assemble
 from roughmdr.fitting.search import search
+from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.uncertainty import uncertainty
+from roughmdr.fitting.words import parameter_keys
 from roughmdr.scene import Scene
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
@@ -51,7 +53,7 @@ def fit(
     set : dict, optional
         Keys of the scene, dotted, with the values that they get.
     fresh : bool, optional
-        Whether to replace a file of any kind at ``out``; otherwise only that of another fit.
+        Whether to replace a file of any kind at ``out``; otherwise only a fit of no other parameters.
 
     Returns
     -------
@@ -117,9 +119,19 @@ def fit_labelled(
         check_ending(out, "fit", NETCDF_ENDINGS)
         if not fresh:
             check_same_kind(out, FIT)
+            _check_nothing_lost(out, free)
     model = Model(validated, curve, free)
     found = search(model)
     result = assemble(model, found, uncertainty(model, found), time.perf_counter() - started, command)
     if out is not None:
         write_netcdf(result, out)
     return result
+
+
+def _check_nothing_lost(out: Path, free: list[str]) -> None:
+    """Raise StoreError where there is a fit of parameters that are not fitted now."""
+    if not out.exists():
+        return
+    lost = [key for key in parameter_keys(read_fit(out)) if key not in free]
+    if lost:
+        raise StoreError(f"{out}: holds a fit of {', '.join(lost)} too: give another output, or --fresh to replace it")

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _POINTS = 160  # of a curve
 _MAX_LINES = 6  # cells drawn each; more are a band
 _FEW = 40  # points of a curve below which each is marked
+_WIDE = 1000  # realisations from which on only powers of ten fit under an axis
 _DEEPEST = 0.03  # of the least error drawn: what lies deeper is named alone
 _NEEDED = 0.01, 0.001  # relative standard errors of which the note says what they take
 
@@ -142,12 +143,12 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
         ax.plot(grid, middle_error, color=first, lw=1.8, label="median of the cells")
     middle = float(np.median([each.scatter for each in found]))
     n = np.array([2.0, max(2.0 * largest, 10.0)])
-    ax.plot(n, middle / np.sqrt(n), color="0.3", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
+    ax.plot(n, middle / np.sqrt(n), color="0.5", lw=1.0, ls="--", label="as 1/√n, from the scatter of all")
     ax.set(xscale="log", yscale="log", xlabel="realisations n", title=found[0].name, xlim=(1.8, float(n[1])))
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if n[1] < _WIDE else (1.0,)))
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.grid(color="0.93", zorder=0)
+    ax.grid(color="0.5", alpha=0.15, zorder=0)
     return min(float(errors[errors > 0.0].min(initial=math.inf)) for _, errors in curves)
 
 

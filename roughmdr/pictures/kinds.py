@@ -14,6 +14,8 @@ from roughmdr.variables import LAW_VARIABLES
 
 _PULL_OFF = "pull-off"
 
+_WITH_ARTICLE: dict[Content, str] = {"result": "a result", "ensemble": "an ensemble", "fit": "a fit"}
+
 
 class Kind(NamedTuple):
     """A kind of picture."""
@@ -31,7 +33,8 @@ def draw_request(source: Drawable, request: Request) -> Picture:
         raise StoreError(f"kind is {name!r}, which is none{suggestion(name, [*KINDS])}")
     kind = KINDS[name]
     if source.content not in kind.of:
-        raise StoreError(f"kind {name!r} is drawn from {' or '.join(kind.of)}, and this is an {source.content}")
+        needed = " or ".join(_WITH_ARTICLE[each] for each in kind.of)
+        raise StoreError(f"kind {name!r} is drawn from {needed}, and this is {_WITH_ARTICLE[source.content]}")
     if unfit := sorted(request.given - kind.takes):
         raise StoreError(
             f"{unfit[0]} does not go with kind {name!r}, which takes {', '.join(sorted(kind.takes)) or 'none'}"

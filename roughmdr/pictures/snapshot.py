@@ -58,7 +58,7 @@ class Snapshot(NamedTuple):
             raise StoreError(f"cell is {short_repr(cell)}; it must be an index of the swept keys, up to ({last})")
         _check_realization(result, cell, realization)
         path = _separations(result, cell, realization)
-        step = int(np.nanargmin(path)) if step is None else step
+        step = _closest(result, (*cell, realization), path) if step is None else step
         if not 0 <= step < path.size:
             raise StoreError(f"step is {step}; the path of the result has steps 0 to {path.size - 1}")
         if np.isnan(path[step]):
@@ -118,6 +118,15 @@ def _separations(result: Labelled, cell: tuple[int, ...], realization: int) -> F
             "run its scene with output.keep = 'curves'"
         )
     return np.array(result.variables[SEPARATION.name].values[(*cell, realization)])
+
+
+def _closest(result: Labelled, run: tuple[int, ...], path: Floats) -> int:
+    """Return the first step at which the flat is closest, of those at which the result has a force where it tells."""
+    force = result.variables.get("force")
+    known = np.isfinite(path)
+    if force is not None and (known & np.isfinite(force.values[run])).any():
+        known &= np.isfinite(force.values[run])
+    return int(np.argmin(np.where(known, path, np.inf)))
 
 
 def _on_grid(result: Labelled, run: tuple[int, ...]) -> bool:

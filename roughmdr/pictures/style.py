@@ -54,11 +54,13 @@ class Scale(NamedTuple):
 
 
 def colours(count: int) -> list[str]:
-    """Return that many colours, from dark to light, that the colour-blind tell apart."""
-    from matplotlib import colormaps
-    from matplotlib.colors import to_hex
+    """Return that many colours, from dark to light, that the colour-blind tell apart, and all from the ground."""
+    from matplotlib import colormaps, rcParams
+    from matplotlib.colors import to_hex, to_rgb
 
-    return [to_hex(colormaps[COLOUR_MAP](0.92 * number / max(count - 1, 1))) for number in range(count)]
+    on_dark = sum(to_rgb(rcParams["text.color"])) > 1.5
+    first, last = (0.3, 1.0) if on_dark else (0.0, 0.92)
+    return [to_hex(colormaps[COLOUR_MAP](each)) for each in np.linspace(first, last, count)]
 
 
 def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:

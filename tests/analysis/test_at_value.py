@@ -181,3 +181,10 @@ def test_the_pressure_at_a_contact_fraction_follows_from_the_force(keep: str) ->
     xr.testing.assert_allclose(there[f"pressure{suffix}"], over_area, rtol=1e-12)
     assert there[f"pressure{suffix}"].attrs["units"] == "Pa"
     assert (there[f"pressure{suffix}_interpolation_error"] >= 0.0).all()
+
+
+@pytest.mark.parametrize("path", [["1 um"], ["1 um", "0.5 um"], ["1.5 um", "1 um", "0.5 um"]])
+def test_paths_of_few_steps_have_values_as_far_as_they_reach(path: list[str]) -> None:
+    made = rm.run(scene(path={"separation": path}))
+    there = made.roughmdr.at_separation("0.75 um")
+    assert bool(there.force.isnull().all()) == (len(path) == 1)

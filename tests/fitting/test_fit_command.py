@@ -1,5 +1,6 @@
 """roughmdr fit: its text, its file, its picture, and what it refuses to replace."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -137,3 +138,12 @@ def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> No
     refused = roughmdr("report", "fit.nc", "-o", "page.html", cwd=folder)
     assert (refused.returncode, refused.stdout) == (2, "")
     assert "holds a fit, no result" in refused.stderr
+
+
+def test_a_fit_of_more_parameters_is_not_replaced_unasked(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(folder / "fit.nc", tmp_path / "fit.nc")
+    arguments = ("fit", folder / "curve.csv", folder / "scene.toml", "-o", "fit.nc", "--free", "material.modulus")
+    refused = roughmdr(*arguments, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "holds a fit of adhesion.work too" in refused.stderr
+    assert roughmdr(*arguments, "--fresh", cwd=tmp_path).returncode == 0

@@ -122,3 +122,19 @@ def test_with_a_preload_the_separation_converges() -> None:
     path = {"preload": "1 mN", "steps": 5, "unload": True}
     titles = [ax.get_title() for ax in draw_convergence(result(path=path)).axes]
     assert titles == ["separation at the largest load, over its range", "pull-off force"]
+
+
+def test_lines_of_cells_are_seen_on_a_dark_ground() -> None:
+    from matplotlib import style
+    from matplotlib.colors import to_rgb
+
+    from roughmdr.pictures.style import colours
+
+    with style.context("dark_background"):
+        assert all(sum(to_rgb(each)) > 1.0 for each in colours(5))
+
+
+def test_the_numbers_of_many_realisations_do_not_overlap(sixteen: Labelled) -> None:
+    many = Labelled.of(sixteen.to_xarray().isel(realization=np.arange(8000) % 16))
+    ax = draw_convergence(many).axes[0]
+    assert [each for each in ax.get_xticks() if 2.0 <= each <= 16000.0] == [10.0, 100.0, 1000.0, 10000.0]

@@ -229,3 +229,12 @@ def test_a_stiffness_of_few_steps_is_not_smoothed_over_all_of_them() -> None:
 def test_no_pull_off_is_named_where_a_logarithmic_axis_cannot_show_it(result: xr.Dataset) -> None:
     figure = rm.plot(result, variables="force", log=True)
     assert "pull-off" not in [each.get_text() for each in figure.legends[0].get_texts()]
+
+
+def test_two_values_of_one_key_are_refused(tmp_path: Path) -> None:
+    made = tmp_path / "out.nc"
+    rm.run(scene(asperities=FEW, sweep={"adhesion.work": [0.01, 0.05]}), made)
+    chosen = ["--select", "adhesion.work=0.01", "--select", "adhesion.work=0.05"]
+    run = CliRunner().invoke(main, ["plot", str(made), "-o", str(tmp_path / "out.png"), *chosen])
+    assert (run.exit_code, (tmp_path / "out.png").exists()) == (2, False)
+    assert "adhesion.work has a value already, 0.01" in run.output

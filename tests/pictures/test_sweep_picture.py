@@ -187,3 +187,8 @@ def test_a_pressure_that_the_result_does_not_hold_at_a_contact_fraction(two: xr.
         rm.plot(two, variables="pressure", at={"contact_fraction": "90 %"})
     with pytest.raises(rm.StoreError, match="must be at most 1"):
         rm.plot(two, variables="pressure", at={"contact_fraction": 2.0})
+
+
+def test_the_message_about_another_kind_of_file_is_a_sentence(together: xr.Dataset) -> None:
+    with pytest.raises(rm.StoreError, match="kind 'fit' is drawn from a fit, and this is a result"):
+        rm.plot(together, kind="fit")
