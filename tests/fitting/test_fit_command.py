@@ -69,7 +69,7 @@ def test_it_is_run_and_keeps_to_the_conventions(folder: Path) -> None:
 
 
 def test_only_a_fit_is_replaced(folder: Path) -> None:
-    again = roughmdr("fit", "curve.csv", "scene.toml", "-o", "fit.nc", "--free", "adhesion.work", cwd=folder)
+    again = roughmdr("fit", "curve.csv", "scene.toml", "-o", "fit.nc", *FREE, cwd=folder)
     assert again.returncode == 0, again.stderr
     (folder / "notes.nc").write_text("notes")
     refused = roughmdr("fit", "curve.csv", "scene.toml", "-o", "notes.nc", *FREE, cwd=folder)
