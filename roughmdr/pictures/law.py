@@ -150,7 +150,7 @@ def _entries(result: Labelled, names: Sequence[str], *, marked: bool, shaded: bo
     if holds(result, "model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
         entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))
     if shaded:
-        entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="contact beyond the range of trust"))
+        entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="beyond the range of trust"))
     if marked:
         style: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 4.5, "mfc": "white"}
         entries.append(Line2D([], [], label="pull-off", color=BRANCH_COLOURS["unloading"], **style))

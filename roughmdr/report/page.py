@@ -35,6 +35,7 @@ class _Figure(NamedTuple):
 
     words: str
     caption: str
+    across: bool  # whether it is as wide as the page
     light: str
     dark: str
 
@@ -139,4 +140,4 @@ def _figure(source: Drawable, request: Request, words: str) -> _Figure:
             figure.suptitle("")
             caption = str(figure.get_label())
             pictures.append(base64.b64encode(png_of(figure)).decode())
-    return _Figure(words, caption, *pictures)
+    return _Figure(words, caption, request.kind == "convergence", *pictures)

@@ -95,7 +95,7 @@ def test_the_pull_off_is_marked_where_it_is(result: xr.Dataset) -> None:
 def test_separations_beyond_trust_are_grey_and_the_legend_says_so() -> None:
     deep = rm.run(scene(asperities=FEW, batch=None))
     figure = rm.plot(deep, variables="force")
-    assert "contact beyond the range of trust" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "beyond the range of trust" in [text.get_text() for text in figure.legends[0].get_texts()]
     spans = [patch.get_x() + patch.get_width() for patch in figure.axes[0].patches if hasattr(patch, "get_width")]
     np.testing.assert_allclose(spans, [1e6 * deep.trusted_separation.max()], rtol=1e-9)
 
