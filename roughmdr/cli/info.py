@@ -1,5 +1,6 @@
 """roughmdr info: tell what a result contains, or how far a batch is."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -25,7 +26,10 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         _info_parts(ctx, result, cells=cells, as_json=as_json)
         return
     parts = result.with_name(f"{result.name}.parts")
-    if parts.is_dir() and not result.exists():
+    awaited = False
+    with suppress(OSError):  # a name that is too long for its parts has none
+        awaited = parts.is_dir() and not result.exists()
+    if awaited:
         raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.info import describe
     from roughmdr.storage.result_file import is_fit, read_result
