@@ -103,7 +103,8 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
     x_mean, xs = x.scaled(x_mean), x.scaled(xs)
     sticky = adheres(result)
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
-        of_cell, x_of_cell = (values[cell][done[cell]] if runs.size else values[cell] for values in (runs, xs))
+        some_missing = runs.size and not done[cell].all()
+        of_cell, x_of_cell = (values[cell][done[cell]] if some_missing else values[cell] for values in (runs, xs))
         for leg, steps in enumerate(legs):
             branch, some = str(branches[steps[-1]]), of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
@@ -139,6 +140,8 @@ def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
 
 def quantiles(values: Floats, shares: list[float], axis: int | tuple[int, ...]) -> Floats:
     """Return quantiles of the numbers that there are; NaN where there are none."""
+    if np.isfinite(values).all() and values.size:
+        return np.asarray(np.quantile(values, shares, axis=axis))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         return np.asarray(np.nanquantile(values, shares, axis=axis))

@@ -17,6 +17,7 @@ MAX_NAMED = 8
 MAX_RUNS, _SOME_RUNS = 64, 16
 """Realisations that are drawn as lines; of more, the range of most of them is a band, and some are lines."""
 _MOST = (0.05, 0.95)
+_FOR_RANGE = 256  # realisations from which the range of an axis follows
 _DECADES = 4.0  # of a logarithmic axis at most
 _EXPONENTIAL = 1e3  # ratio of the largest to the least positive value from which an axis is logarithmic
 _INSETS = ((0.42, 0.5, 0.55, 0.46), (0.12, 0.12, 0.36, 0.24))
@@ -119,7 +120,8 @@ def _visible(panel: Panel) -> Floats:
     if panel.quantity.variable != "stiffness" and panel.cells <= MAX_NAMED:
         shown += [edge for curve in panel.curves for edge in (curve.low, curve.high)]
     if panel.cells == 1 and panel.quantity.variable != "stiffness":
-        shown += [quantiles(curve.runs, list(_MOST), axis=0).ravel() for curve in panel.curves if len(curve.runs)]
+        some = [curve.runs[:: len(curve.runs) // _FOR_RANGE + 1] for curve in panel.curves if len(curve.runs)]
+        shown += [quantiles(runs, list(_MOST), axis=0).ravel() for runs in some]
     values = _joined(shown)
     return values if values.size else np.zeros(1)
 
