@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.coils import coils
 
 BODY, LINE = "#e4e0d8", "#4a4a4a"
 COMPRESSED, STRETCHED, FREE = "#1b6ca8", "#c8553d", "#9a9a9a"
@@ -15,11 +16,7 @@ COMPRESSED, STRETCHED, FREE = "#1b6ca8", "#c8553d", "#9a9a9a"
 def draw_springs(ax: Axes, positions: Floats, ends: Floats, bottom: float, *, width: float, attached: Any) -> None:
     """Draw springs as zigzags from their base to their ends, coloured by their sign where ``attached``."""
     colors = list(np.where(attached, np.where(ends > 0.0, STRETCHED, COMPRESSED), FREE))
-    sideways = np.zeros(25)
-    sideways[2:-2:2], sideways[3:-2:2] = width, -width
-    lines = [np.column_stack([x + sideways, np.linspace(bottom, end, 25)])
-             for x, end in zip(positions, ends, strict=True)]  # fmt: skip
-    ax.add_collection(LineCollection(lines, colors=colors, linewidths=0.9))
+    ax.add_collection(LineCollection(coils(positions, ends, bottom, width), colors=colors, linewidths=0.9))
     ax.scatter(positions, ends, s=9, c=colors, zorder=3)
     ax.axhline(bottom, color=LINE, lw=2.5)
 

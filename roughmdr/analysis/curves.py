@@ -6,14 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
+from roughmdr.result.layout import OVER_AREA
 from roughmdr.schema.wording import short_repr, suggestion
-from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, REFERENCE_VARIABLES, SEPARATION, STEP_COORDINATES
+from roughmdr.variables import (
+    CURVE_VARIABLES,
+    LAW_VARIABLES,
+    REFERENCE_VARIABLES,
+    SEPARATION,
+    STEP_COORDINATES,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
 BRANCHES = ("loading", "unloading")
-PER_AREA = {"pressure": "force", "contact_fraction": "contact_area"}
+PER_AREA = {OVER_AREA[total]: total for total in ("force", "contact_area")}
 """Curves that follow from others and the nominal area."""
 _NEEDED = "ds.roughmdr needs a result as roughmdr.run or load_separation returns it"
 

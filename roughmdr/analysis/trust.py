@@ -6,6 +6,7 @@ from roughmdr.analysis.curves import check_result
 from roughmdr.errors import StoreError
 from roughmdr.model_error.parts import PARTS
 from roughmdr.report.trust import trust_of_result
+from roughmdr.schema.wording import format_table
 from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def trust(dataset: "xr.Dataset") -> "xr.Dataset":
     found = dataset[list(_NAMES)]
     if "realization" in found.dims:
         found = found.max("realization", keep_attrs=True)
-    found.attrs = {"trust": "\n".join(f"{name:<12} {text}".rstrip() for name, text in trust_lines(dataset))}
+    found.attrs = {"trust": format_table(trust_lines(dataset))}
     return found
 
 

@@ -19,7 +19,9 @@ from roughmdr.report.terminal import Command, print_text
 @click.option("--x", metavar="NAME", help="Of a law: variable to draw over. Of a sweep: swept key along the axis.")
 @click.option("--per-area", is_flag=True, help="Divide by the nominal area.")
 @click.option("--log/--linear", default=None, help="Logarithmic axis or not. Default: where a law is exponential.")
-@click.option("--at", metavar="QUANTITY=VALUE", help='Of a sweep: where on the loading, as "force=1 mN".')
+@click.option(
+    "--at", multiple=True, metavar="QUANTITY=VALUE", help='Of a sweep: where on the loading, as "force=1 mN".'
+)
 @click.option("--select", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one value of a key; repeatable.")
 @click.option("--step", metavar="STEP", help='Of a map or an asperity: step, from 0, or "pull-off".')
 @click.option("--realization", type=click.IntRange(min=0), help="Of a map or an asperity: realisation, from 0.")
@@ -29,7 +31,7 @@ from roughmdr.report.terminal import Command, print_text
 @click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that FILE holds.")
 @click.option("--style", metavar="STYLE", help="Style of matplotlib: its name or file.")
 @fresh_option
-def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | None, **options: Any) -> None:
+def plot(file: Path, output: Path, style: str | None, fresh: bool, at: tuple[str, ...], **options: Any) -> None:
     """Draw what FILE holds: a result, asperities or a fit.
 
     Of a result the law is drawn, or, of a sweep of many cells, the pull-off against what was swept. An existing picture
@@ -45,7 +47,7 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: str | Non
     if (step := options["step"]) is not None and step.isdigit():
         options["step"] = int(step)
     options["select"] = _pairs("--select", options["select"])
-    options["at"] = _pairs("--at", [] if at is None else [at])
+    options["at"] = _pairs("--at", at)
     source = drawable(file)
     warn_of(file, source.doubt)
     with styled(style):

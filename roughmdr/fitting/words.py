@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 from roughmdr.schema.units import format_quantity
-from roughmdr.schema.wording import format_seconds
+from roughmdr.schema.wording import format_seconds, format_table
 from roughmdr.storage.labelled import Labelled
 
 
 def describe_fit(fit: Labelled) -> str:
     """Return the parameters with standard errors and 95 % intervals, how well they fit, and what is in doubt."""
-    return "\n".join(f"{name:<12} {text}" for name, text in _lines(fit))
+    return format_table(_lines(fit))
 
 
 def describe_parameters(fit: Labelled) -> list[str]:

@@ -12,9 +12,10 @@ import numpy as np
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.coils import coils
 from roughmdr.pictures.one_contact import OneContact
-from roughmdr.pictures.snapshot import Snapshot, text
-from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
+from roughmdr.pictures.snapshot import Snapshot
+from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
 from roughmdr.shapes import SHAPES, Shape
 from roughmdr.storage.labelled import Labelled
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 _BODY, _LINE, _FREE = "#e4e0d8", "#4a4a4a", "#9a9a9a"
 _COMPRESSED, _STRETCHED = BRANCH_COLOURS["loading"], BRANCH_COLOURS["unloading"]
 _SIZE = 7.4, 8.6  # of the figure [inches]
-_COILS = 25  # points of a spring
 _NEAR = 0.985  # of the contact radius, up to which the axis of pressure holds all
 _VISIBLE = 0.06  # of the height of a panel, above which a length is named
 
@@ -108,13 +108,13 @@ def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]
 def _numbers(contact: OneContact, force: float) -> tuple[str, str]:
     """Return the numbers of a contact, and those of its material, in words."""
     state, adhesion = contact.state, contact.adhesion
-    numbers = f"force {text(force, 'N')}, indentation {text(state.indentation, 'm')}"
-    numbers += f", contact radius {text(state.radius, 'm')}"
-    material = f"E* = {text(contact.modulus, 'Pa')}, "
-    material += f"w = {text(adhesion.work, 'J/m^2')}" if adhesion.work > 0.0 else "no adhesion"
+    numbers = f"force {in_words(force, 'N')}, indentation {in_words(state.indentation, 'm')}"
+    numbers += f", contact radius {in_words(state.radius, 'm')}"
+    material = f"E* = {in_words(contact.modulus, 'Pa')}, "
+    material += f"w = {in_words(adhesion.work, 'J/m^2')}" if adhesion.work > 0.0 else "no adhesion"
     if adhesion.cohesive:
-        numbers += f", cohesive radius {text(state.reach, 'm')}"
-        material += f", strength {text(adhesion.strength, 'Pa')}"
+        numbers += f", cohesive radius {in_words(state.reach, 'm')}"
+        material += f", strength {in_words(adhesion.strength, 'Pa')}"
     return numbers, material
 
 
@@ -177,19 +177,14 @@ def _draw_springs(ax: "Axes", contact: OneContact, length: Scale) -> Scale:
     height = Scale.of([top, bottom], "height", "m")
     _draw_body(ax, length(r), height(profile), float(height(top)))
     x, ends, base = length(springs.x), height(springs.end), float(height(bottom))
-    swing = np.zeros(_COILS)
-    swing[2:-2:2], swing[3:-2:2] = 0.18 * (x[1] - x[0]), -0.18 * (x[1] - x[0])
     held = np.abs(springs.x) < contact.state.reach
     for mask, colour, label in (
         (held & (ends <= 0.0), _COMPRESSED, "compressed springs"),
         (held & (ends > 0.0), _STRETCHED, "springs under tension"),
         (~held, _FREE, "free springs"),
     ):
-        lines = [
-            np.column_stack([at + swing, np.linspace(base, end, _COILS)])
-            for at, end in zip(x[mask], ends[mask], strict=True)
-        ]
-        if lines:
+        if mask.any():
+            lines = coils(x[mask], ends[mask], base, 0.18 * (x[1] - x[0]))
             ax.add_collection(
                 LineCollection(lines, colors=colour, linewidths=0.9, label=label, zorder=2), autolim=False
             )

@@ -8,16 +8,24 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
-from roughmdr.result.layout import abscissa_of, control_of, controlled_values, done_of, stored_variables, swept_sizes
+from roughmdr.result.layout import (
+    OVER_AREA,
+    abscissa_of,
+    control_of,
+    controlled_values,
+    done_of,
+    stored_variables,
+    swept_sizes,
+)
 from roughmdr.result.means import mean_of
+from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import LAW_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES
 
 _PER_AREA = {
-    "force": ("pressure", "Pa"),
-    "contact_area": ("contact fraction", "1"),
+    **{total: (OVER_AREA[total], CURVE_VARIABLES[OVER_AREA[total]].units) for total in ("force", "contact_area")},
     "contact_count": ("contacts per area", "m-2"),
     "stiffness": ("stiffness per area", "Pa m-1"),
     "contact_radius_sum": ("contact radii per area", "m-1"),
@@ -84,11 +92,6 @@ def drawn_against(result: Labelled, asked: str | None) -> str:
     return asked
 
 
-def adheres(result: Labelled) -> bool:
-    """Return whether the scene of a result has adhesion, so that contacts detach in jumps."""
-    return "adhesion" in parse_toml(result.attrs["scene"])
-
-
 def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
     """Yield the curves of a quantity over another, cell by cell."""
     branches = result.coordinates["branch"].values
@@ -101,7 +104,7 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
     model_error = _model_error(result, name, mean)
     mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
     x_mean, xs = x.scaled(x_mean), x.scaled(xs)
-    sticky = adheres(result)
+    sticky = adheres(parse_toml(result.attrs["scene"]))
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         some_missing = runs.size and not done[cell].all()
         of_cell, x_of_cell = (values[cell][done[cell]] if some_missing else values[cell] for values in (runs, xs))

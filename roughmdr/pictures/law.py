@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.pictures.curves import Curve, Quantity, adheres, curves_of, drawn_against
+from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
 from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
 from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
 from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, THEORY_COLOURS, Scale, colours, set_title
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, realizations_of, swept_sizes
 from roughmdr.result.means import holds, mean_of
+from roughmdr.schema.quantities import adheres
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.labelled import Array, Labelled
 
@@ -77,32 +79,15 @@ def draw_law(
         ]
         marks = [] if options.log else _pull_offs(result, quantity, against, palette)
         marked = marked or bool(marks)
-        draw_panel(
-            ax,
-            Panel(
-                quantity, x, curves, [_style(curve, palette, len(cells)) for curve in curves], over,
-                marks, trusted, options.log,
-                len(cells),
-            ),
-        )  # fmt: skip
+        styles = [_style(curve, palette, len(cells)) for curve in curves]
+        draw_panel(ax, Panel(quantity, x, curves, styles, over, marks, trusted, options.log, len(cells)))
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     _add_legend(figure, result, _entries(result, names, marked=marked, shaded=shaded), overlays, palette)
-    notes = [options.note, _words(result, len(cells)), *_trust_note(result)]
+    told = realizations_in_words(result) + (", unloading dashed" if len(cells) > 1 else "")
+    notes = [options.note, told, f"model: {dict(trust_of_result(result))['trust']}"]
     set_title(figure, result.attrs["title"], [note for note in notes if note])
     return figure
-
-
-def _words(result: Labelled, cells: int) -> str:
-    told = [realizations_in_words(result)]
-    if cells > 1:
-        told.append("unloading dashed")
-    return ", ".join(told)
-
-
-def _trust_note(result: Labelled) -> list[str]:
-    """Return how far the force can be trusted."""
-    return [f"model: {dict(trust_of_result(result))['trust']}"]
 
 
 def _style(curve: Curve, palette: Sequence[str], cells: int) -> dict[str, Any]:
@@ -145,7 +130,7 @@ def _entries(result: Labelled, names: Sequence[str], *, marked: bool, shaded: bo
         entries.append(Patch(color=blue, alpha=0.3, lw=0, label="± 2 standard errors"))
     if result.sizes.get("realization", 0) > MAX_RUNS:
         entries.append(Patch(color=blue, alpha=0.12, lw=0, label="9 of 10 realisations"))
-    if "stiffness" in names and "unloading" in branches and adheres(result):
+    if "stiffness" in names and "unloading" in branches and adheres(parse_toml(result.attrs["scene"])):
         entries.append(Patch(color=BRANCH_COLOURS["unloading"], alpha=0.3, lw=0, label="stiffness: median, 2 of 3"))
     if holds(result, "model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
         entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))

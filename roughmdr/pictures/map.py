@@ -10,8 +10,8 @@ from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.errors import StoreError
 from roughmdr.interaction.placed import sides_of
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.snapshot import Snapshot, text
-from roughmdr.pictures.style import COLOUR_MAP, Scale, set_title
+from roughmdr.pictures.snapshot import Snapshot
+from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, set_title
 from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def draw_ensemble(ensemble: Ensemble, title: str) -> "Figure":
     height = Scale.of(z, "height of the summit", "m")
     dots = ax.scatter(length(x), length(y), s=size, c=height(z), cmap=COLOUR_MAP, lw=0.0, rasterized=True)
     figure.colorbar(dots, ax=ax, label=height.label)
-    note = f"{z.size} asperities of shape {ensemble.shape}, from {text(z[0], 'm')} to {text(z[-1], 'm')}"
+    note = f"{z.size} asperities of shape {ensemble.shape}, from {in_words(z[0], 'm')} to {in_words(z[-1], 'm')}"
     set_title(figure, title, [f"{note}; only their places are to scale"])
     return figure
 
@@ -165,7 +165,7 @@ def _draw_contacts(figure: "Figure", ax: "Axes", discs: Floats, force: Floats, l
     scale = Scale.of(force, "force of a contact", "N")
     values, tense = scale(force), bool((force < 0.0).any())
     if tense:
-        scale = scale._replace(label=f"{scale.label}, tension < 0")
+        scale = scale._replace(name=f"{scale.name}, tension < 0")
         largest = float(np.abs(values).max())
         norm: Normalize = TwoSlopeNorm(0.0, float(values.min()), max(float(values.max()), 1e-3 * largest))
     else:
@@ -199,13 +199,15 @@ def _notes(now: Snapshot, frame: Frame, others: int, *, needed: bool) -> list[st
     contacts, ensemble = now.contacts, now.ensemble
     on = contacts.active
     count, total = int(np.count_nonzero(on)), float(contacts.force.sum())
-    numbers = f"{count} of {ensemble.height.size} asperities in contact, together {text(total, 'N')}"
+    numbers = f"{count} of {ensemble.height.size} asperities in contact, together {in_words(total, 'N')}"
     if ensemble.origin == "hills":
         numbers += "; hills: circles as stiff"
     least, drawn = frame.min_radius, []
     if count:
         small = int(np.count_nonzero(contacts.radius[on] < least))
-        drawn.append("discs to scale" + (f", {small} smaller than {text(least, 'm')} drawn as large" if small else ""))
+        drawn.append(
+            "discs to scale" + (f", {small} smaller than {in_words(least, 'm')} drawn as large" if small else "")
+        )
     if others:
         rest = ensemble.height.size - count
         drawn.append("dots: no contact" + ("" if others == rest else f", the {others} highest of {rest}"))

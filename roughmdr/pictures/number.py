@@ -9,18 +9,13 @@ from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.curves import Quantity
 from roughmdr.pictures.request import Request
-from roughmdr.result.layout import stored_variables, swept_sizes
+from roughmdr.result.layout import OVER_AREA, stored_variables, swept_sizes
 from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LAW_VARIABLES, PULL_OFF, RUN_VARIABLES
 
 _PULL_OFF = "pull_off_force"
-_PER_AREA = {
-    _PULL_OFF: "pull_off_pressure",
-    f"{_PULL_OFF}_of_mean": "pull_off_pressure_of_mean",
-    "pull_off_contact_area": "pull_off_contact_fraction",
-}
 _PLACES = ("force", "pressure", "contact_fraction", "separation")
 
 
@@ -46,7 +41,7 @@ def number_of(result: Labelled, request: Request) -> Number:
     if name in stored_variables(result) or (request.at and name in LAW_VARIABLES):
         return _of_curve(result, name, request)
     if request.per_area:
-        name = _PER_AREA.get(name, name)
+        name = OVER_AREA.get(name, name)
     declared = {**PULL_OFF, **RUN_VARIABLES}
     if name not in declared or not holds(result, name) or not declared[name].units:
         available = [*stored_variables(result), *(each for each in declared if holds(result, each))]

@@ -10,10 +10,10 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import branches
 from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.style import in_words
 from roughmdr.result.layout import cell_label, cells_of, control_of, controlled_values, estimator_of, method_of
 from roughmdr.scene import Scene, read
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, SEPARATION
@@ -85,16 +85,13 @@ class Snapshot(NamedTuple):
         if not on_grid:
             _check_force(result, (*cell, realization), step, float(contacts.force.sum()))
         branch = branches(np.where(np.isnan(path), above, path))[step]
-        where = f"realisation {realization}, step {step} of {path.size} ({branch}), separation {text(path[step], 'm')}"
+        where = (
+            f"realisation {realization}, step {step} of {path.size} ({branch}), separation {in_words(path[step], 'm')}"
+        )
         if on_grid:
             where += "; the result is by boundary elements, these are contacts coupled in pairs"
         label = cell_label(result, cell)
         return cls(scene, ensemble, contacts, float(path[step]), f"{label}, {where}" if label else where)
-
-
-def text(value: float, unit: str) -> str:
-    """Return a quantity in words, as pictures have it."""
-    return format_quantity(value, unit).replace(" u", " µ").replace("^2", "²")
 
 
 def _check_realization(result: Labelled, cell: tuple[int, ...], realization: int) -> None:
@@ -144,6 +141,6 @@ def _check_force(result: Labelled, run: tuple[int, ...], step: int, force: float
     curve = result.variables["force"].values[run]
     if not abs(force - curve[step]) <= _RTOL * np.nanmax(np.abs(curve)):
         raise StoreError(
-            f"the asperities of the scene have a force of {text(force, 'N')} at step {step}, the result has "
-            f"{text(curve[step], 'N')}: their file, or the code, has changed since; run the scene again"
+            f"the asperities of the scene have a force of {in_words(force, 'N')} at step {step}, the result has "
+            f"{in_words(curve[step], 'N')}: their file, or the code, has changed since; run the scene again"
         )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import axis_unit
+from roughmdr.schema.units import axis_unit, format_quantity
 from roughmdr.schema.wording import escape_controls, short_repr, suggestion
 from roughmdr.storage.files import check_ending, replace_atomically
 
@@ -31,10 +31,12 @@ _SALT = "roughmdr"  # so that an SVG of one figure is always the same
 
 
 class Scale(NamedTuple):
-    """The unit of an axis: its size in SI, and the label."""
+    """The unit of an axis: its size in SI, and what the axis shows in which unit."""
 
     size: float
-    label: str
+    name: str
+    unit: str = ""
+    """With prefix; empty for plain numbers and names."""
 
     @classmethod
     def of(cls, values: ArrayLike, name: str, unit: str) -> "Scale":
@@ -42,15 +44,28 @@ class Scale(NamedTuple):
         finite = np.asarray(values, dtype=np.float64)
         finite = finite[np.isfinite(finite)]
         size, text = axis_unit(float(np.abs(finite).max(initial=0.0)), unit)
-        if text[:1] == "u":
-            text = f"µ{text[1:]}"
-        text = text.replace("^2", "²")
-        label = name.replace("_", " ").replace("pull off", "pull-off")
-        return cls(size, f"{label} [{text}]" if text else label)
+        return cls(size, name.replace("_", " ").replace("pull off", "pull-off"), _spelt(text))
+
+    @property
+    def label(self) -> str:
+        """The label of the axis."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def __call__(self, values: ArrayLike) -> Floats:
         """Return numbers in SI in the unit of the axis."""
         return np.asarray(values, dtype=np.float64) / self.size
+
+
+def in_words(value: float, unit: str) -> str:
+    """Return a quantity in SI, with the unit spelt as on axes."""
+    number, _, prefixed = format_quantity(value, unit).partition(" ")
+    return f"{number} {_spelt(prefixed)}".rstrip()
+
+
+def _spelt(unit: str) -> str:
+    """Return a unit with the signs that a terminal may lack."""
+    micro = f"µ{unit[1:]}" if unit[:1] == "u" else unit.replace("/u", "/µ")
+    return micro.replace("^2", "²")
 
 
 def colours(count: int) -> list[str]:

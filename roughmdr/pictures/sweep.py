@@ -9,11 +9,10 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.number import Number, number_of
 from roughmdr.pictures.request import Request
 from roughmdr.pictures.style import BRANCH_COLOURS, COLOUR_MAP, Scale, set_title
-from roughmdr.report.trust import trust_of_result
-from roughmdr.result.layout import done_of, realizations_of, swept_sizes
+from roughmdr.report.trust import pull_off_error_of, trust_of_result
+from roughmdr.result.layout import cells_of, done_of, realizations_of, swept_sizes, swept_values
 from roughmdr.schema.wording import escape_controls, suggestion
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,13 +136,7 @@ def _axes(result: Labelled, asked: str | None) -> list[Axis]:
 
 
 def _swept_keys(result: Labelled) -> list[str]:
-    """Return the coordinates along one swept dimension each."""
-    sizes = swept_sizes(result)
-    return [
-        name
-        for name, array in result.coordinates.items()
-        if len(array.dims) == 1 and array.dims[0] in sizes and name not in AUXILIARY_COORDINATES
-    ]
+    return [*swept_values(result.coordinates, list(swept_sizes(result)), cells_of(result)[0])]
 
 
 def _swept_together(result: Labelled, shown: str) -> str:
@@ -159,9 +152,8 @@ def _words(result: Labelled, number: Number, scale: Scale) -> str:
     told = [number.where, f"mean of {count} realisations" if count > 1 else "one realisation"]
     errors = number.error[np.isfinite(number.error)]
     if errors.size:
-        unit = scale.label.partition("[")[2].rstrip("]")
         kind = "bars: ± 2 standard errors, one" if number.mean.ndim == 1 else "standard error"
-        told.append(f"{kind} at most {float(f'{float(scale(errors.max())):.2g}'):g} {unit}".rstrip())
+        told.append(f"{kind} at most {float(f'{float(scale(errors.max())):.2g}'):g} {scale.unit}".rstrip())
     missing = int(np.isnan(number.mean).sum())
     if missing:
         told.append(f"none in {missing} of {number.mean.size} cells")
@@ -179,10 +171,8 @@ def _model_note(result: Labelled, number: Number) -> str:
     """Return how far the model may be off, where the number is a force: of a pull-off, that of pull-offs."""
     if number.unit not in ("N", "Pa"):
         return ""
-    lines = [text for _, text in trust_of_result(result)]
-    own = [text for text in lines if text.startswith("the pull-off force itself")]
-    if "pull_off" in number.name and own:
-        return f"model: {own[0]}"
+    if "pull_off" in number.name and (own := pull_off_error_of(result)):
+        return f"model: {own}"
     return f"model: {dict(trust_of_result(result))['trust']}"
 
 
@@ -215,8 +205,7 @@ def _set_ticks(ax: "Axes", which: str, axis: Axis) -> None:
 def _panel_titles(axis: Axis) -> list[tuple[int, str]]:
     """Return which values of the third key have a panel, and its title; evenly chosen where they are many."""
     chosen = np.unique(np.linspace(0, axis.places.size - 1, min(_MAX_PANELS, axis.places.size)).astype(int))
-    name, _, unit = axis.scale.label.partition(" [")
-    unit = unit.rstrip("]")
+    name, unit = axis.scale.name, axis.scale.unit
     return [
         (int(i), f"{name} = {axis.names[i] if axis.names else f'{axis.places[i]:.4g} {unit}'.rstrip()}") for i in chosen
     ]

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR
-from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 
 _OF_MAPS = ("surface", "spectrum")
@@ -42,7 +42,7 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
 
 def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
     """Return which of the three to believe."""
-    if _adhesive(table):
+    if adheres(table):
         believed = (
             "believe hills in pairs as far as they have values, in unloading: their pull-off is 10 % off in the "
             "median, 50 % at worst; boundary elements are without adhesion here, and"
@@ -56,9 +56,3 @@ def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
     if model == "hills" and coupled:
         return f"believe boundary elements most, which press the map itself ({ask}); {_HILLS}"
     return f"believe boundary elements, which press the map itself ({ask}), or {_TO_HILLS}: {_HILLS}; {_SUMMITS}"
-
-
-def _adhesive(table: dict[str, Any]) -> bool:
-    """Return whether a scene has a work of adhesion above 0."""
-    work = table.get("adhesion", {}).get("work", 0.0)
-    return Quantity("J/m^2", at_least=0.0)(work) > 0.0

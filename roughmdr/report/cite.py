@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.errors import RoughmdrError
 from roughmdr.report import citations as papers
 from roughmdr.report.citations import Paper
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import done_of
 from roughmdr.scene import Scene, read
-from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
 from roughmdr.storage.labelled import Labelled
@@ -119,7 +118,7 @@ class _Used(NamedTuple):
     @property
     def adhesion_models(self) -> set[str]:
         """The models of adhesion, none without work."""
-        if not any(_positive(work) for work in self.values("adhesion.work")):
+        if not adheres(self.table):
             return set()
         if self.result is not None and "adhesion_law" in self.result.variables:
             law = self.result.variables["adhesion_law"]
@@ -192,13 +191,6 @@ def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
             yield "elements", papers.STANLEY_KATO
         if "free" in boundaries or ("surface" in used.sources and "interaction" not in used.table):
             yield "elements", papers.LOVE
-
-
-def _positive(work: object) -> bool:
-    try:
-        return Quantity("J/m^2")(work) > 0.0
-    except RoughmdrError:
-        return False
 
 
 def _line(paper: Paper) -> str:

@@ -5,9 +5,8 @@ import numpy as np
 from roughmdr.batch.resume.kept import Kept, Progress, progress_of
 from roughmdr.report.documents import PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
-from roughmdr.report.summary import format_table
 from roughmdr.scene.sweep import describe_cell
-from roughmdr.schema.wording import printable
+from roughmdr.schema.wording import format_table, printable
 
 _MAX_CELLS = 30
 

@@ -12,7 +12,7 @@ from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
-from roughmdr.schema.wording import format_bytes, format_seconds, printable
+from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, FAILED
 
@@ -211,11 +211,6 @@ def _avalanches(result: Labelled) -> Iterator[tuple[str, str]]:
 
 def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:
     return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
-
-
-def format_table(lines: list[tuple[str, str]]) -> str:
-    """Return lines of a name and a text as a table."""
-    return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
 
 
 def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[str, ...]:

@@ -77,11 +77,7 @@ def trust_lines(
     yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
     yield from (("", f"and by {error}") for error in errors[1:])
     if len(places) > 1:
-        root = math.sqrt(float(tension.max()))
-        yield (
-            "",
-            f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}",
-        )
+        yield "", _pull_off_error(tension)
     yield from _several("", others)
     yield "trust", _trust(known, coefficients, interaction)
     if interaction is None and not tension.size:
@@ -91,16 +87,28 @@ def trust_lines(
 def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
     if set(result.variables) >= _NAMES:
-        at_pull_off = [
-            result.variables[name].values.ravel()
-            for name in (_AT_PULL_OFF, f"{_AT_PULL_OFF}_min", f"{_AT_PULL_OFF}_max")
-            if name in result.variables
-        ]
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        yield from trust_lines(numbers, np.concatenate([[math.nan], *at_pull_off]), interaction=interaction)
+        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
+
+
+def pull_off_error_of(result: Labelled) -> str:
+    """Return by how much independence may change the pull-off force of a result; empty where that is not known."""
+    tension = _known(_at_pull_off(result))
+    return _pull_off_error(tension) if tension.size and result.attrs.get("interaction") != "pairwise" else ""
+
+
+def _at_pull_off(result: Labelled) -> Floats:
+    """Return the contact fractions at the pull-offs of a result, NaN where there is none."""
+    names = [name for name in (_AT_PULL_OFF, f"{_AT_PULL_OFF}_min", f"{_AT_PULL_OFF}_max") if name in result.variables]
+    return np.concatenate([[math.nan], *(result.variables[name].values.ravel() for name in names)])
+
+
+def _pull_off_error(tension: Floats) -> str:
+    root = math.sqrt(float(tension.max()))
+    return f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}"
 
 
 def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: str | None) -> str:

@@ -21,6 +21,15 @@ from roughmdr.variables import (
     TRAVEL,
 )
 
+OVER_AREA = {
+    "force": "pressure",
+    "contact_area": "contact_fraction",
+    "pull_off_force": "pull_off_pressure",
+    "pull_off_force_of_mean": "pull_off_pressure_of_mean",
+    "pull_off_contact_area": "pull_off_contact_fraction",
+}
+"""Variables that are others over the nominal area."""
+
 
 def stored_variables(result: Labelled) -> list[str]:
     """Return the variables whose curves, or their statistics, a result holds."""

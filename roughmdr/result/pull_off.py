@@ -12,12 +12,13 @@ from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.loading.pull_off import unloadings
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.layout import OVER_AREA
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import DONE, PULL_OFF, PULL_OFF_NUMBERS
 
 _STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
 _FORCE, _PRESSURE = "pull_off_force", "pull_off_pressure"
-_OVER_AREA = {_FORCE: _PRESSURE, "pull_off_contact_area": "pull_off_contact_fraction"}
+_TOTALS = (_FORCE, "pull_off_contact_area")
 
 
 def pull_off_numbers(
@@ -52,8 +53,8 @@ def pull_off_numbers(
     area = np.array([cell.scene.asperities.nominal_area or math.nan for cell in plan.cells])
     if np.isfinite(area).any():
         numbers |= {
-            name.replace(total, over_area): (values.T / area).T
-            for total, over_area in _OVER_AREA.items()
+            name.replace(total, OVER_AREA[total]): (values.T / area).T
+            for total in _TOTALS
             for name, values in numbers.items()
             if name.startswith(total)
         }

@@ -3,14 +3,14 @@
 import html
 from collections.abc import Iterable
 
-from roughmdr.schema.wording import escape_controls
+from roughmdr.schema.wording import escape_controls, format_table
 
 _MAX_LENGTH = 160
 
 
 def listing(lines: Iterable[tuple[str, str]]) -> str:
     """Return lines with their names in a column."""
-    return "\n".join(f"{_short(name):<12} {_short(text)}".rstrip() for name, text in lines)
+    return format_table((_short(name), _short(text)) for name, text in lines)
 
 
 def html_listing(lines: Iterable[tuple[str, str]]) -> str:

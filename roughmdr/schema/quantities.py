@@ -100,4 +100,13 @@ class WholeNumber:
         return f"a whole number from {self.minimum} to {self.maximum}"
 
 
+def adheres(table: dict[str, Any]) -> bool:
+    """Return whether a scene, as a table, has a work of adhesion above 0 in any of its cells."""
+    section, swept = table.get("adhesion", {}), table.get("sweep", {}).get("adhesion.work")
+    if isinstance(swept, dict):
+        swept = next((ends for name, ends in swept.items() if name in ("linspace", "logspace")), [])
+    works = [section.get("work", 0.0)] if swept is None else swept
+    return "adhesion" in table and any(Quantity("J/m^2")(work) > 0.0 for work in works)
+
+
 Length = Annotated[float, BeforeValidator(Quantity("m", above=0.0))]

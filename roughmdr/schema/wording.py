@@ -51,6 +51,11 @@ def count_by_cell(lines: Iterable[str], cells: int) -> list[str]:
     ]
 
 
+def format_table(lines: Iterable[tuple[str, str]]) -> str:
+    """Return lines of a name and a text, the names in a column."""
+    return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
+
+
 def format_seconds(seconds: float) -> str:
     """Format a time in seconds, minutes or hours."""
     if seconds < 100.0:

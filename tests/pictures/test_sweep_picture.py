@@ -109,6 +109,7 @@ def test_diagnostics_are_numbers_too(two: xr.Dataset) -> None:
     ("options", "says"),
     [
         ({"variables": ["force", "stiffness"]}, "a sweep is drawn of one"),
+        ({"variables": "stiffness", "at": {"force": 1.0, "pressure": 1.0}}, "at names force, pressure"),
         ({"variables": "pull_of_force"}, "did you mean 'pull_off_force'"),
         ({"at": {"forse": 1.0}, "variables": "stiffness"}, "did you mean 'force'"),
         ({"at": {"force": "1 um"}, "variables": "stiffness"}, "at force = 1 um"),

@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.schema.quantities import adheres
 from roughmdr.schema.units import _BASES, format_quantity, quantity
 
 
@@ -99,3 +100,18 @@ def test_the_prefix_leaves_one_to_three_digits_before_the_point(value: float, un
 )
 def test_a_quantity_is_shown_with_a_prefix(arguments: dict[str, float], text: str) -> None:
     assert format_quantity(**arguments) == text  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        ({}, False),
+        ({"adhesion": {"work": 0.0}}, False),
+        ({"adhesion": {"work": "50 mJ/m^2"}}, True),
+        ({"adhesion": {"work": 0.05}, "sweep": {"adhesion.work": [0.0]}}, False),
+        ({"adhesion": {"model": "jkr"}, "sweep": {"adhesion.work": ["0 J/m^2", "1 mJ/m^2"]}}, True),
+        ({"adhesion": {}, "sweep": {"adhesion.work": {"linspace": [0.0, 0.05], "num": 3}}}, True),
+    ],
+)
+def test_a_scene_adheres_where_it_has_a_work_in_any_cell(table: dict[str, object], expected: bool) -> None:
+    assert adheres(table) is expected
