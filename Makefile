@@ -24,7 +24,7 @@ test: setup lint
 # The long forms of the random searches, benchmarks, every shape compiled, and more of it uncompiled.
 test-all: test
 	$(BIN)/python -m pytest -n auto --dist loadfile -m large
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/shapes tests/asperity tests/fields
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/shapes tests/asperity
 
 studies: setup
 	@$(BIN)/python pipelines/all_studies.py -o results/studies

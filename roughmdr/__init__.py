@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from roughmdr import spectrum, theory
     from roughmdr.aggregate import load_separation
     from roughmdr.asperity.equilibria import equilibria
+    from roughmdr.asperity.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.asperity.indent import indent
     from roughmdr.asperity.pull_off import pull_off
     from roughmdr.asperity.tabor import tabor
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
         StoreError,
         Unfinished,
     )
-    from roughmdr.fields.evaluate import axis_stress, pressure, surface_displacement
     from roughmdr.fitting.fit import fit
     from roughmdr.pictures.plot import plot
     from roughmdr.report.cite import cite
@@ -68,7 +68,7 @@ _ROOMS = {
         "StoreError",
         "Unfinished",
     ),
-    "fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
+    "asperity.fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
     "fitting.fit": ("fit",),
     "report.cite": ("cite",),
     "report.info": ("info",),

@@ -26,7 +26,6 @@ LINES = (
     ("kernels",),
     ("springs",),
     ("asperity",),
-    ("fields",),
     ("ensemble",),
     ("interaction",),
     ("elements",),
@@ -35,6 +34,7 @@ LINES = (
     ("aggregate",),
     ("expected",),
     ("theory",),
+    ("layer",),
     ("batch",),
     ("result",),
     ("runner",),
@@ -82,7 +82,6 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
             [
                 "storage/labelled.py",
                 "asperity/",
-                "fields/",
                 "ensemble/",
                 "aggregate/",
                 "runner/",

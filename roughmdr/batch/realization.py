@@ -1,5 +1,7 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
+from typing import Any
+
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.loading.machine import MachinePath
@@ -26,28 +28,7 @@ def simulate_realization(
 ) -> LoadSeparation:
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
-        from roughmdr import expected
-
-        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        if isinstance(path, MachinePath):
-            from roughmdr.expected.under_machine import compute_under_machine
-
-            return compute_under_machine(
-                scene.asperities,
-                path,
-                effective_modulus=modulus,
-                adhesion=adhesion,
-                interaction=scene.interaction_model,
-                variables=variables,
-            )
-        return expected.compute(
-            scene.asperities,
-            path,
-            effective_modulus=modulus,
-            adhesion=adhesion,
-            interaction=scene.interaction_model,
-            variables=variables,
-        )
+        return _expected(scene, path, variables)
     placed = scene.needs_positions or scene.reference is not None
     ensemble = scene.asperities.ensemble(
         scene.seed, realization, stratified=estimator == "stratified", with_positions=placed
@@ -60,3 +41,19 @@ def simulate_realization(
     asked = [name for name in variables if name not in REFERENCE_VARIABLES]
     law = simulate_ensemble(scene, path, ensemble, asked)
     return with_reference(law, scene, path.separation, realization, ensemble).only(variables)
+
+
+def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+    """Return the expected law of a scene without a sweep."""
+    from roughmdr import expected
+    from roughmdr.expected.under_machine import compute_under_machine
+
+    given: dict[str, Any] = {
+        "effective_modulus": scene.effective_modulus,
+        "adhesion": scene.adhesion_model,
+        "interaction": scene.interaction_model,
+        "variables": variables,
+    }
+    if isinstance(path, MachinePath):
+        return compute_under_machine(scene.asperities, path, **given)
+    return expected.compute(scene.asperities, path, **given)

@@ -7,10 +7,10 @@ from pathlib import Path
 _PACKAGE = Path(__file__).parent.parent
 COMPILED = (
     "aggregate",
+    "asperity/fields",
     "ensemble/maps/hills",
     "ensemble/placement.py",
     "expected",
-    "fields",
     "interaction",
     "kernels",
     "loading",

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.asperity.fields.evaluate import pressure, surface_displacement
+from roughmdr.asperity.fields.half_space import HalfSpace
 from roughmdr.errors import LimitWarning
-from roughmdr.fields.evaluate import pressure, surface_displacement
-from roughmdr.fields.half_space import HalfSpace
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape

@@ -29,6 +29,12 @@ _BASES: dict[str, tuple[tuple[str, int], ...]] = {
     "J/m^2": (("J/m^2", 1), ("N/m", 1)),
     "N": (("N", 1),),
     "N/m": (("N/m", 1),),
+    "s": (("s", 1),),
+    "m/s": (("m/s", 1),),
+    "W/m/K": (("W/m/K", 1), ("W/(m K)", 1)),
+    "W/K": (("W/K", 1),),
+    "ohm m": (("ohm m", 1), ("ohm*m", 1), ("Ω m", 1)),
+    "S": (("S", 1),),
 }
 DIMENSIONLESS = "1"
 
@@ -48,10 +54,11 @@ def _table(dimension: str) -> dict[str, Decimal]:
 _EXAMPLES = {
     "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
     "m-2": '"1e9 /m^2"', "N": '"3 mN"',
-    "N/m": '"0.1 N/m"',
+    "N/m": '"0.1 N/m"', "s": '"10 ms"', "m/s": '"1 um/s"', "W/m/K": '"50 W/m/K"', "ohm m": '"20 nohm m"',
+    "W/K": '"3 mW/K"', "S": '"2 kS"',
 }  # fmt: skip
 _SHOWN = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-_SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2"}
+_SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2", "W K-1": "W/K"}
 """Units as results have them, in the spelling of a scene."""
 _POWERS = {"m^2": 2, "/m^2": -2}
 _DIGITS, _ERROR_DIGITS = 4, 2

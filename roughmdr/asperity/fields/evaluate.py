@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.asperity.fields.half_space import HalfSpace
+from roughmdr.asperity.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
-from roughmdr.fields.half_space import HalfSpace
-from roughmdr.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STEEP
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values

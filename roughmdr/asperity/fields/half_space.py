@@ -7,10 +7,10 @@ import numpy as np
 
 from roughmdr.asperity import validity
 from roughmdr.asperity.contact import Contact
+from roughmdr.asperity.fields.integrals import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN, field_kernel
+from roughmdr.asperity.fields.zone import Zone
 from roughmdr.asperity.tabor import resolved
 from roughmdr.errors import OutOfRange
-from roughmdr.fields.integrals import DEEP, DEEP_TURN, DISPLACEMENT, PRESSURE, STEEP, STEEP_TURN, field_kernel
-from roughmdr.fields.zone import Zone
 from roughmdr.kernels.adhesion import Adhesion, release_stretch
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats

@@ -1,0 +1,63 @@
+"""All variables of datasets and files, declared once: name, unit and description."""
+
+from roughmdr.variables.asperity import ASPERITY, FIELDS
+from roughmdr.variables.law import (
+    CONTROLS,
+    COORDINATES,
+    CURVE_VARIABLES,
+    DEFAULT_STEPS,
+    DEFAULT_VARIABLES,
+    LAW_VARIABLES,
+    MEASURED,
+    PRELOADS,
+    REFERENCE_VARIABLES,
+    REMOTE,
+    SEPARATION,
+    STEP_COORDINATES,
+    TRAVEL,
+)
+from roughmdr.variables.run import (
+    ADHESION_CODES,
+    AUXILIARY_COORDINATES,
+    DONE,
+    ESTIMATORS,
+    FAILED,
+    NOT_RUN,
+    PULL_OFF,
+    PULL_OFF_NUMBERS,
+    RUN_DIAGNOSTICS,
+    RUN_VARIABLES,
+    STATUSES,
+)
+from roughmdr.variables.variable import Diagnostic, Variable
+
+__all__ = [
+    "ADHESION_CODES",
+    "ASPERITY",
+    "AUXILIARY_COORDINATES",
+    "CONTROLS",
+    "COORDINATES",
+    "CURVE_VARIABLES",
+    "DEFAULT_STEPS",
+    "DEFAULT_VARIABLES",
+    "DONE",
+    "ESTIMATORS",
+    "FAILED",
+    "FIELDS",
+    "LAW_VARIABLES",
+    "MEASURED",
+    "NOT_RUN",
+    "PRELOADS",
+    "PULL_OFF",
+    "PULL_OFF_NUMBERS",
+    "REFERENCE_VARIABLES",
+    "REMOTE",
+    "RUN_DIAGNOSTICS",
+    "RUN_VARIABLES",
+    "SEPARATION",
+    "STATUSES",
+    "STEP_COORDINATES",
+    "TRAVEL",
+    "Diagnostic",
+    "Variable",
+]

@@ -1,0 +1,72 @@
+"""Variables of a load-separation law over its steps, and quantities that a path controls."""
+
+from roughmdr.variables.variable import Variable, declare
+
+CURVE_VARIABLES = declare(
+    ("force", "N", "normal force of all asperities, compression positive"),
+    ("contact_area", "m2", "sum of the contact areas"),
+    ("contact_count", "1", "number of asperities in contact"),
+    ("stiffness", "N m-1", "sum of the slopes dP/d(delta) of the branches, jumps not included"),
+    ("pressure", "Pa", "force over nominal area"),
+    ("contact_fraction", "1", "contact area over nominal area"),
+    ("contact_radius_sum", "m", "sum of the contact radii"),
+    ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
+    ("dissipated_energy", "J", "energy lost in jumps since the start of the path"),
+    ("machine_dissipated_energy", "J", "part of it that the machine loses in its jumps; 0 under fixed grips"),
+    ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
+)
+"""Variables of a load-separation law that [output] can name."""
+
+DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
+
+SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
+"""A variable where a machine moves the flat, else a coordinate."""
+
+REMOTE = Variable(
+    "remote", "m", "far end of the machine's spring above the datum plane, where its force is 0 at the flat"
+)
+"""A coordinate where a path controls it, a variable where it follows from a preload."""
+
+REFERENCE_VARIABLES = declare(
+    ("reference_force", "N", "normal force by boundary elements"),
+    ("reference_contact_area", "m2", "contact area by boundary elements"),
+    ("reference_contact_count", "1", "number of connected contacts by boundary elements"),
+    ("reference_stiffness", "N m-1", "slope -dF/dh by boundary elements"),
+    ("reference_pressure", "Pa", "force over nominal area by boundary elements"),
+    ("reference_contact_fraction", "1", "contact area over nominal area by boundary elements"),
+    ("reference_error", "1", "estimated relative error of the force by boundary elements, by their grid"),
+)
+"""Variables of a law by boundary elements beside that of the asperities."""
+
+LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES, **REFERENCE_VARIABLES}
+"""Variables that a result can have over its steps."""
+
+CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
+"""Quantities that a path can control, with their units: the last three by a machine."""
+
+MEASURED = {**CONTROLS, "force_error": "N", "pressure_error": "Pa"}
+"""Columns that a measured curve can have, with their units."""
+
+TRAVEL = Variable("travel", "1", "way of the flat, or of the far end of its spring: clear at 0, at the preload at 1")
+"""The coordinate of a path to a preload, which each realisation reaches at a separation of its own."""
+
+PRELOADS = {
+    "preload": ("force", "N"),
+    "preload_pressure": ("pressure", "Pa"),
+    "preload_contact_fraction": ("contact_fraction", "1"),
+}
+"""Preloads that a path can lead to: the quantity that loading goes on to, and its unit."""
+
+DEFAULT_STEPS = 200
+"""Of the loading to a preload."""
+
+STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units}
+"""Coordinates that a result can have over its steps, with their units."""
+
+COORDINATES = declare(
+    ("separation", "m", "rigid flat above the datum plane"),
+    ("branch", "", "direction in which the flat moved"),
+    ("height", "m", "summit height above the datum plane"),
+    ("x", "m", "x of the summit"),
+    ("y", "m", "y of the summit"),
+) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL}

@@ -1,0 +1,169 @@
+"""Variables that describe runs and cells: diagnostics, the pull-off, and how they were computed."""
+
+from typing import Any
+
+from roughmdr.variables.variable import Diagnostic, Variable, declare
+
+DONE, FAILED, NOT_RUN = range(3)
+"""Codes of ``status``."""
+STATUSES = ("done", "failed", "not_run")
+ADHESION_CODES = ("none", "jkr", "dugdale")
+ESTIMATORS = ("sampled", "stratified", "expected")
+
+
+def _tabor_known(scene: Any) -> bool:
+    return bool(scene.adhesion_model.tabor_known)
+
+
+def _pairwise(scene: Any) -> bool:
+    return bool(scene.needs_positions)
+
+
+def _referred(scene: Any) -> bool:
+    return scene.reference is not None
+
+
+def _adhering(scene: Any) -> bool:
+    return bool(scene.needs_positions and scene.adhesion_model.work > 0.0)
+
+
+def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
+    return {row.name: row for row in rows}
+
+
+RUN_DIAGNOSTICS = _diagnostics(
+    Diagnostic(
+        "run_time",
+        "s",
+        "time spent on the realization, or on all realizations of a statistic",
+        merge="add",
+        unstated=0.0,
+    ),
+    Diagnostic(
+        "numerical_error", "1", "estimated numerical error of the force over its largest magnitude", unstated=0.0
+    ),
+    Diagnostic("model_error", "1", "estimated relative error of the force by the assumptions of the model, at most"),
+    Diagnostic("interaction_error", "1", "part of the model error: asperities that do not feel each other"),
+    Diagnostic("slope_error", "1", "part of the model error: slopes that are not small"),
+    Diagnostic("profile_end_error", "1", "part of the model error: contacts beyond the end of their profile"),
+    Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
+    Diagnostic("resolution_error", "1", "part of the model error: summits or hills that the map does not resolve"),
+    Diagnostic("border_error", "1", "part of the model error: hills that the border of a map cuts", unstated=0.0),
+    Diagnostic(
+        "overlap_fraction",
+        "1",
+        "share of the contacts that reach into a neighbour's, at closest approach; with pairwise interaction the share "
+        "of the force that they carry",
+    ),
+    Diagnostic(
+        "overlap_count",
+        "1",
+        "number of contacts that overlap a neighbour's, at closest approach",
+        in_result=_pairwise,
+    ),
+    Diagnostic(
+        "marked_steps",
+        "1",
+        "number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or "
+        "contact",
+        merge="maximum",
+        in_result=_pairwise,
+    ),
+    Diagnostic(
+        "grid_points",
+        "1",
+        "points of the grid of boundary elements; 0 where contacts are coupled in pairs",
+        in_result=_pairwise,
+    ),
+    Diagnostic(
+        "reference_points", "1", "points of the grid of the reference by boundary elements", in_result=_referred
+    ),
+    Diagnostic(
+        "avalanche_count",
+        "1",
+        "number of separations at which contacts are made or lost in jumps",
+        in_result=_adhering,
+    ),
+    Diagnostic(
+        "avalanche_size_max",
+        "1",
+        "largest number of jumps at one separation",
+        merge="maximum",
+        in_result=_adhering,
+    ),
+    Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
+    Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
+    Diagnostic(
+        "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
+    ),
+    Diagnostic(
+        "profile_extent",
+        "1",
+        "largest contact radius over the radius where its profile ends",
+        merge="maximum",
+        unstated=0.0,
+    ),
+    Diagnostic(
+        "status", "1", "outcome of the realization", STATUSES, int, merge="maximum", missing=NOT_RUN, unstated=DONE
+    ),
+    Diagnostic("tabor_number", "1", "smallest Tabor number of the asperities", merge="fmin", in_result=_tabor_known),
+    Diagnostic(
+        "adhesion_law",
+        "1",
+        "adhesion model that was used",
+        ADHESION_CODES,
+        int,
+        merge="maximum",
+        missing=0,
+        unstated=0,
+        in_result=_tabor_known,
+    ),
+    Diagnostic(
+        "remark",
+        "",
+        "why the realization failed, or why it is doubtful",
+        dtype=str,
+        merge="first",
+        missing="",
+        unstated="",
+    ),
+)
+"""Diagnostics of a run: from here task results, checkpoints, resumed files and results have them."""
+
+PULL_OFF_NUMBERS = declare(
+    (
+        "pull_off_force",
+        "N",
+        "largest tension of the unloading, between its steps; none where it ends in contact",
+    ),
+    ("pull_off_separation", "m", "separation at the largest tension of the unloading"),
+    ("pull_off_contacts", "1", "number of contacts that carry the largest tension of the unloading"),
+    ("pull_off_contact_area", "m2", "contact area at the largest tension of the unloading"),
+)
+"""Numbers of the pull-off of each realisation, in the order of ``PullOff``."""
+
+PULL_OFF = PULL_OFF_NUMBERS | declare(
+    ("pull_off_pressure", "Pa", "largest tension of the unloading over nominal area"),
+    ("pull_off_contact_fraction", "1", "contact area over nominal area at the largest tension of the unloading"),
+    ("pull_off_count", "1", "number of realizations with a pull-off: whose unloading does not end in contact"),
+    ("pull_off_force_of_mean", "N", "largest tension of the mean force during unloading"),
+    ("pull_off_pressure_of_mean", "Pa", "largest tension of the mean force during unloading, over nominal area"),
+)
+"""Variables of a result with an unloading."""
+
+RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | declare(
+    ("realization_count", "1", "number of realizations of the statistics"),
+    ("nominal_area", "m2", "nominal area of the surface, or of its patch"),
+    ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
+    ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
+    ("accuracy_method", "1", "how the cell was computed", ESTIMATORS),
+)
+"""Variables of a result that describe its runs and cells."""
+
+AUXILIARY_COORDINATES = (
+    "separation",
+    "branch",
+    "cell_key",
+    *(row.name for row in RUN_DIAGNOSTICS.values() if row.dtype is str),
+)
+"""Coordinates of a result, other than its swept keys; the separation is one unless a machine moves the flat."""
