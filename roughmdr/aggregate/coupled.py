@@ -149,7 +149,7 @@ def sum_coupled(
 
     if asked := [name for name in names if name in UNAVAILABLE]:
         raise SceneError(f"variables: {', '.join(asked)} with interaction 'pairwise' need adhesion")
-    coupled = solve_path(ensemble, separation, effective_modulus, interaction, "stiffness" in names)
+    coupled = solve_path(ensemble, separation, effective_modulus, interaction, set(names))
     found = _found(ensemble, separation, interaction, coupled, adhesive=False)
     if found.marked and interaction.beyond == "boundary_elements":
         return _on_grid(found, ensemble, separation, effective_modulus, names)
@@ -205,6 +205,7 @@ def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np
         (totals.ENERGY, [step.energy for step in steps]),
         (totals.DISSIPATED, [step.dissipated for step in steps]),
         (totals.MACHINE, [step.by_machine for step in steps]),
+        (totals.CONDUCTANCE, [step.conductance for step in steps]),
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])
@@ -223,8 +224,10 @@ def _on_grid(
 
     surface = surface_of_asperities(ensemble, float(separation.min()), periodic=True)
     shape = grid_shape(surface.sides, POINTS)
-    found = solve_on_grid(surface, separation, effective_modulus, shape, stiffness="stiffness" in names)
+    stiffness = not {"stiffness", "conductance_radius"}.isdisjoint(names)
+    found = solve_on_grid(surface, separation, effective_modulus, shape, stiffness=stiffness)
     total, solved = _totals(found.steps, ensemble)
+    total[totals.CONDUCTANCE] = 0.5 * total[totals.STIFFNESS] / effective_modulus
     nx, ny = found.shape
     warning = (
         f"computed by boundary elements on a grid of {nx} x {ny} points: realisations of which steps were marked, as "

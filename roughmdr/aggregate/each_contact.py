@@ -114,7 +114,7 @@ def _coupled(
         from roughmdr.interaction.solve import solve_path
 
         above = np.unique(separation[separation >= separation[step]])[::-1]  # each begins from the one before
-        coupled = solve_path(ensemble, above, effective_modulus, interaction, stiffness=False)
+        coupled = solve_path(ensemble, above, effective_modulus, interaction, set())
         solved, force, radius = coupled.steps[-1], coupled.force, coupled.radius
     if not np.isfinite(solved.error):
         raise OutOfRange(f"there is no equilibrium of the contacts at step {step}, separation {separation[step]:g} m")

@@ -27,7 +27,17 @@ from roughmdr.aggregate.contacts import (
 )
 from roughmdr.aggregate.error_bound import bound_block, bound_each, no_terms, total_error
 from roughmdr.aggregate.scales import natural_scales
-from roughmdr.aggregate.totals import DISSIPATED, ENERGY, ERROR, ROWS, add_totals, jumps, jumps_between_branches
+from roughmdr.aggregate.totals import (
+    CONDUCTANCE,
+    DISSIPATED,
+    ENERGY,
+    ERROR,
+    RADIUS,
+    ROWS,
+    add_totals,
+    jumps,
+    jumps_between_branches,
+)
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels, Material
@@ -169,11 +179,12 @@ def sum_over_asperities(
     """Return the totals over the asperities, [row, step] in SI, the contact radius of each [m] where the flat is
     closest, and the number of visits (asperities times steps).
 
-    height [m] descends; only the ``rows`` asked for are computed. OutOfRange where the contact of an asperity that can
+    height [m] descends; only the ``rows`` asked for are computed, for the conductance that of the radii. OutOfRange where the contact of an asperity that can
     be in contact is not representable.
     """
     wanted = np.zeros(ROWS, dtype=np.bool_)
     wanted[list(rows)] = True
+    wanted[RADIUS] |= wanted[CONDUCTANCE]
     shape = ROWS, separation.size
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
@@ -184,4 +195,6 @@ def sum_over_asperities(
             f"the contact of an asperity is not representable: {kernels.name} with "
             f"effective modulus {effective_modulus:g} Pa, {adhesion}, separation down to {separation.min():g} m"
         )
+    if wanted[CONDUCTANCE]:
+        totals.total[CONDUCTANCE] = totals.total[RADIUS]
     return totals.total, totals.max_radius, visits

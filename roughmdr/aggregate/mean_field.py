@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roughmdr.aggregate.totals import ENERGY, ERROR, FORCE, STIFFNESS
+from roughmdr.aggregate.totals import CONDUCTANCE, ENERGY, ERROR, FORCE, STIFFNESS
 from roughmdr.interaction.mean_field import Shift
 from roughmdr.numerics.arguments import Floats
 
@@ -10,10 +10,11 @@ from roughmdr.numerics.arguments import Floats
 def couple(total: Floats, shift: Shift) -> None:
     """Change totals [row, step] at the separations h + c F into those of asperities under their mean field at h.
 
-    With k the stiffness of independent asperities, the slope of the force is k/(1 + c k). An error of the force, or
-    what is left of F - F0(h + c F), is as much smaller, and the surface stores c F^2/2 of the energy.
+    With k the stiffness of independent asperities, the slope of the force is k/(1 + c k). The conductance, an error of
+    the force, or what is left of F - F0(h + c F), are as much smaller, and the surface stores c F^2/2 of the energy.
     """
     slope = 1.0 + shift.coupling * total[STIFFNESS]
     total[ERROR] = (total[ERROR] + np.abs(total[FORCE] - shift.force)) / slope
     total[STIFFNESS] /= slope
+    total[CONDUCTANCE] /= slope
     total[ENERGY] += 0.5 * shift.coupling * total[FORCE] * total[FORCE]

@@ -6,9 +6,11 @@ from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, ST
 from roughmdr.numerics.summation import accumulate, block_sum
 
 # Rows of the totals.
-FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE = range(9)
-"""That of the machine, the energy which its jumps lose, is filled where there is one."""
-ROWS = 9
+FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE, CONDUCTANCE = range(10)
+"""That of the machine, the energy which its jumps lose, is filled where there is one; the conductance radius is that of
+the radii where contacts do not feel each other.
+"""
+ROWS = 10
 TOTAL_INDEX = {
     "force": FORCE,
     "pressure": FORCE,
@@ -17,6 +19,7 @@ TOTAL_INDEX = {
     "model_error_curve": AREA,
     "contact_count": COUNT,
     "contact_radius_sum": RADIUS,
+    "conductance_radius": CONDUCTANCE,
     "stiffness": STIFFNESS,
     "energy": ENERGY,
     "dissipated_energy": DISSIPATED,

@@ -12,7 +12,18 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import AREA, COUNT, DISSIPATED, ERROR, FORCE, MACHINE, STIFFNESS, TOTAL_INDEX
+from roughmdr.aggregate.totals import (
+    AREA,
+    CONDUCTANCE,
+    COUNT,
+    DISSIPATED,
+    ERROR,
+    FORCE,
+    MACHINE,
+    RADIUS,
+    STIFFNESS,
+    TOTAL_INDEX,
+)
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -72,6 +83,7 @@ def compute(
         error_of_others = max(error_of_others, float(undecided_of(nodes, steps).max() / most))
     count = source.expected_count
     total *= count
+    total[CONDUCTANCE] = total[RADIUS]
     if found is not None:
         couple(total, found)
     largest = float(np.abs(total[FORCE]).max())
@@ -143,9 +155,11 @@ def prepare(
 def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the totals that are integrated over the heights, and those of them that only the model error needs.
 
-    They are the force, the area, the count and all others that are asked for but the energy lost in jumps.
+    They are the force, the area, the count and all others that are asked for but the energy lost in jumps; for the
+    conductance the radii.
     """
-    asked = [FORCE, *(TOTAL_INDEX[name] for name in variables if TOTAL_INDEX[name] not in (DISSIPATED, MACHINE))]
+    rows = (RADIUS if TOTAL_INDEX[name] == CONDUCTANCE else TOTAL_INDEX[name] for name in variables)
+    asked = [FORCE, *(row for row in rows if row not in (DISSIPATED, MACHINE))]
     needed = (AREA, COUNT)
     return tuple(dict.fromkeys([*asked, *needed])), tuple(row for row in needed if row not in asked)
 

@@ -113,19 +113,26 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
     return State(x, contacts, pairs, x + displacement + (separation - asperities.height), displacement, lost)
 
 
-def _step(system: System, state: State, values: Floats, right: Floats, rtol: float) -> Floats:
-    """Return the loads dP of the contacts with (1/k + G) dP = right, 0 of all others."""
-    root = np.sqrt(state.contacts.stiffness)
+def first_order(
+    tangent: Coupling, pairs: close.Pairs, values: Floats, stiffness: Floats, right: Floats, rtol: float
+) -> Floats:
+    """Return the loads of contacts with (1/k + G) P = right, 0 where k is 0; ``values`` add to G of the pairs."""
+    root = np.sqrt(stiffness)
 
     def product(scaled: Floats) -> Floats:
         load = root * scaled.ravel()
-        potential = system.tangent.potential(load)
-        close.add_tangent(state.pairs, values, load, potential)
+        potential = tangent.potential(load)
+        close.add_tangent(pairs, values, load, potential)
         return scaled.ravel() + root * potential
 
     operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)
     found, _ = cg(operator, root * right, rtol=rtol, atol=0.0, maxiter=_MAX_ITERATIONS)
     return np.asarray(root * found)
+
+
+def _step(system: System, state: State, values: Floats, right: Floats, rtol: float) -> Floats:
+    """Return the loads dP of the contacts with (1/k + G) dP = right, 0 of all others."""
+    return first_order(system.tangent, state.pairs, values, state.contacts.stiffness, right, rtol)
 
 
 def _tangent(state: State) -> Floats:

@@ -11,6 +11,7 @@ import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction import close
+from roughmdr.interaction.conductance import Punches, total_conductance
 from roughmdr.interaction.contacts import coupled_kernels
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
@@ -81,9 +82,9 @@ class Candidates(Placed):
 
 
 def solve_path(
-    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, stiffness: bool
+    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, names: set[str]
 ) -> Coupled:
-    """Return coupled asperities at separations [m]; ``stiffness`` only where it is asked for.
+    """Return coupled asperities at separations [m]; stiffness and conductance where ``names`` asks for them.
 
     The ensemble has positions. SceneError where two asperities have one position; OutOfRange where a contact is not
     representable.
@@ -101,7 +102,7 @@ def solve_path(
             continue
         found = _settle(candidates, h, last, x, moved)
         visits += candidates.count
-        steps.append(_totals(candidates, found, h, length, effective_modulus, stiffness))
+        steps.append(_totals(candidates, found, h, effective_modulus, names))
         failures += 1
         if math.isfinite(found.error):
             state, before, failures = found.state, x, 0
@@ -143,13 +144,11 @@ def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Flo
         x, moved, last = found.state.x, np.empty(0), math.inf
 
 
-def _totals(
-    candidates: Candidates, found: Equilibrium, h: float, length: float, modulus: float, stiffness: bool
-) -> Step:
+def _totals(candidates: Candidates, found: Equilibrium, h: float, modulus: float, names: set[str]) -> Step:
     """Return the totals of an equilibrium in SI."""
     if not math.isfinite(found.error):
         return Step(error=math.inf)
-    contacts, pairs = found.state.contacts, found.state.pairs
+    contacts, pairs, length = found.state.contacts, found.state.pairs, candidates.length
     touching = contacts.load > 0.0
     if not touching.any():
         return Step()
@@ -158,8 +157,12 @@ def _totals(
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
     overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
-    rigidity = total_stiffness(candidates.system, found.state, h) if stiffness else 0.0
-    if math.isnan(rigidity):
+    rigidity = total_stiffness(candidates.system, found.state, h) if "stiffness" in names else 0.0
+    conductance = 0.0
+    if "conductance_radius" in names:
+        punches = Punches.of(candidates.system, found.state)
+        conductance = length * total_conductance(punches, candidates.interaction.error)
+    if math.isnan(rigidity + conductance):
         return Step(error=math.inf)
     return Step(
         force,
@@ -170,6 +173,7 @@ def _totals(
         force * (found.error + candidates.system.coupling.error),
         overlap,
         found.state.lost,
+        conductance=conductance,
     )
 
 
@@ -179,7 +183,7 @@ def prepare(shape: str) -> None:
     example = kind(**kind.example())
     height, place = np.array([2e-3, 1e-3, 0.0]), np.array([0.0, 1.0, 3.0])
     ensemble = Ensemble.alike(example, height, {"x": place, "y": place}, 10.0)
-    solve_path(ensemble, np.zeros(1), 1.0, Interaction(), stiffness=True)
+    solve_path(ensemble, np.zeros(1), 1.0, Interaction(), {"stiffness", "conductance_radius"})
     mesh = Mesh(place / 10.0, place / 10.0, Periodic.of(1.0), True, DEFAULT_ERROR)
     mesh.field(height)
     mesh.of_moments(height, height, height)

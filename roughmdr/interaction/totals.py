@@ -29,3 +29,5 @@ class Step(NamedTuple):
     """By all jumps up to here."""
     by_machine: float = 0.0
     """The part of it that a machine loses."""
+    conductance: float = 0.0
+    """The conductance radius."""

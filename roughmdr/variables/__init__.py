@@ -2,6 +2,7 @@
 
 from roughmdr.variables.asperity import ASPERITY, FIELDS
 from roughmdr.variables.law import (
+    CONDUCTANCES,
     CONTROLS,
     COORDINATES,
     CURVE_VARIABLES,
@@ -35,6 +36,7 @@ __all__ = [
     "ADHESION_CODES",
     "ASPERITY",
     "AUXILIARY_COORDINATES",
+    "CONDUCTANCES",
     "CONTROLS",
     "COORDINATES",
     "CURVE_VARIABLES",

@@ -2,6 +2,12 @@
 
 from roughmdr.variables.variable import Variable, declare
 
+CONDUCTANCES = declare(
+    ("thermal_conductance", "W K-1", "thermal conductance of all contacts"),
+    ("electrical_conductance", "S", "electrical conductance of all contacts"),
+)
+"""Conductances, of the dimension of a conductivity times the conductance radius; those of a scene with [conduction]."""
+
 CURVE_VARIABLES = declare(
     ("force", "N", "normal force of all asperities, compression positive"),
     ("contact_area", "m2", "sum of the contact areas"),
@@ -10,11 +16,13 @@ CURVE_VARIABLES = declare(
     ("pressure", "Pa", "force over nominal area"),
     ("contact_fraction", "1", "contact area over nominal area"),
     ("contact_radius_sum", "m", "sum of the contact radii"),
+    ("conductance_radius", "m", "radius of the one circular contact that conducts as well as all"),
     ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
     ("dissipated_energy", "J", "energy lost in jumps since the start of the path"),
     ("machine_dissipated_energy", "J", "part of it that the machine loses in its jumps; 0 under fixed grips"),
     ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
 )
+CURVE_VARIABLES |= CONDUCTANCES
 """Variables of a load-separation law that [output] can name."""
 
 DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
@@ -34,6 +42,9 @@ REFERENCE_VARIABLES = declare(
     ("reference_stiffness", "N m-1", "slope -dF/dh by boundary elements"),
     ("reference_pressure", "Pa", "force over nominal area by boundary elements"),
     ("reference_contact_fraction", "1", "contact area over nominal area by boundary elements"),
+    ("reference_conductance_radius", "m", "radius of one contact that conducts as well, by boundary elements"),
+    ("reference_thermal_conductance", "W K-1", "thermal conductance by boundary elements"),
+    ("reference_electrical_conductance", "S", "electrical conductance by boundary elements"),
     ("reference_error", "1", "estimated relative error of the force by boundary elements, by their grid"),
 )
 """Variables of a law by boundary elements beside that of the asperities."""

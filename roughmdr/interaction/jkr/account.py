@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction import close
+from roughmdr.interaction.conductance import Punches, total_conductance
 from roughmdr.interaction.jkr.equilibrium import State, alone, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.jumps import Avalanche
@@ -108,9 +109,13 @@ class Account:
         on = np.flatnonzero(state.inside)
         radius, load = state.contacts.radius[on], state.load[on]
         unit = math.pi * self._modulus * length * length
-        stiffness = 0.0
+        stiffness = conductance = 0.0
         if "stiffness" in self._names:
             stiffness = -slope(*alone(problem, state))
+        if "conductance_radius" in self._names:
+            conductance = length * self._conductance(state)
+            if math.isnan(conductance):
+                return Step(error=math.inf)
         overlapping = np.zeros(state.t.size, np.bool_)
         close.mark_overlaps(problem.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         sizes = math.fsum(np.abs(load).tolist())
@@ -127,7 +132,14 @@ class Account:
             int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
             *lost,
+            conductance,
         )
+
+    def _conductance(self, state: State) -> float:
+        """Return the conductance radius of the contacts as they are, whatever adhesion does to their stiffness."""
+        few, on = alone(self._front.problem, state)
+        punches = Punches.of_adhesive(on.contacts.radius, few.coupling, few.pairs, few.order)
+        return total_conductance(punches, self._front.placed.interaction.error)
 
     def _pull_off(self) -> PullOff:
         """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
