@@ -208,6 +208,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     if scene.reference is None:
         yield "boundary elements: the scene has no [reference]"
+    if scene.conduction is None:
+        yield "conductances: the scene has no [conduction]"
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

@@ -4,6 +4,7 @@ from typing import Any
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
+from roughmdr.layer.conductance import of_contacts, with_conductances
 from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
 from roughmdr.variables import REFERENCE_VARIABLES
@@ -13,14 +14,15 @@ def simulate_ensemble(
     scene: Scene, path: LoadingPath | MachinePath, ensemble: Ensemble, variables: list[str]
 ) -> LoadSeparation:
     """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
-    return simulate(
+    law = simulate(
         ensemble,
         path,
         effective_modulus=scene.effective_modulus,
         adhesion=scene.adhesion_model,
         interaction=scene.interaction_model,
-        variables=variables,
+        variables=of_contacts(variables),
     )
+    return with_conductances(law, scene.conductance_factors).only(variables)
 
 
 def simulate_realization(
@@ -52,8 +54,8 @@ def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str
         "effective_modulus": scene.effective_modulus,
         "adhesion": scene.adhesion_model,
         "interaction": scene.interaction_model,
-        "variables": variables,
+        "variables": of_contacts(variables),
     }
-    if isinstance(path, MachinePath):
-        return compute_under_machine(scene.asperities, path, **given)
-    return expected.compute(scene.asperities, path, **given)
+    of = compute_under_machine if isinstance(path, MachinePath) else expected.compute
+    law: LoadSeparation = of(scene.asperities, path, **given)
+    return with_conductances(law, scene.conductance_factors).only(variables)

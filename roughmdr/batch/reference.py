@@ -9,6 +9,7 @@ from roughmdr.aggregate import LoadSeparation
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import sides_of
+from roughmdr.layer.conductance import RADIUS, conductances, of_contacts
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.variables import REFERENCE_VARIABLES
@@ -45,15 +46,24 @@ def with_reference(
         surface = surface_of_asperities(ensemble, float(separation.min()), periodic=scene.repeats)
     else:
         surface = surface_of_map(height_map, ensemble.height, periodic=scene.repeats)
-    stiffness = "stiffness" in law.variables
+    stiffness = not {"stiffness", RADIUS}.isdisjoint(of_contacts(law.variables))
     found = solve_to_error(surface, separation, scene.effective_modulus, scene.reference.error, stiffness=stiffness)
     numbers = [(step.force, step.area, step.contacts, step.stiffness, step.error) for step in found.steps]
     force, area, count, slope, error = np.array(numbers).T
     solved = np.isfinite(error)
     relative = np.divide(error, force, out=np.where(error > 0.0, 1.0, 0.0), where=(force > 0.0) & solved)
-    patch = ensemble.nominal_area or math.nan
-    columns = (force, area, count, slope, force / patch, area / patch, np.minimum(relative, 1.0))
-    values = dict(zip(REFERENCE_VARIABLES, columns, strict=True))
+    patch, radius = ensemble.nominal_area or math.nan, 0.5 * slope / scene.effective_modulus
+    values = {
+        "reference_force": force,
+        "reference_contact_area": area,
+        "reference_contact_count": count,
+        "reference_stiffness": slope,
+        "reference_pressure": force / patch,
+        "reference_contact_fraction": area / patch,
+        "reference_conductance_radius": radius,
+        **{f"reference_{name}": value for name, value in conductances(radius, scene.conductance_factors).items()},
+        "reference_error": np.minimum(relative, 1.0),
+    }
     reference = {name: np.where(solved, values[name], math.nan) for name in reference_variables(law.variables)}
     remarks = _remarks(float(errors(found).max()), scene.reference.error, found.shape, int(np.sum(~solved)))
     return law._replace(

@@ -11,6 +11,7 @@ from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
 from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.scene.conduction import ConductionSection, check_conduction
 from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
@@ -51,6 +52,7 @@ class Scene(Section):
     asperities: Asperities
     interaction: InteractionSection | None = None
     reference: ReferenceSection | None = None
+    conduction: ConductionSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -128,6 +130,7 @@ class Scene(Section):
             raise mismatch("interaction", reason)
         if self.reference is not None:
             self._check_reference()
+        check_conduction(self.conduction, self.output.variables)
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
@@ -213,6 +216,11 @@ class Scene(Section):
     def interaction_model(self) -> Interaction | None:
         """Interaction with its parameters; None where asperities are independent."""
         return None if self.interaction is None else self.interaction.interaction_model
+
+    @property
+    def conductance_factors(self) -> dict[str, float]:
+        """Each conductance over the conductance radius [SI], where [conduction] tells it."""
+        return {} if self.conduction is None else self.conduction.factors
 
     @property
     def needs_positions(self) -> bool:

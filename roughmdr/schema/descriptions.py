@@ -25,6 +25,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "asperities": "Where the asperities come from",
         "interaction": "How asperities feel each other; they are independent without this section",
         "reference": "The surface itself by boundary elements, beside the law of its asperities, without adhesion",
+        "conduction": "How the bodies conduct, for thermal_conductance and electrical_conductance",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -84,6 +85,12 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "beyond": 'Where too many contacts overlap: "flag" marks the step, "boundary_elements" solves it on a grid',
     },
     "reference": {"model": "Method", "error": "Relative error of its force by the grid"},
+    "conduction": {
+        "conductivity": "Thermal conductivity, of both bodies unless counter_conductivity is given",
+        "counter_conductivity": "Thermal conductivity of the other body",
+        "resistivity": "Electrical resistivity, of both bodies unless counter_resistivity is given",
+        "counter_resistivity": "Electrical resistivity of the other body",
+    },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",
         "force": "Dead loads in place of separations: a table of start, stop and steps, or a list",

@@ -13,6 +13,7 @@ _SECTIONS = {
         "radius": '"50 um"',
     },
     "interaction": {"model": '"pairwise"'},
+    "conduction": {"conductivity": '"400 W/m/K"', "resistivity": '"17e-9 ohm m"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
     "accuracy": {"relative": "1e-2"},
 }

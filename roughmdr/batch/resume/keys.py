@@ -52,6 +52,7 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
         sections[id(section)],
         hashlib.sha256(cell.values.tobytes()).hexdigest(),
         *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine), cell.machine.preload)),
+        *scene.conductance_factors.items(),
         scene.seed,
         estimator,
         versions(),

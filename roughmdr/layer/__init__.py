@@ -1,0 +1,1 @@
+"""What follows from the finished law of a rough layer."""
