@@ -17,6 +17,7 @@ from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error.conductance import coupled_conductance_error
 from roughmdr.model_error.coupling import (
     HILLS_MARKED_FRACTION,
     MARKED_FRACTION,
@@ -44,6 +45,8 @@ class CoupledTotals(NamedTuple):
     visits: int
     error: Floats
     """The estimated error of the force that the coupling leaves [1], over the steps."""
+    conductance_error: Floats
+    """That of the conductance."""
     overlap_count: int
     """At the closest approach with an equilibrium, as the next."""
     overlap_share: float
@@ -114,6 +117,7 @@ def _law(
         origin=ensemble.origin,
         overlap=found.overlap_share,
         coupling_error=found.error,
+        conductance_error=found.conductance_error,
     )
     model = "jkr" if work > 0.0 else "none"
     result = LoadSeparation.of(found.total, names, separation, givens, assumptions, found.visits, validity.tabor, model)
@@ -183,10 +187,12 @@ def _found(
     largest = np.nanmax(np.abs(total[totals.FORCE]), initial=0.0) if adhesive else total[totals.FORCE]
     beyond |= total[totals.ERROR] > interaction.error * largest  # contacts that did not come to rest
     error = coupling_error(np.nan_to_num(fraction), share, ensemble)
+    of_conductance = coupled_conductance_error(np.nan_to_num(fraction), share, ensemble, interaction.order)
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
     overlap = math.nan if hills else closest.share
-    return CoupledTotals(total, along.radius, along.visits, error, closest.contacts, overlap, marked)
+    visits, contacts = along.visits, closest.contacts
+    return CoupledTotals(total, along.radius, visits, error, of_conductance, contacts, overlap, marked)
 
 
 def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np.bool_]]:
@@ -219,6 +225,7 @@ def _on_grid(
     pairwise: CoupledTotals, ensemble: Ensemble, separation: Floats, effective_modulus: float, names: list[str]
 ) -> CoupledTotals:
     """Return the totals of the whole path by boundary elements, in place of those of contacts coupled in pairs."""
+    from roughmdr.elements.half_space import STIFFNESS_ERROR
     from roughmdr.elements.path import solve_on_grid
     from roughmdr.elements.surface import POINTS, grid_shape, surface_of_asperities
 
@@ -236,5 +243,10 @@ def _on_grid(
     fraction = np.nan_to_num(total[totals.AREA]) / (ensemble.nominal_area or math.inf)
     error = summits_error(fraction, ensemble.origin)
     return pairwise._replace(
-        total=total, error=error, marked=int(np.sum(~solved)), grid_points=nx * ny, warnings=(warning,)
+        total=total,
+        error=error,
+        conductance_error=error + STIFFNESS_ERROR,
+        marked=int(np.sum(~solved)),
+        grid_points=nx * ny,
+        warnings=(warning,),
     )

@@ -12,6 +12,7 @@ from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction
+from roughmdr.model_error.conductance import conductance_error
 from roughmdr.numerics.arguments import Floats
 
 PER_AREA = {"pressure", "contact_fraction", "model_error_curve"}
@@ -49,6 +50,9 @@ class LoadSeparation(NamedTuple):
     """Of the boundary elements that the law was computed by; 0 of contacts coupled in pairs, NaN likewise."""
     reference_points: float = math.nan
     """Of the grid of boundary elements beside the law; NaN where there are none."""
+    conductance_error: float = math.nan
+    """The largest relative error of the conductance that the assumptions of the model cause; NaN where not asked for.
+    """
     avalanche_count: float = math.nan
     """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
     avalanche_size_max: float = math.nan
@@ -83,7 +87,10 @@ class LoadSeparation(NamedTuple):
         largest, error = (float(np.nanmax(np.abs(row), initial=0.0)) for row in (force, total[totals.ERROR]))
         relative = error / largest if largest > 0.0 else 0.0
         extremes = assumptions.limits._replace(tabor=tabor if model == "jkr" else math.inf)
-        return cls(results, relative, model_error, extremes, visits, tabor, model)
+        law = cls(results, relative, model_error, extremes, visits, tabor, model)
+        if "conductance_radius" not in names:
+            return law
+        return law._replace(conductance_error=conductance_error(assumptions, model_error, fraction))
 
     def only(self, names: list[str]) -> LoadSeparation:
         """Return the law with these variables, in this order."""

@@ -19,7 +19,14 @@ from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_VARIABLES
+from roughmdr.variables import (
+    CONDUCTANCES,
+    CURVE_VARIABLES,
+    DEFAULT_VARIABLES,
+    LAW_VARIABLES,
+    PULL_OFF_NUMBERS,
+    RUN_VARIABLES,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,8 +58,8 @@ def load_separation(
         How asperities feel each other, as in a scene's [interaction]: a dict has model, boundary, order, error, beyond.
         None: they are independent. "pairwise" needs x and y; with adhesion it needs the model "jkr".
     variables : str or iterable of str, optional
-        Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum, energy,
-        dissipated_energy, machine_dissipated_energy, model_error_curve.
+        Of force, contact_area, contact_count, stiffness, pressure, contact_fraction, contact_radius_sum,
+        conductance_radius, energy, dissipated_energy, machine_dissipated_energy, model_error_curve.
     **given
         The machine: force [N] or pressure [Pa], a dead load, or remote [m], the position of the far end of a spring
         whose machine_stiffness [N/m] is given too: the spring bears machine_stiffness (separation - remote).
@@ -70,7 +77,7 @@ def load_separation(
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
         where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m],
         pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact; with pairwise interaction
-        overlap_count [1], marked_steps [1] and grid_points [1].
+        overlap_count [1], marked_steps [1] and grid_points [1]; with conductance_radius its conductance_error [1].
 
     Raises
     ------
@@ -108,9 +115,12 @@ def load_separation(
     path = path_of(separation, given, unload=unload, area=asperities.nominal_area, adhesive=asked.work > 0.0)
     effective_modulus = effective_modulus_of(load_separation, given)
     names = [variables] if isinstance(variables, str) else list(variables)
+    available = [name for name in CURVE_VARIABLES if name not in CONDUCTANCES]
     for name in names:
+        if name in CONDUCTANCES:
+            raise SceneError(f"variables: {name!r} needs the [conduction] of a scene; ask for conductance_radius")
         if name not in CURVE_VARIABLES:
-            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
+            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(available)}")
     result = simulate(
         asperities,
         path,
@@ -125,6 +135,8 @@ def load_separation(
         names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]
         names_of_coupling += ["avalanche_count", "avalanche_size_max"] if asked.work > 0.0 else []
         errors |= {name: getattr(result, name) for name in names_of_coupling}
+    if "conductance_radius" in names:
+        errors["conductance_error"] = result.conductance_error
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
     if "unloading" in path.branch().values:
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):

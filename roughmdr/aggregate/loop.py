@@ -179,8 +179,8 @@ def sum_over_asperities(
     """Return the totals over the asperities, [row, step] in SI, the contact radius of each [m] where the flat is
     closest, and the number of visits (asperities times steps).
 
-    height [m] descends; only the ``rows`` asked for are computed, for the conductance that of the radii. OutOfRange where the contact of an asperity that can
-    be in contact is not representable.
+    height [m] descends; only the ``rows`` asked for are computed, for the conductance that of the radii. OutOfRange
+    where the contact of an asperity that can be in contact is not representable.
     """
     wanted = np.zeros(ROWS, dtype=np.bool_)
     wanted[list(rows)] = True

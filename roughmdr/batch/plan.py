@@ -206,10 +206,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"positions: {independent}; nothing depends on their positions"
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
-    if scene.reference is None:
-        yield "boundary elements: the scene has no [reference]"
-    if scene.conduction is None:
-        yield "conductances: the scene has no [conduction]"
+    parts = {"reference": "boundary elements", "conduction": "conductances"}
+    yield from (f"{part}: the scene has no [{key}]" for key, part in parts.items() if getattr(scene, key) is None)
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

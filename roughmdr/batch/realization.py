@@ -56,6 +56,8 @@ def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str
         "interaction": scene.interaction_model,
         "variables": of_contacts(variables),
     }
-    of = compute_under_machine if isinstance(path, MachinePath) else expected.compute
-    law: LoadSeparation = of(scene.asperities, path, **given)
+    if isinstance(path, MachinePath):
+        law = compute_under_machine(scene.asperities, path, **given)
+    else:
+        law = expected.compute(scene.asperities, path, **given)
     return with_conductances(law, scene.conductance_factors).only(variables)

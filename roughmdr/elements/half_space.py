@@ -19,7 +19,7 @@ from roughmdr.numerics.arguments import Floats
 _RESIDUAL = 1e-6
 """The largest gap in contact, or overlap outside it, over the deepest overlap: about the error of the force."""
 _MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50 to 100
-_DIFFERENCE = 0.01
+_DIFFERENCE, STIFFNESS_ERROR = 0.01, 0.01
 """Step of the separation, each way, over the deepest overlap. Cells at an edge touch one by one, so that the stiffness
 is accurate to 1 %."""
 _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0

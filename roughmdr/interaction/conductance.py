@@ -103,7 +103,7 @@ def _displacement(punches: Punches, load: Floats, whole: Floats, added: Floats) 
         close.take_from_field(pairs, load, field)
     spread, tilting = a * a / 6.0, 4.0 / (3.0 * math.pi) * a**3
     moments = spread * load, tilting * field[1], tilting * field[2]
-    displacement = field[0] + spread * field[3] + coupling.of_moments(*moments)
+    displacement = np.asarray(field[0] + spread * field[3] + coupling.of_moments(*moments))
     if not punches.without_pairs:
         close.take_from_moments(pairs, *moments, displacement)
     close.add_tangent(pairs, whole, load, displacement)

@@ -45,6 +45,8 @@ class Assumptions(NamedTuple):
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
     coupling_error: Floats | None = None
     """The error of asperities that are coupled, at each step; None of independent ones."""
+    conductance_error: Floats | None = None
+    """That of their conductance; None likewise."""
 
 
 class ModelError(NamedTuple):

@@ -16,7 +16,7 @@ _NEEDED = dict(zip(CONDUCTANCES, ("conductivity", "resistivity"), strict=True))
 
 
 class ConductionSection(Section):
-    """[conduction]: thermal conductivity, electrical resistivity, or both; of both bodies, unless counter_ has the other's.
+    """[conduction]: thermal conductivity, electrical resistivity, or both; the other body's where it has another.
 
     A rigid body conducts too.
     """

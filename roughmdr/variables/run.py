@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from roughmdr.variables.law import CONDUCTANCES
 from roughmdr.variables.variable import Diagnostic, Variable, declare
 
 DONE, FAILED, NOT_RUN = range(3)
@@ -27,6 +28,10 @@ def _adhering(scene: Any) -> bool:
     return bool(scene.needs_positions and scene.adhesion_model.work > 0.0)
 
 
+def _conducting(scene: Any) -> bool:
+    return not {"conductance_radius", *CONDUCTANCES}.isdisjoint(scene.output.variables)
+
+
 def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
     return {row.name: row for row in rows}
 
@@ -49,6 +54,12 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
     Diagnostic("resolution_error", "1", "part of the model error: summits or hills that the map does not resolve"),
     Diagnostic("border_error", "1", "part of the model error: hills that the border of a map cuts", unstated=0.0),
+    Diagnostic(
+        "conductance_error",
+        "1",
+        "estimated relative error of the conductance at given separation by the assumptions of the model, at most",
+        in_result=_conducting,
+    ),
     Diagnostic(
         "overlap_fraction",
         "1",

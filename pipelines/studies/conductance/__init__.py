@@ -1,0 +1,1 @@
+"""The conductance of asperities against the stiffness of boundary elements."""

@@ -1,0 +1,46 @@
+"""The error of the conductance at given separation, against boundary elements (``pipelines/conductance.py``)."""
+
+import math
+
+import numpy as np
+
+from roughmdr.ensemble.ensemble import Ensemble, Origin
+from roughmdr.model_error.parts import Assumptions, ModelError
+from roughmdr.numerics.arguments import Floats
+
+_INDEPENDENT: dict[Origin, float] = {"asperities": 2.0, "summits": 3.0, "hills": 10.0}
+"""Of contacts that do not feel each other, over the root of the contact fraction."""
+_FIRST_ORDER, _THIRD, _SECOND_ORDER, _FIFTH = 2.0, 1.5, 0.15, 2.5
+"""Of separated contacts that are coupled in pairs, over these powers of the contact fraction: (a/D)^3 and (a/D)^5."""
+_OVERLAP = 0.1
+"""Of contacts that overlap, over their share of the force."""
+_HILLS, _SUMMITS = 0.06, 1.3
+"""Of the hills of an isotropic map; of summits, over the root of the contact fraction."""
+
+
+def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensemble: Ensemble, order: int) -> Floats:
+    """Return about the largest relative error of the conductance [1] of contacts that are coupled in pairs.
+
+    ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
+    contacts that overlap; shape (n,) each.
+    """
+    error = _SECOND_ORDER * contact_fraction**_FIFTH + _OVERLAP * overlap
+    if order == 1:
+        error = error + _FIRST_ORDER * contact_fraction**_THIRD
+    if ensemble.origin == "hills":
+        error = error + np.where(contact_fraction > 0.0, _HILLS * math.sqrt(ensemble.anisotropy), 0.0)
+    if ensemble.origin == "summits":
+        error = error + _SUMMITS * np.sqrt(contact_fraction)
+    return np.minimum(error, 1.0)
+
+
+def conductance_error(assumptions: Assumptions, model_error: ModelError, contact_fraction: Floats | None) -> float:
+    """Return the largest error along a path, with the parts that are not by interaction; NaN without a nominal area."""
+    if contact_fraction is None:
+        return math.nan
+    interaction = assumptions.conductance_error
+    if interaction is None:
+        interaction = _INDEPENDENT[assumptions.origin] * np.sqrt(contact_fraction)
+    largest = float(np.nanmax(interaction, initial=0.0))
+    others = math.fsum(part for name, part in model_error.parts.items() if name != "interaction_error")
+    return min(largest + others, 1.0) if largest > 0.0 else 0.0
