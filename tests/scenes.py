@@ -23,7 +23,8 @@ SCENE: dict[str, Any] = {
     "path": {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 40}, "unload": True},
     "batch": {"realizations": 16},
 }
-
+CONDUCTION = {"conductivity": "400 W/m/K", "resistivity": "17 nohm m", "counter_resistivity": "30 nohm m"}
+"""What the conductances need among the variables of a scene."""
 
 WIDER_SHAPES: dict[str, dict[str, Any]] = {
     "flat_punch": {"radius": (1e-6, 3e-6)},

@@ -53,6 +53,7 @@ _SCALES = {
     "pressure": _Factors(4.0 / 3.0, (1.0, 1.0, 0.5, 1.5, -1.0), f"{_FORCE.text}/A"),
     "contact_fraction": _Factors(math.pi, (1.0, 0.0, 1.0, 1.0, -1.0), f"{_AREA.text}/A"),
     "contact_radius_sum": _Factors(1.0, (1.0, 0.0, 0.5, 0.5, 0.0), "N (R sigma)^(1/2)"),
+    "conductance_radius": _Factors(1.0, (1.0, 0.0, 0.5, 0.5, 0.0), "N (R sigma)^(1/2)"),
     "energy": _ENERGY,
     "dissipated_energy": _ENERGY,
     "machine_dissipated_energy": _ENERGY,

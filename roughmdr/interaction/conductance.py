@@ -1,23 +1,27 @@
 """The conductance of contacts on a half-space: the stiffness of coupled flat punches of their radii that stay level.
 
 Pressure and displacement are to it as current and potential, with the contact areas as they are (J. R. Barber, Proc. R.
-Soc. Lond. A 459 (2003) 53). A punch of radius a under the load P displaces others by P G and by its second moment,
-P a^2/6 lap G; the displacement u by others that it bears is the mean under its own pressure, u + a^2/6 lap u; and where
-they tilt the surface its pressure has a moment, 4/3 E* a^3 for a tilt of 1, which others feel. Left out is the fifth
-order in radius over distance. Contacts that grow have other terms besides, as a curved surface changes their area.
+Soc. Lond. A 459 (2003) 53). To second order a punch of radius a under the load P displaces others by P G and by its
+second moment, P a^2/6 lap G; the displacement u by others that it bears is the mean under its own pressure, u + a^2/6
+lap u; where they tilt the surface its pressure has a moment, 4/3 E* a^3 for a tilt of 1, which others feel; and it
+stands where the contact has slid to on the surface that the forces tilt. Left out is the fifth order in radius over
+distance. A curved surface changes no area, as it does of contacts that grow.
 
 Lengths are over the side L of the patch, loads over pi E* L^2.
 """
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from roughmdr.interaction import close
-from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.newton import Coupling, State, System, first_order
 from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from roughmdr.interaction.jkr.equilibrium import Problem
+    from roughmdr.interaction.jkr.equilibrium import State as AdhesiveState
 
 _RTOL = 0.01  # of a step
 _MAX_STEPS = 20
@@ -28,6 +32,8 @@ class Punches(NamedTuple):
 
     radius: Floats
     """0 of those that are not there."""
+    slid: Floats
+    """How far each stands beside its asperity, along x and along y."""
     coupling: Coupling
     tangent: Coupling
     """That of the steps, which are less accurate."""
@@ -42,14 +48,17 @@ class Punches(NamedTuple):
         """Return the punches of contacts without adhesion."""
         contacts = state.contacts
         radius = np.where(contacts.load > 0.0, contacts.radius, 0.0)
+        slid = -contacts.slide * state.slopes
         pairs = state.pairs._replace(share=np.zeros_like(state.pairs.share))
         close.update_shares(pairs, radius)
-        return cls(radius, system.coupling, system.tangent, pairs, system.order, False)
+        return cls(radius, slid, system.coupling, system.tangent, pairs, system.order, False)
 
     @classmethod
-    def of_adhesive(cls, radius: Floats, coupling: Dense, pairs: close.Pairs, order: int) -> "Punches":
-        """Return the punches of adhesive contacts, whose coupling is without the expansion of overlapping pairs."""
-        return cls(radius, coupling, coupling, pairs, order, True)
+    def of_adhesive(cls, problem: "Problem", state: "AdhesiveState") -> "Punches":
+        """Return the punches of adhesive contacts; all of a problem are in contact."""
+        contacts, coupling = state.contacts, problem.coupling
+        slid = -contacts.lift * (state.field[1:3] + state.outer[1:3])
+        return cls(contacts.radius, slid, coupling, coupling, problem.pairs, problem.order, True)
 
 
 def total_conductance(punches: Punches, error: float) -> float:
@@ -101,9 +110,10 @@ def _displacement(punches: Punches, load: Floats, whole: Floats, added: Floats) 
     field = coupling.field(load)
     if not punches.without_pairs:
         close.take_from_field(pairs, load, field)
-    spread, tilting = a * a / 6.0, 4.0 / (3.0 * math.pi) * a**3
-    moments = spread * load, tilting * field[1], tilting * field[2]
-    displacement = np.asarray(field[0] + spread * field[3] + coupling.of_moments(*moments))
+    spread, tilting, (x, y) = a * a / 6.0, 4.0 / (3.0 * math.pi) * a**3, punches.slid
+    moments = spread * load, tilting * field[1] - x * load, tilting * field[2] - y * load
+    displacement = np.asarray(field[0] + x * field[1] + y * field[2] + spread * field[3])
+    displacement += coupling.of_moments(*moments)
     if not punches.without_pairs:
         close.take_from_moments(pairs, *moments, displacement)
     close.add_tangent(pairs, whole, load, displacement)

@@ -58,6 +58,8 @@ class Contacts(NamedTuple):
     """M."""
     tilting: Floats
     """K, the moment of the pressure for a tilt of 1."""
+    slide: Floats
+    """How far the contact moves for a tilt of 1: 2 a/g'(a), but no farther than to the new top."""
 
 
 Terms = tuple[float, float, float, float, float]
@@ -188,7 +190,7 @@ def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
 
 
 def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
-    """Fill radius, lift and moments of contacts on a surface with the slopes and the Laplacian of ``field``.
+    """Fill radius, lift, moments and slide of contacts on a surface with the slopes and the Laplacian of ``field``.
 
     Return how many contacts are no discs: where the surface is curved more than the profile, the other way.
     """
@@ -199,7 +201,7 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
         tilt = math.hypot(field[1, i], field[2, i])
         t, own = contacts.state[i], law.params_of(params, i)
         touching = contacts.load[i] > 0.0
-        lift = moment = tilting = 0.0
+        lift = moment = tilting = slide = 0.0
         if law.pinned:
             if touching:
                 a = size[i]
@@ -224,10 +226,15 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
             steep = tilt * size[i] / depth[i]
             if steep > 0.0:
                 if slope >= steep:
+                    slide = 2.0 * a / slope * size[i] / depth[i] * size[i]
                     lift -= depth[i] * (a * steep * steep / slope)
                 else:
-                    lift -= depth[i] * steep * law.top(max(t, 0.0), steep, ratio, own)
-        contacts.lift[i], contacts.second_moment[i], contacts.tilting[i] = lift, moment, tilting
+                    top = law.top(max(t, 0.0), steep, ratio, own)
+                    slide = size[i] * top / tilt
+                    lift -= depth[i] * steep * top
+        contacts.lift[i], contacts.second_moment[i], contacts.tilting[i], contacts.slide[i] = (
+            lift, moment, tilting, slide
+        )  # fmt: skip
     return lost
 
 

@@ -74,6 +74,8 @@ class State(NamedTuple):
     """Where each asperity would have to be for x = 0, over z - h."""
     lost: int
     """Number of contacts that are no discs."""
+    slopes: Floats
+    """Of the displacement by point loads at each asperity, along x and along y; 0 to first order."""
 
 
 class Equilibrium(NamedTuple):
@@ -110,7 +112,8 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
         excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.radius**2), 0.0)
     close.add_contacts(pairs, contacts, excess, displacement)
     displacement = displacement + contacts.lift
-    return State(x, contacts, pairs, x + displacement + (separation - asperities.height), displacement, lost)
+    residual = x + displacement + (separation - asperities.height)
+    return State(x, contacts, pairs, residual, displacement, lost, field[1:3])
 
 
 def first_order(

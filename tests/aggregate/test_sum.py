@@ -18,7 +18,8 @@ from roughmdr.kernels.choose import choose
 from roughmdr.variables import CURVE_VARIABLES
 
 E, W = 4e6, 0.05
-ALL = tuple(name for name in CURVE_VARIABLES if "energy" not in name and "error" not in name)  # these have their own
+_OWN = ("energy", "error", "thermal", "electrical")  # these have their own
+ALL = tuple(name for name in CURVE_VARIABLES if not any(part in name for part in _OWN))
 
 
 def shape_of(data: xr.Dataset, i: int) -> rm.Paraboloid | rm.Cone | rm.PowerLaw:
@@ -57,6 +58,7 @@ def check(data: xr.Dataset, path: np.ndarray, work: float, effective_modulus: fl
     area = data.attrs["nominal_area"]
     law = rm.load_separation(data, separation=path, effective_modulus=effective_modulus, work=work, variables=ALL)
     expected = twin(data, path, effective_modulus, work)
+    expected["conductance_radius"] = expected["contact_radius_sum"]
     expected |= {"pressure": expected["force"] / area, "contact_fraction": expected["contact_area"] / area}
     for name in ALL:
         scale = np.max(np.abs(expected[name])) or 1.0

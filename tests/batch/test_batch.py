@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from scenes import scene
+from scenes import CONDUCTION, scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
@@ -109,9 +109,9 @@ def test_what_is_left_out_is_said() -> None:
 
 
 def test_every_variable_can_be_asked_for_alone_and_equals_itself_among_others() -> None:
-    every = rm.run(scene(output={"variables": list(CURVE_VARIABLES)}, batch=None))
+    every = rm.run(scene(output={"variables": list(CURVE_VARIABLES)}, conduction=CONDUCTION, batch=None))
     for name in CURVE_VARIABLES:
-        alone = rm.run(scene(output={"variables": [name]}, batch=None))
+        alone = rm.run(scene(output={"variables": [name]}, conduction=CONDUCTION, batch=None))
         assert [v for v in alone.data_vars if v in CURVE_VARIABLES] == [name]
         np.testing.assert_array_equal(alone[name], every[name])
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from scenes import ASPERITIES, scene
+from scenes import ASPERITIES, CONDUCTION, scene
 from studies.random_scenes.curves import returns
 from studies.random_scenes.judge import COMPUTED, Defect, check
 
@@ -25,6 +25,7 @@ def wound(**changes: Any) -> dict[str, Any]:
             "asperities": {**ASPERITIES, "count": 100},
             "path": {"separation": ["2 sigma", 0.0, "1 sigma", 0.0, "2 sigma"], "unload": True},
             "output": {"variables": list(CURVE_VARIABLES)},
+            "conduction": CONDUCTION,
             "batch": {"realizations": 2},
             **changes,
         }

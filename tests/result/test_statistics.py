@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scenes import ASPERITIES, scene
+from scenes import ASPERITIES, CONDUCTION, scene
 
 import roughmdr as rm
 from roughmdr.batch.known_moments import KnownMoments
@@ -23,7 +23,7 @@ SWEEP = {"adhesion.work": [0.0, 0.05], "asperities.count": [50, 200]}
 
 
 def kept(keep: str, **changes: Any) -> xr.Dataset:
-    return rm.run(scene(output={"variables": EVERY, "keep": keep}, **changes))
+    return rm.run(scene(output={"variables": EVERY, "keep": keep}, conduction=CONDUCTION, **changes))
 
 
 @pytest.mark.parametrize("sweep", [None, SWEEP])

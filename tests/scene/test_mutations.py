@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
-from scenes import ASPERITIES, SCENE
+from scenes import ASPERITIES, CONDUCTION, SCENE
 
 from roughmdr.cli import main
 from roughmdr.errors import SceneError
@@ -30,6 +30,7 @@ BASES: dict[str, dict[str, Any]] = {
     "every section": {
         **SCENE,
         "counter": {"modulus": "70 GPa", "poisson": 0.2},
+        "conduction": {**CONDUCTION, "counter_conductivity": 50.0},
         "asperities": {**ASPERITIES, "placement": "hard_core", "min_distance": "1 um"},
         "output": {"variables": ["force", "energy"], "keep": "statistics"},
         "sweep": {"mode": "zip", "adhesion.work": ["1 mJ/m^2", "2 mJ/m^2"]},

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
-from scenes import ASPERITIES, scene
+from scenes import ASPERITIES, CONDUCTION, scene
 from test_cli import SCENES, roughmdr
 
 from roughmdr.variables import CURVE_VARIABLES
@@ -20,8 +20,8 @@ PRODUCT = {"adhesion.work": [0.0, 0.05, 0.02], "asperities.height.distribution":
 SIGMA = {"mode": "zip", "path.separation.start": ["3 sigma", "4 sigma"], "asperities.coefficient": [1e7, 5e6]}
 EVERY = {"variables": list(CURVE_VARIABLES)}
 RESULTS = {
-    "curves": scene(asperities=SMALL, output=EVERY),
-    "statistics": scene(asperities=SMALL, output={**EVERY, "keep": "statistics"}),
+    "curves": scene(asperities=SMALL, output=EVERY, conduction=CONDUCTION),
+    "statistics": scene(asperities=SMALL, output={**EVERY, "keep": "statistics"}, conduction=CONDUCTION),
     "product": scene(asperities=SMALL, sweep={**PRODUCT, "asperities.height.std": ["2 um", "1 um"]}),
     "product of statistics": scene(asperities=SMALL, sweep=PRODUCT, output={"keep": "statistics"}),
     "zip": scene(asperities=POWER, sweep=SIGMA),

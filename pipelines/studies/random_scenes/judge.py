@@ -19,7 +19,8 @@ from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
-_CONTACTS = ("contact_count", "contact_area", "contact_radius_sum", "contact_fraction")
+_CONDUCTION = ("conductance_radius", "thermal_conductance", "electrical_conductance")
+_CONTACTS = ("contact_count", "contact_area", "contact_radius_sum", "contact_fraction", *_CONDUCTION)
 _FOLDERS = re.compile(r"/\S*/|\bscene: ")
 _NUMBERS = re.compile(r"[-+]?\d[\w.+-]*|'[^']*'|\([^)]*\)")
 

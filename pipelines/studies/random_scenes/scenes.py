@@ -218,6 +218,7 @@ def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
     names = draw(st.lists(st.sampled_from(sorted(CURVE_VARIABLES)), min_size=1, max_size=9, unique=True))
     keep = draw(st.sampled_from(("curves", "statistics")))
     parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(CURVE_VARIABLES), "keep": keep}}
+    parts["conduction"] = {"conductivity": power_of_ten(draw, -2.0, 3.0), "resistivity": power_of_ten(draw, -8.0, 9.0)}
     if not drawn:
         return parts
     if frame.smooth and draw(st.booleans()):

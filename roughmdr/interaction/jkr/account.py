@@ -137,8 +137,7 @@ class Account:
 
     def _conductance(self, state: State) -> float:
         """Return the conductance radius of the contacts as they are, whatever adhesion does to their stiffness."""
-        few, on = alone(self._front.problem, state)
-        punches = Punches.of_adhesive(on.contacts.radius, few.coupling, few.pairs, few.order)
+        punches = Punches.of_adhesive(*alone(self._front.problem, state))
         return total_conductance(punches, self._front.placed.interaction.error)
 
     def _pull_off(self) -> PullOff:
