@@ -12,7 +12,7 @@ from roughmdr.storage.files import replace_atomically
 
 NAMES = (
     "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem",
-    "versus_adhesive_bem", "coupled_pull_off", "hills", "adhesive_hills", "spectrum", "trust", "traps",
+    "conductance", "versus_adhesive_bem", "coupled_pull_off", "hills", "adhesive_hills", "spectrum", "trust", "traps",
 )  # fmt: skip
 
 

@@ -127,6 +127,24 @@ LONGUET_HIGGINS = Paper(
     "321-387",
     "10.1098/rsta.1957.0002",
 )
+HOLM = Paper(
+    "Holm1967",
+    ("R. Holm",),
+    "Electric Contacts: Theory and Application",
+    "Springer",
+    1967,
+    doi="10.1007/978-3-662-06688-1",
+    kind="book",
+)
+BARBER = Paper(
+    "Barber2003",
+    ("J. R. Barber",),
+    "Bounds on the electrical resistance between contacting elastic rough bodies",
+    "Proceedings of the Royal Society of London A",
+    2003,
+    "459",
+    "53-66",
+)
 NAYAK = Paper(
     "Nayak1971",
     ("P. R. Nayak",),

@@ -16,6 +16,7 @@ from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import CONDUCTANCES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -149,6 +150,8 @@ def _papers(used: _Used) -> Iterator[tuple[str, Paper]]:
     yield from _of_contacts(used)
     yield from _of_surfaces(used)
     yield from _of_coupling(used)
+    if not {"conductance_radius", *CONDUCTANCES}.isdisjoint(used.table.get("output", {}).get("variables", ())):
+        yield from (("conductance", paper) for paper in (papers.HOLM, papers.BARBER))
 
 
 def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
