@@ -69,7 +69,8 @@ def _at(result: Labelled, indices: Mapping[str, int]) -> tuple[Labelled, str]:
 
     def part(array: Array) -> Array:
         index = tuple(indices.get(dim, slice(None)) for dim in array.dims)
-        return Array(tuple(dim for dim in array.dims if dim not in indices), array.values[index], array.attrs)
+        values = np.asarray(array.values[index], dtype=array.values.dtype)
+        return Array(tuple(dim for dim in array.dims if dim not in indices), values, array.attrs)
 
     variables, coordinates = (
         {name: part(array) for name, array in arrays.items() if name not in indices}
