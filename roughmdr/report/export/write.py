@@ -127,8 +127,12 @@ def write(document: Document, path: Path, asked: Export) -> None:
 
 def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Document, tuple[str, ...]]:
     """Return what is to be written of a result, which was read from ``file`` unless that is None, and warnings."""
-    cell, words = select(result, asked.select)
     units = UnitSystem.read(asked.units)
+    if asked.quantity == "nodes":
+        from roughmdr.report.export.nodes import nodes_document
+
+        return nodes_document(result, file, asked.select, asked.error, units), ()
+    cell, words = select(result, asked.select)
     quantity = QUANTITIES[asked.quantity]
     law = law_of(cell, quantity, asked.branch)
     table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=asked.format.with_tension)
