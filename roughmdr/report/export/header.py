@@ -53,13 +53,12 @@ def table_lines(
             "statistical error",
             f"of the mean up to {table.statistical_error:.2g} of the largest value",
         )
-    numerical = float(np.nanmax(cell.variables["numerical_error"].values))
-    yield "numerical error", f"force within {numerical:.2g} of the largest"
+    numerical = float(np.fmax.reduce(cell.variables["numerical_error"].values, axis=None))
+    if math.isfinite(numerical):
+        yield "numerical error", f"force within {numerical:.2g} of the largest"
     if table.departure > 0.0:
-        yield (
-            "departure",
-            f"up to {table.departure / pressure.size:.3g} {pressure.name} at steps that a load jumps over",
-        )
+        departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
+        yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
     for warning in table.warnings:
         yield "warning", warning

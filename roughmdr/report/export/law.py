@@ -94,6 +94,8 @@ def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:
     leg = min(fitting, key=lambda steps: float(separation[steps].min()))
     ordered = leg if branch == "loading" else leg[::-1]
     moves: Ints = ordered[np.append(np.diff(separation[ordered]) != 0.0, True)]
+    if not (np.diff(separation[moves]) < 0.0).all():
+        raise StoreError(f"the separations of the {branch} do not fall from far to near, as its branch says")
     return moves
 
 
@@ -107,7 +109,9 @@ def _mean(cell: Labelled, quantity: Quantity, steps: Ints) -> tuple[Floats, Floa
     if source.per_area:
         if "nominal_area" not in cell.variables:
             raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has no nominal_area")
-        area = cell.variables["nominal_area"].values.item()
+        area = float(cell.variables["nominal_area"].values.item())
+        if not 0.0 < area < np.inf:
+            raise StoreError(f"nominal_area is {area:g} m2; per area there is nothing")
     mean, error = (numbers.reshape(-1)[steps] / area for numbers in mean_of(cell, source.variable))
     if not np.isfinite(mean).all():
         raise StoreError(f"{source.variable} is not known at all steps: no run of this cell was computed")

@@ -82,11 +82,11 @@ def _lines(scene: Scene, found: FewAsperities, units: UnitSystem) -> Iterator[tu
         "sum",
         "force per nominal area is the sum of weight P(height - separation) over the nodes, contact area likewise",
     )
-    yield "contact", f"P as rm.indent gives it for the shape, effective modulus and adhesion, in SI; {rule}"
+    yield "contact of a node", f"P as rm.indent gives it for the shape, effective modulus and adhesion, in SI; {rule}"
     yield "points", f"{found.height.size} nodes"
     force, contact_area, count = found.errors
     yield (
         "error",
-        f"force within {force:.2g}, contact area within {contact_area:.2g}, number in contact (which jumps at each node) "
-        f"within {count:.2g} of the largest, at {found.separations} separations along the path",
+        f"force within {force:.2g}, contact area within {contact_area:.2g}, number in contact, which jumps at each "
+        f"node, within {count:.2g} of the largest, at {found.separations} separations along the path",
     )

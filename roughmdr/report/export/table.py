@@ -35,6 +35,11 @@ def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_te
 
     StoreError where the steps of the path are too far apart for that error, and errors of ``stable_part``.
     """
+    with np.errstate(all="ignore"):  # numbers that no float can hold are refused
+        return _table_of(law, quantity, branch, error, with_tension=with_tension)
+
+
+def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_tension: bool) -> Table:
     negligible = error * RELATIVE_FROM * float(law.pressure.max())
     part = stable_part(law, branch, with_tension=with_tension, negligible=negligible)
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
@@ -44,6 +49,8 @@ def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_te
     chords = chord_errors(x, y)
     between = np.maximum(np.append(chords, 0.0), np.append(0.0, chords))
     allowed = tolerances(y, error)
+    if not (np.isfinite(between / allowed).all() and np.isfinite(part.datum)):
+        raise StoreError(f"no float holds the {quantity.name} of the {branch}: there is no law to export")
     if (between > allowed).any():
         reached = error * float((between / allowed).max())
         raise StoreError(

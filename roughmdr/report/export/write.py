@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import LimitWarning, StoreError
-from roughmdr.pictures.select import select
+from roughmdr.pictures.select import cell_of, select
 from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
 from roughmdr.report.export.header import origin_lines, table_lines
@@ -17,6 +17,7 @@ from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
 from roughmdr.report.export.table import Table, table_of
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.given import given_result
+from roughmdr.result.layout import swept_sizes, swept_values
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
@@ -150,9 +151,19 @@ def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Doc
     header = dict(origin_lines(cell, words)) | _joined(table_lines(cell, table, quantity, law.source.variable, units))
     if note := asked.format.quantities[asked.quantity]:
         header["use"] = note
-    friction = parse_toml(result.attrs["scene"]).get("tangential", {}).get("friction")
+    friction = _friction(result, asked) if quantity.name == "tangential" else None
     document = Document(quantity.name, law.source.variable, header, columns, friction)
     return document, table.warnings
+
+
+def _friction(result: Labelled, asked: Export) -> float | None:
+    """Return the coefficient of friction of the scene in the cell that is selected; None where it has none."""
+    swept = swept_values(result.coordinates, list(swept_sizes(result)), cell_of(result, asked.select))
+    if "tangential_friction" in swept:
+        return float(swept["tangential_friction"].values)
+    section = parse_toml(result.attrs["scene"]).get("tangential")
+    friction = section.get("friction") if isinstance(section, dict) else None
+    return float(friction) if isinstance(friction, int | float) else None
 
 
 def _joined(lines: Any) -> dict[str, str]:
