@@ -163,7 +163,7 @@ class _Search(NamedTuple):
         for number, (node, share) in enumerate(zip(nodes, shares / shares.sum(), strict=True)):
             own = max(1, round(count * share))
             lowest = float(node.in_contact.begin.min(initial=math.inf))
-            points = points_of(node.heights, lowest, own)
+            points = points_of(node.heights, lowest, own, name)
             heights.append(rule_of(points, own, name, number / len(nodes)) if points[0].size else points)
         return heights
 

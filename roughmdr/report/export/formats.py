@@ -51,8 +51,8 @@ FORMATS = {
             "calculix",
             (".inp",),
             {
-                "pressure": f"{_INCLUDED}; with *CONTACT PAIR, TYPE=NODE TO SURFACE: "
-                "version 2.20 reads no pressure from tables with TYPE=SURFACE TO SURFACE; constant beyond the last line",
+                "pressure": f"{_INCLUDED}; with *CONTACT PAIR, TYPE=NODE TO SURFACE, since version 2.20 reads no "
+                "pressure from tables with TYPE=SURFACE TO SURFACE; constant beyond the last line",
                 "conductance": f"{_INCLUDED} with *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR and *CONTACT PAIR, "
                 "TYPE=SURFACE TO SURFACE: in version 2.20 nothing is conducted where the pressure is from a table; "
                 "over the contact pressure, constant beyond the last line",
