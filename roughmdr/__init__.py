@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from roughmdr.fitting.fit import fit
     from roughmdr.pictures.plot import plot
     from roughmdr.report.cite import cite
+    from roughmdr.report.export.write import export
     from roughmdr.report.info import info
     from roughmdr.report.page import write_report
     from roughmdr.runner.run import run
@@ -71,6 +72,7 @@ _ROOMS = {
     "asperity.fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
     "fitting.fit": ("fit",),
     "report.cite": ("cite",),
+    "report.export.write": ("export",),
     "report.info": ("info",),
     "report.page": ("write_report",),
     "pictures.plot": ("plot",),
@@ -107,6 +109,7 @@ __all__ = [
     "cite",
     "effective_modulus",
     "equilibria",
+    "export",
     "fit",
     "generate",
     "indent",

@@ -46,6 +46,7 @@ OF_RESULT = (
     "info changed.nc --cells",
     "plot changed.nc -o picture.png",
     "plot changed.nc -o picture.png --with-expected --with-theory",
+    "export changed.nc -o table.json --to json --branch unloading --error 0.1",
     "generate changed.nc -o made.nc --fresh",
     "run {}.toml -o changed.nc",
     "run changed.nc -o again.nc",

@@ -6,6 +6,7 @@ Exit status: 0 done, 1 runs failed or a batch had to stop, 2 wrong input, 130 in
 import click
 
 from roughmdr.cli.cite import cite
+from roughmdr.cli.export import export
 from roughmdr.cli.fit import fit
 from roughmdr.cli.generate import generate
 from roughmdr.cli.info import info
@@ -27,5 +28,5 @@ def main() -> None:
     """
 
 
-for command in (cite, fit, generate, info, new, plan, plot, report, run, schema):
+for command in (cite, export, fit, generate, info, new, plan, plot, report, run, schema):
     main.add_command(command)

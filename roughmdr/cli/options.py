@@ -1,5 +1,6 @@
 """Arguments and options that several commands share."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -16,3 +17,25 @@ json_option = click.option(
 workers_option = click.option(
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Number of threads or processes."
 )
+
+
+def pairs(option: str, texts: Sequence[str]) -> dict[str, object]:
+    """Read KEY=VALUE of different keys."""
+    found: dict[str, object] = {}
+    for text in texts:
+        key, value = _pair(option, text)
+        if key in found:
+            raise click.UsageError(f"{option} {text}: {key} has a value already, {found[key]}")
+        found[key] = value
+    return found
+
+
+def _pair(option: str, text: str) -> tuple[str, object]:
+    """Read KEY=VALUE, a number or a text."""
+    key, equals, value = map(str.strip, text.partition("="))
+    if not (key and equals and value):
+        raise click.UsageError(f"{option} {text}: expected KEY=VALUE")
+    try:
+        return key, float(value)
+    except ValueError:
+        return key, value

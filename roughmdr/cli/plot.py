@@ -1,13 +1,12 @@
 """roughmdr plot: draw a result."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
 from roughmdr.cli.invocation import warn_of
-from roughmdr.cli.options import FILE, OUTPUT, fresh_option
+from roughmdr.cli.options import FILE, OUTPUT, fresh_option, pairs
 from roughmdr.report.terminal import Command, print_text
 
 
@@ -46,8 +45,8 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: tuple[str
     options["variables"] = tuple(options["variables"])
     if (step := options["step"]) is not None and step.isdigit():
         options["step"] = int(step)
-    options["select"] = _pairs("--select", options["select"])
-    options["at"] = _pairs("--at", at)
+    options["select"] = pairs("--select", options["select"])
+    options["at"] = pairs("--at", at)
     source = drawable(file)
     warn_of(file, source.doubt)
     with styled(style):
@@ -56,25 +55,3 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: tuple[str
             print_text(f"{title:<12} {remark}")
         save(picture.figure, output)
     print_text(f"picture      {click.format_filename(output)}")
-
-
-def _pairs(option: str, texts: Sequence[str]) -> dict[str, object]:
-    """Read KEY=VALUE of different keys."""
-    pairs: dict[str, object] = {}
-    for text in texts:
-        key, value = _pair(option, text)
-        if key in pairs:
-            raise click.UsageError(f"{option} {text}: {key} has a value already, {pairs[key]}")
-        pairs[key] = value
-    return pairs
-
-
-def _pair(option: str, text: str) -> tuple[str, object]:
-    """Read KEY=VALUE, a number or a text."""
-    key, equals, value = map(str.strip, text.partition("="))
-    if not (key and equals and value):
-        raise click.UsageError(f"{option} {text}: expected KEY=VALUE")
-    try:
-        return key, float(value)
-    except ValueError:
-        return key, value

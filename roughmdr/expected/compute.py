@@ -62,7 +62,7 @@ def compute(
     names, steps = list(variables), path.separation.size
     rows, unjudged = _rows(names)
     dissipating = any(TOTAL_INDEX[name] == DISSIPATED for name in names)
-    coarse = _as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
+    coarse = as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     validity = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
     problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
     found = _shift(problem, interaction)
@@ -100,7 +100,7 @@ def compute(
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
     radii, area = _largest_radii(nodes, closest, count), source.nominal_area
-    limits = _as_ensemble(source, source.nodes(rule)).validity_limits(radii)
+    limits = as_ensemble(source, source.nodes(rule)).validity_limits(radii)
     model = problem.adhesion.model
     nominal_area = math.nan if area is None else area
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
@@ -191,7 +191,7 @@ def _warnings(error: float, error_of_others: float) -> tuple[str, ...]:
     return ()
 
 
-def _as_ensemble(source: Source, nodes: Nodes) -> Ensemble:
+def as_ensemble(source: Source, nodes: Nodes) -> Ensemble:
     """Return the nodes as if they were asperities."""
     heights = np.zeros(nodes.weights.size)
     return Ensemble(source.shape_name, heights, nodes.parameters, shared_profile=source.shared_profile)

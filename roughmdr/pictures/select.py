@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.result.layout import cell_label, controlled_values, swept_sizes
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.variables import AUXILIARY_COORDINATES
 
 _NEAR = 0.01  # of the value asked for, so that values of a logspace can be typed
 
@@ -44,16 +46,29 @@ def pull_off_step(result: Labelled, cell: tuple[int, ...], realization: int) -> 
 def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]:
     """Return the indices of values of swept keys, by their dimensions.
 
-    Keys may have dots or underscores; values are numbers in SI, strings with a unit, or names. StoreError where a key
-    is not swept, or has no such value.
+    Keys may have dots or underscores; values are numbers in SI, strings with a unit, or names. Keys that are swept
+    together name the cell that has all these values. StoreError where a key is not swept, or has no such value, and
+    where several cells have them.
     """
-    indices: dict[str, int] = {}
+    swept = {
+        name: array
+        for name, array in result.coordinates.items()
+        if len(array.dims) == 1 and array.dims[0] in swept_sizes(result) and name not in AUXILIARY_COORDINATES
+    }
+    places: dict[str, NDArray[np.bool_]] = {}
     for key, value in chosen.items():
         name = key.replace(".", "_")
-        if name not in result.coordinates or result.coordinates[name].dims[:1] != (name,):
-            raise StoreError(f"select: {key!r} is not swept{suggestion(name, [*swept_sizes(result)])}")
-        indices[name] = _index(key, value, result.coordinates[name])
-    return indices
+        if name not in swept:
+            raise StoreError(f"select: {key!r} is not swept{suggestion(name, [*swept])}")
+        (dimension,) = swept[name].dims
+        there = swept[name].values == swept[name].values[_index(key, value, swept[name])]
+        places[dimension] = there & places.get(dimension, True)
+    for dimension, there in places.items():
+        if there.sum() != 1:
+            many = "no cell" if not there.any() else f"{there.sum()} cells"
+            keys = ", ".join(name for name, array in swept.items() if array.dims == (dimension,))
+            raise StoreError(f"select: {many} along {dimension} has the values chosen; choose by {keys}")
+    return {dimension: int(there.argmax()) for dimension, there in places.items()}
 
 
 def along_longest(result: Labelled) -> tuple[Labelled, str]:
@@ -65,11 +80,13 @@ def along_longest(result: Labelled) -> tuple[Labelled, str]:
 
 def _at(result: Labelled, indices: Mapping[str, int]) -> tuple[Labelled, str]:
     places = [indices.get(name, 0) for name in swept_sizes(result)]
-    whole = [part for part in cell_label(result, tuple(places)).split(", ") if part.split(" = ")[0] in indices]
+    fixed = {name for name, array in result.coordinates.items() if array.dims and set(array.dims) <= set(indices)}
+    whole = [part for part in cell_label(result, tuple(places)).split(", ") if part.split(" = ")[0] in fixed]
 
     def part(array: Array) -> Array:
         index = tuple(indices.get(dim, slice(None)) for dim in array.dims)
-        return Array(tuple(dim for dim in array.dims if dim not in indices), array.values[index], array.attrs)
+        values = np.asarray(array.values[index], dtype=array.values.dtype)
+        return Array(tuple(dim for dim in array.dims if dim not in indices), values, array.attrs)
 
     variables, coordinates = (
         {name: part(array) for name, array in arrays.items() if name not in indices}

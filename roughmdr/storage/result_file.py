@@ -16,9 +16,11 @@ from roughmdr.storage.result_validation import find_fault
 
 FIT = "fit"
 """The attribute ``kind`` of the result of a fit."""
+EXPORT_MARK = "exported by roughmdr"
+"""Words in the first lines of every exported file."""
 _PACKAGES = ("numpy", "numba", "scipy", "dask", "xarray", "netCDF4")
 _MAGIC_BYTES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
-_ROOTS = {"svg": b"<svg", "html": b"<!doctype html"}
+_ROOTS = {"svg": b"<svg", "html": b"<!doctype html", "export": EXPORT_MARK.encode()}
 _HEAD = 4096  # bytes, within which a text has its root element
 
 
@@ -68,7 +70,9 @@ def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
 
 
 def check_same_kind(path: Path, kind: str) -> None:
-    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html, ensemble or fit."""
+    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html, export, ensemble or
+    fit.
+    """
     if not path.exists():
         return
     same = False

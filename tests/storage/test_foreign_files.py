@@ -85,7 +85,7 @@ KNOWN: list[tuple[str, list[Callable[[Content], None]], str, str]] = [
     *[("curves", [attribute("scene", DEEP)], command, "nested too deeply") for command in OF_RESULT],
     *[("curves", [attribute("scene", "[" * 5000)], command, "not valid TOML") for command in OF_RESULT],
     ("curves", [attribute("scene", "batch = 3")], OF_RESULT[0], "batch in its scene is no table"),
-    ("curves", [attribute("scene", "sweep = 3")], OF_RESULT[5], "sweep in its scene is no table"),
+    ("curves", [attribute("scene", "sweep = 3")], OF_RESULT[6], "sweep in its scene is no table"),
     ("curves", [attribute("seed", "one")], OF_RESULT[0], "seed is no whole number"),
     ("curves", [attribute("accuracy", 1.0)], OF_RESULT[0], "the attribute accuracy is no text"),
     ("curves", [values("branch", "sideways")], OF_RESULT[2], "branch must be loading or unloading"),

@@ -1,0 +1,74 @@
+"""The header of an exported file: where the numbers come from, and within which errors they hold."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from roughmdr.report.export.law import Quantity
+from roughmdr.report.export.table import Table
+from roughmdr.report.export.thin import RELATIVE_FROM
+from roughmdr.report.export.units import UnitSystem
+from roughmdr.report.trust import trust_of_result
+from roughmdr.result.layout import estimator_of, realizations_of
+from roughmdr.storage.labelled import Labelled
+
+
+def origin_lines(cell: Labelled, words: str) -> Iterator[tuple[str, str]]:
+    """Yield the scene, the swept values in ``words``, the key of the cell and the version of a result of one cell."""
+    yield "scene", cell.attrs["title"]
+    if words:
+        yield "cell", words
+    if "cell_key" in cell.coordinates:
+        yield "key", str(cell.coordinates["cell_key"].values.item())
+    yield "made by", f"{cell.attrs['source']}, seed {cell.attrs['seed']}"
+
+
+def table_lines(
+    cell: Labelled, table: Table, quantity: Quantity, variable: str, units: UnitSystem
+) -> Iterator[tuple[str, str]]:
+    """Yield what the numbers of a table are, and their errors."""
+    runs = realizations_of(cell)
+    yield "law", "expected law" if estimator_of(cell) == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
+    yield "branch", table.law.rule
+    yield "quantity", f"{variable} per nominal area" if variable not in ("pressure", "contact_fraction") else variable
+    length, pressure = units.length, units.stress
+    yield "units", units.names
+    if "nominal_area" in cell.variables:
+        yield "nominal area", f"{cell.variables['nominal_area'].values.item() / length.size**2!r} {length.name}^2"
+    datum = table.law.datum / length.size
+    yield (
+        "datum",
+        f"overclosure is {datum!r} {length.name} minus the separation of the flat from the datum plane of the heights",
+    )
+    yield "points", f"{table.law.overclosure.size}, of {table.steps} steps"
+    over = "the pressure" if quantity.over_pressure else "the overclosure"
+    yield (
+        "interpolation error",
+        f"lines over {over} are within {table.error:.2g} of the largest value, and where that is above "
+        f"{RELATIVE_FROM:g} of it within {table.relative_error:.2g} of the value itself",
+    )
+    if math.isfinite(table.statistical_error):
+        yield (
+            "statistical error",
+            f"of the mean up to {table.statistical_error:.2g} of the largest value",
+        )
+    numerical = float(np.fmax.reduce(cell.variables["numerical_error"].values, axis=None))
+    if math.isfinite(numerical):
+        yield "numerical error", f"force within {numerical:.2g} of the largest"
+    if table.departure > 0.0:
+        departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
+        yield "departure", f"up to {departure} at steps that a load jumps over"
+    yield from model_lines(cell)
+    for warning in table.warnings:
+        yield "warning", warning
+
+
+def model_lines(cell: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield the error of the model and up to where it holds, a line for each name."""
+    texts: dict[str, list[str]] = {}
+    name = ""
+    for title, text in trust_of_result(cell):
+        name = title or name
+        texts.setdefault(name, []).append(text)
+    yield from ((name, "; ".join(lines)) for name, lines in texts.items())

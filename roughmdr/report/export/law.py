@@ -1,0 +1,118 @@
+"""The mean law of one cell of a result per nominal area, along one loading or unloading."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.result.layout import cells_of, control_of, swept_sizes
+from roughmdr.result.means import holds, mean_of
+from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import SEPARATION
+
+
+class Source(NamedTuple):
+    """A variable of a result from which a quantity of a table is made."""
+
+    variable: str
+    dimension: str
+    """Of the quantity, as ``UnitSystem.of`` names it."""
+    per_area: bool
+    """Whether the variable is a total, to be divided by the nominal area."""
+
+
+class Quantity(NamedTuple):
+    """A quantity that tables hold."""
+
+    name: str
+    sources: tuple[Source, ...]
+    over_pressure: bool
+    """Whether tables have it over the pressure, else over the overclosure."""
+
+
+_PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)), over_pressure=False)
+QUANTITIES = {
+    quantity.name: quantity
+    for quantity in (
+        _PRESSURE,
+        Quantity(
+            "conductance",
+            (Source("thermal_conductance", "W/m2/K", True), Source("electrical_conductance", "S/m2", True)),
+            over_pressure=True,
+        ),
+        Quantity(
+            "area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True)), over_pressure=False
+        ),
+        Quantity("tangential", (Source("tangential_stiffness", "Pa/m", True),), over_pressure=True),
+    )
+}
+"""Quantities of tables by their names."""
+
+
+class Law(NamedTuple):
+    """A quantity along one leg of a path, from the farthest separation to the closest; steps without motion once."""
+
+    source: Source
+    separation: Floats
+    """[m]: [step], falling."""
+    pressure: Floats
+    """[Pa]: [step]."""
+    value: Floats
+    """In the dimension of its source, in SI: [step]."""
+    standard_error: Floats
+    """Of ``value`` over the realisations, NaN of one: [step]."""
+
+
+def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
+    """Return the mean law of a result of one cell along its loading or unloading that comes closest.
+
+    StoreError where the result has more cells, no such branch, another coordinate than the separation, or lacks a
+    variable.
+    """
+    if len(cells_of(cell)) > 1:
+        listed = ", ".join(f"{name} ({size})" for name, size in swept_sizes(cell).items())
+        raise StoreError(f"the result has {len(cells_of(cell))} cells, over {listed}: select one of each")
+    if control_of(cell) != SEPARATION.name:
+        raise StoreError(
+            f"the path of the result is over {control_of(cell)}: a table needs the mean law over the separation; run "
+            "the scene with path.separation"
+        )
+    separation = cell.coordinates[SEPARATION.name].values.reshape(-1)
+    steps = _leg(separation, cell.coordinates["branch"].values, branch)
+    pressure, _, _ = _mean(cell, _PRESSURE, steps)
+    value, error, source = _mean(cell, quantity, steps)
+    return Law(source, separation[steps], pressure, value, error)
+
+
+def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:
+    """Return the steps of the loading or unloading that comes closest, from far to near."""
+    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+    fitting = [leg for leg in legs if branches[leg[0]] == branch]
+    if not fitting:
+        raise StoreError(f"branch is {branch!r}, and the path of the result has none")
+    leg = min(fitting, key=lambda steps: float(separation[steps].min()))
+    ordered = leg if branch == "loading" else leg[::-1]
+    moves: Ints = ordered[np.append(np.diff(separation[ordered]) != 0.0, True)]
+    if not (np.diff(separation[moves]) < 0.0).all():
+        raise StoreError(f"the separations of the {branch} do not fall from far to near, as its branch says")
+    return moves
+
+
+def _mean(cell: Labelled, quantity: Quantity, steps: Ints) -> tuple[Floats, Floats, Source]:
+    """Return the mean of a quantity at steps, its standard error, and what it is made from."""
+    source = next((source for source in quantity.sources if holds(cell, source.variable)), None)
+    if source is None:
+        names = " or ".join(repr(source.variable) for source in quantity.sources)
+        raise StoreError(f"quantity {quantity.name!r} needs the variable {names}: add it to [output] variables")
+    area = 1.0
+    if source.per_area:
+        if "nominal_area" not in cell.variables:
+            raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has no nominal_area")
+        area = float(cell.variables["nominal_area"].values.item())
+        if not 0.0 < area < np.inf:
+            raise StoreError(f"nominal_area is {area:g} m2; per area there is nothing")
+    mean, error = (numbers.reshape(-1)[steps] / area for numbers in mean_of(cell, source.variable))
+    if not np.isfinite(mean).all():
+        raise StoreError(f"{source.variable} is not known at all steps: no run of this cell was computed")
+    return mean, error, source

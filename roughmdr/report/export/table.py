@@ -1,0 +1,96 @@
+"""The stable part of a law, thinned to the knots of a table of the error asked for."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import StoreError
+from roughmdr.report.export.law import Law, Quantity
+from roughmdr.report.export.stable import StablePart, stable_part
+from roughmdr.report.export.thin import RELATIVE_FROM, chord_errors, knots, tolerances
+from roughmdr.schema.units import format_quantity
+
+
+class Table(NamedTuple):
+    """The knots of a table, steps of the path but for zero pressure itself, and how far lines between them are off."""
+
+    law: StablePart
+    """At the knots."""
+    steps: int
+    """Number of stable steps, from which the knots were chosen."""
+    error: float
+    """Largest interpolation error, by thinning and between the steps of the path, over the largest value."""
+    relative_error: float
+    """Likewise over the value itself, where that is in the upper decade."""
+    statistical_error: float
+    """Largest standard error over the largest value; NaN of a single realisation."""
+    departure: float
+    """Difference of the pressure to that of steps left out as a load jumps over them [Pa]; 0 where it is negligible."""
+    warnings: tuple[str, ...]
+    """What a user should know before the table is used."""
+
+
+def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_tension: bool) -> Table:
+    """Return the table of a law with the fewest knots that keep within ``error``, as ``tolerances`` says.
+
+    StoreError where the steps of the path are too far apart for that error, and errors of ``stable_part``.
+    """
+    with np.errstate(all="ignore"):  # numbers that no float can hold are refused
+        return _table_of(law, quantity, branch, error, with_tension=with_tension)
+
+
+def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_tension: bool) -> Table:
+    negligible = error * RELATIVE_FROM * float(law.pressure.max())
+    part = stable_part(law, branch, with_tension=with_tension, negligible=negligible)
+    x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
+    largest = float(np.abs(y).max())
+    if not largest > 0.0 or x.size < 2:
+        raise StoreError(f"the {branch} has no {quantity.name} at more than one step: there is no law to export")
+    chords = chord_errors(x, y)
+    between = np.maximum(np.append(chords, 0.0), np.append(0.0, chords))
+    allowed = tolerances(y, error)
+    if not (np.isfinite(between / allowed).all() and np.isfinite(part.datum)):
+        raise StoreError(f"no float holds the {quantity.name} of the {branch}: there is no law to export")
+    if (between > allowed).any():
+        reached = error * float((between / allowed).max())
+        raise StoreError(
+            f"error is {error:g}, and between the steps of the path the {quantity.name} is known to {reached:.2g} "
+            f"only: ask for an error of {1.1 * reached:.2g}, or compute {_times(reached / error)} times as many steps"
+        )
+    kept = knots(x, y, allowed - between)
+    off = np.abs(np.interp(x, x[kept], y[kept]) - y) + between
+    upper = np.abs(y) >= RELATIVE_FROM * largest
+    return Table(
+        part._replace(
+            overclosure=part.overclosure[kept],
+            pressure=part.pressure[kept],
+            value=part.value[kept],
+            standard_error=part.standard_error[kept],
+        ),
+        x.size,
+        float(off.max()) / largest,
+        float((off[upper] / np.abs(y[upper])).max()),
+        float(part.standard_error.max()) / largest,
+        part.departure if part.departure > negligible else 0.0,
+        tuple(_warnings(part, branch, float(law.pressure.max()) * error)),
+    )
+
+
+def _times(ratio: float) -> str:
+    """Return how many times as many steps reduce an error, which falls with their square, by this ratio."""
+    return f"{1.1 * ratio**0.5:.2g}"
+
+
+def _warnings(part: StablePart, branch: str, tolerance: float) -> list[str]:
+    warnings = []
+    if part.tension > 0.0:
+        warnings.append(
+            f"the {branch} is in tension up to {format_quantity(part.tension, 'Pa')} where the surfaces are farther "
+            "apart than at zero pressure: the table leaves that out"
+        )
+    if part.departure > tolerance:
+        warnings.append(
+            f"the pressure of the {branch} is not monotone: steps that a load jumps over are left out, off by up to "
+            f"{format_quantity(part.departure, 'Pa')}"
+        )
+    return warnings

@@ -1,0 +1,197 @@
+"""Writes a result as a table for a finite-element code, or as quadrature nodes."""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughmdr.errors import LimitWarning, StoreError
+from roughmdr.pictures.select import cell_of, select
+from roughmdr.report.export.document import Column, Document
+from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
+from roughmdr.report.export.header import origin_lines, table_lines
+from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
+from roughmdr.report.export.table import Table, table_of
+from roughmdr.report.export.units import UnitSystem
+from roughmdr.report.given import given_result
+from roughmdr.result.layout import swept_sizes, swept_values
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.wording import short_repr, suggestion
+from roughmdr.storage.files import check_ending, check_writable, replace_atomically
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_file import check_same_kind
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_LEAST_ERROR, _MOST_ERROR = 1e-9, 0.1
+_BRANCHES = ("loading", "unloading")
+
+
+@dataclass(frozen=True)
+class Export:
+    """What is to be exported, and how."""
+
+    to: str
+    quantity: str = "pressure"
+    units: str = ""
+    branch: str = "loading"
+    error: float = 1e-3
+    select: Mapping[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _check("to", self.to, list(FORMATS))
+        _check("quantity", self.quantity, [*QUANTITIES, "nodes"])
+        _check("branch", self.branch, list(_BRANCHES))
+        if not _LEAST_ERROR <= self.error <= _MOST_ERROR:
+            raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {_MOST_ERROR:g}")
+        if self.quantity not in self.format.quantities:
+            able = [name for name, each in FORMATS.items() if self.quantity in each.quantities]
+            raise StoreError(f"{self.to} has no table of quantity {self.quantity!r}; {', '.join(able)} have")
+
+    @property
+    def format(self) -> Format:
+        """The format of the file."""
+        return FORMATS[self.to]
+
+
+def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh: bool = False, **options: Any) -> None:
+    """Write the mean law of a result, or its expected law, as a table for a finite-element code.
+
+    A LimitWarning tells of parts of the law that such a table leaves out.
+
+    Parameters
+    ----------
+    result : path or xarray.Dataset
+        A result file, or what ``run`` returned, over the separation.
+    out : path
+        The file to write: .inp for Abaqus, CalculiX and Ansys, .i for MOOSE, .csv, .json. One that was exported before
+        is replaced.
+    to : {"abaqus", "calculix", "moose", "ansys", "csv", "json"}
+        The code, or the format.
+    fresh : bool, optional
+        Whether to replace a file of any kind at ``out``.
+    **options
+        ``quantity``: "pressure" (default) or "area" over the overclosure, "conductance" or "tangential" stiffness over
+        the pressure, each per nominal area; or "nodes", a few asperities whose sum is the expected law. ``units``:
+        names of length, force and stress such as "mm,N,MPa"; SI unless given. ``branch``: "loading" (default) or
+        "unloading". ``error``: that of lines between the points of the table, over the largest value and over the
+        value itself where that is within a decade of it (1e-3). ``select``: a dictionary such as
+        ``{"adhesion.work": "50 mJ/m^2"}`` of the cell of a sweep.
+
+    Raises
+    ------
+    StoreError
+        Where there is no such result, quantity, unit or cell, where the steps of its path are too far apart for the
+        error, where the code cannot take the table, or ``out`` cannot be written or must not be replaced.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> result = rm.run({
+    ...     "title": "One patch", "material": {"effective_modulus": "1 GPa"}, "batch": {"estimator": "expected"},
+    ...     "path": {"separation": {"start": "clear", "stop": "0.5 um", "steps": 100}},
+    ...     "asperities": {
+    ...         "source": "random", "shape": "paraboloid", "count": 500, "patch": "1 mm", "radius": "50 um",
+    ...         "height": {"distribution": "normal", "std": "1 um"},
+    ...     },
+    ... })
+    >>> rm.export(result, "layer.inp", to="calculix", units="mm,N,MPa", error=5e-3)
+    """
+    asked = Export(to, **options)
+    data, file = given_result(result)
+    path = Path(out)
+    check_export(path, file, asked, fresh=fresh)
+    document, told = document_of(data, file, asked)
+    for warning in told:
+        warnings.warn(warning, LimitWarning, stacklevel=2)
+    write(document, path, asked)
+
+
+def check_export(path: Path, file: Path | None, asked: Export, *, fresh: bool) -> None:
+    """Raise StoreError unless the export can be written to ``path``; with ``fresh`` it may replace any file."""
+    check_writable(path, [] if file is None else [file])
+    check_ending(path, f"table for {asked.to}", asked.format.endings)
+    if not fresh:
+        check_same_kind(path, "export")
+
+
+def write(document: Document, path: Path, asked: Export) -> None:
+    """Write a document in the syntax of its format, whole or not at all."""
+    text = asked.format.write(document)
+    with replace_atomically(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Document, tuple[str, ...]]:
+    """Return what is to be written of a result, which was read from ``file`` unless that is None, and warnings."""
+    units = UnitSystem.read(asked.units)
+    if asked.quantity == "nodes":
+        from roughmdr.report.export.nodes import nodes_document
+
+        return nodes_document(result, file, asked.select, asked.error, units), ()
+    cell, words = select(result, asked.select)
+    quantity = QUANTITIES[asked.quantity]
+    law = law_of(cell, quantity, asked.branch)
+    table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=asked.format.with_tension)
+    unit, length, stress = units.of(law.source.dimension), units.length, units.stress
+    part = table.law
+    overclosure = Column("overclosure", length.name, part.overclosure / length.size)
+    separation = Column("separation", length.name, (part.datum - part.overclosure) / length.size)
+    pressure = Column("pressure", stress.name, part.pressure / stress.size)
+    value = Column(law.source.variable, unit.name, part.value / unit.size)
+    value = pressure if quantity.name == "pressure" else value
+    error = Column("standard_error", unit.name, part.standard_error / unit.size)
+    argument, other = (pressure, overclosure) if quantity.over_pressure else (overclosure, pressure)
+    columns = (argument, value, separation, *([] if value is pressure else [other]), error)
+    _check_fit(table, quantity, units, asked)
+    header = dict(origin_lines(cell, words)) | _joined(table_lines(cell, table, quantity, law.source.variable, units))
+    if note := asked.format.quantities[asked.quantity]:
+        header["use"] = note
+    friction = _friction(result, asked) if quantity.name == "tangential" else None
+    document = Document(quantity.name, law.source.variable, header, columns, friction)
+    return document, table.warnings
+
+
+def _friction(result: Labelled, asked: Export) -> float | None:
+    """Return the coefficient of friction of the scene in the cell that is selected; None where it has none."""
+    swept = swept_values(result.coordinates, list(swept_sizes(result)), cell_of(result, asked.select))
+    if "tangential_friction" in swept:
+        return float(swept["tangential_friction"].values)
+    section = parse_toml(result.attrs["scene"]).get("tangential")
+    friction = section.get("friction") if isinstance(section, dict) else None
+    return float(friction) if isinstance(friction, int | float) else None
+
+
+def _joined(lines: Any) -> dict[str, str]:
+    """Return lines by their names, those of the same name as one."""
+    texts: dict[str, str] = {}
+    for name, text in lines:
+        texts[name] = f"{texts[name]}; {text}" if name in texts else text
+    return texts
+
+
+def _check_fit(table: Table, quantity: Quantity, units: UnitSystem, asked: Export) -> None:
+    """Raise StoreError where the code does not read a table as it is."""
+    most, lines = most_lines_of(asked.format, asked.quantity), table.law.overclosure.size
+    if lines > most:
+        raise StoreError(
+            f"error is {asked.error:g}, which takes {lines} points, and {asked.to} reads {most:g} at most: ask for an "
+            f"error of about {asked.error * (lines / most) ** 2:.2g}"
+        )
+    if quantity.over_pressure:
+        return
+    step = float(np.diff(table.law.overclosure).min()) / units.length.size
+    if step < asked.format.least_step:
+        raise StoreError(
+            f"units: the overclosure has steps of {step:.2g} {units.length.name}, and {asked.to} widens those below "
+            f"{asked.format.least_step:g}: ask for a smaller unit of length"
+        )
+
+
+def _check(name: str, value: object, allowed: list[str]) -> None:
+    if value not in allowed:
+        raise StoreError(f"{name} is {short_repr(value)}{suggestion(str(value), allowed)}")
