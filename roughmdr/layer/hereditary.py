@@ -1,9 +1,9 @@
 """The hereditary integral over loading: J(h) = ∫ exp(-(t - s)/tau) dF along the falling separations down to h.
 
-At constant speed v the time since s is a length over v, and J depends on the memory length v tau alone. F is interpolated
-by polynomials over panels of the separation, and J is the exact integral of these for any memory length, as a sum of
-positive terms. Panels narrow towards first touch, where F begins with a power of the indentation. They are halved until
-halving changes nothing, or until there are too many: summits that are touched between them leave kinks.
+At constant speed v the time since s is a length over v, and J depends on the memory length v tau alone. F is
+interpolated by polynomials over panels of the separation, and J is their exact integral for any memory length, without
+differences that cancel. Panels narrow towards first touch, where F begins with a power of the indentation. They are
+halved until halving changes nothing, or until there are too many: each summit that is touched leaves a kink.
 """
 
 from collections.abc import Callable
@@ -20,8 +20,9 @@ from roughmdr.numerics.gauss import unit_gauss
 _DEGREE = 8  # of the polynomials; even, so that the halves of a panel share its points
 _HALVINGS, _HALVINGS_BELOW = 30, 6  # of the panels towards first touch, and towards the deepest point
 _REACH, _NODES = 40.0, 20  # memory lengths that are looked back, exp(-40) = 4e-18; Gauss points for these
+_BLOCK = 4096  # of them for so many integrals are in memory at a time
 _FINE, _COARSE = 1e-12, 1e-9  # of the largest force: errors that are aimed at, with few separations and with more
-_FEW, _MOST, _MOST_PER_STEP = 1024, 2048, 4  # separations
+_FEW, _MOST, _MOST_PER_STEP = 1024, 8192, 4  # separations
 _SLOPE = 2.0 * _DEGREE  # largest slope of an interpolation error, over that error and the width of its panel
 _LEAST_WIDTH = 64.0  # roundings of a separation
 
@@ -52,6 +53,11 @@ class _Panels(NamedTuple):
     def width(self) -> Floats:
         """[m]"""
         return self.separation[:, 0] - self.separation[:, -1]
+
+    @property
+    def rounding(self) -> Floats:
+        """Of the separations [m]."""
+        return np.asarray(np.spacing(np.abs(self.separation).max(axis=1)))
 
     def halved(self, chosen: NDArray[np.bool_], force: Callable[[Floats], Floats]) -> "_Panels":
         """Return the panels with the chosen ones in halves."""
@@ -98,7 +104,7 @@ def remembered_force(force: Force, fading: Fading, at: Floats, clear: float) -> 
 
 
 def _graded(force: Callable[[Floats], Floats], clear: float, lowest: float) -> _Panels:
-    """Return panels from ``clear`` down to ``lowest`` [m] that narrow towards either end, each half as wide as the next."""
+    """Return panels from ``clear`` down to ``lowest`` [m], towards either end each half as wide as the next."""
     part = (clear - lowest) * 0.5 ** np.arange(1, _HALVINGS + 1)
     edges = np.concatenate([[clear], clear - part[::-1], lowest + part[1:_HALVINGS_BELOW], [lowest]])
     edges = edges[np.concatenate([[True], np.diff(np.minimum.accumulate(edges)) < 0.0])]
@@ -116,11 +122,17 @@ def _remember(panels: _Panels, fading: Fading, at: Floats) -> Floats:
     missed = fading.force - panels.force[panel, 0] - _faded(slopes[panel], depth, np.zeros_like(depth))
     result = fading.long_term * fading.force
     for length, weight in zip(fading.lengths, fading.weights, strict=True):
-        decay = width / length
+        decay = _decays(width, length)
         before = _carried(np.exp(-decay), _faded(slopes, np.ones_like(width), decay))
         own = _faded(slopes[panel], depth, decay[panel])
         result = result + weight * (np.exp(-depth * decay[panel]) * (before[:-1][panel] + missed) + own)
     return result
+
+
+def _decays(width: Floats, length: float) -> Floats:
+    """Return widths over a memory length; no more than a float holds."""
+    with np.errstate(divide="ignore", over="ignore"):
+        return np.minimum(width / length, np.finfo(float).max)
 
 
 def _carried(kept: Floats, added: Floats) -> Floats:
@@ -131,16 +143,18 @@ def _carried(kept: Floats, added: Floats) -> Floats:
 
 def _faded(slopes: Floats, depth: Floats, decay: Floats) -> Floats:
     """Return ∫_0^depth exp(-decay (depth - u)) q'(u) du for polynomials q on 0 to 1 with these slopes."""
-    with np.errstate(divide="ignore"):
-        back = np.minimum(depth, _REACH / decay)
-    total = np.zeros_like(depth)
-    for node, weight in zip(*unit_gauss(_NODES), strict=True):
-        x = _DEGREE * (depth - back * node - 0.5)
-        slope = np.zeros_like(depth)
-        for coefficient in slopes.T:
+    nodes, weights = (each[:, None] for each in unit_gauss(_NODES))
+    parts = []
+    for first in range(0, depth.size, _BLOCK):
+        some = slice(first, first + _BLOCK)
+        with np.errstate(divide="ignore"):
+            back = np.minimum(depth[some], _REACH / decay[some])
+        x = _DEGREE * (depth[some] - back * nodes - 0.5)
+        slope = np.zeros_like(x)
+        for coefficient in slopes[some].T:
             slope = slope * x + coefficient
-        total += weight * np.exp(-decay * back * node) * slope
-    return _DEGREE * back * total
+        parts.append(_DEGREE * back * (weights * np.exp(-decay[some] * back * nodes) * slope).sum(axis=0))
+    return np.concatenate(parts)
 
 
 def _slopes(values: Floats) -> Floats:
@@ -161,13 +175,13 @@ def _worth_halving(panels: _Panels, off: Floats, allowed: float) -> NDArray[np.b
     order = np.argsort(off)
     chosen = np.zeros(off.size, dtype=bool)
     chosen[order] = np.cumsum(off[order]) > allowed
-    return chosen & (panels.width > _LEAST_WIDTH * np.spacing(np.abs(panels.separation).max(axis=1)))
+    return np.asarray(chosen & (panels.width > _LEAST_WIDTH * panels.rounding))
 
 
 def _roundings(panels: _Panels, relative: float) -> Floats:
     """Return the error [N] of each panel by that of its forces, and by roundings of its separations."""
     steepness = (panels.force[:, -1] - panels.force[:, 0]) / panels.width
-    return relative * panels.force[:, -1] + steepness * np.spacing(np.abs(panels.separation).max(axis=1))
+    return np.asarray(relative * panels.force[:, -1] + steepness * panels.rounding)
 
 
 def _deviations(panels: _Panels, fading: Fading, roundings: Floats) -> Floats:
@@ -176,11 +190,11 @@ def _deviations(panels: _Panels, fading: Fading, roundings: Floats) -> Floats:
     By how far a polynomial without the point in the middle is off there.
     """
     signs = [(-1) ** number * comb(_DEGREE, number) for number in range(_DEGREE + 1)]
-    difference = sum(sign * column for sign, column in zip(signs, panels.force.T, strict=True))
-    off = np.maximum(np.abs(difference) / comb(_DEGREE, _DEGREE // 2) - 2.0 * roundings, 0.0)
+    difference = np.abs((panels.force * signs).sum(axis=1))
+    off = np.maximum(difference / comb(_DEGREE, _DEGREE // 2) - 2.0 * roundings, 0.0)
     total = np.zeros_like(off)
     for length, weight in zip(fading.lengths, fading.weights.max(axis=1), strict=True):
-        decay = panels.width / length
+        decay = _decays(panels.width, length)
         total -= weight * off * np.expm1(-decay) * _slope_limit(decay)
     return total
 
@@ -195,7 +209,7 @@ def _noise(panels: _Panels, fading: Fading, roundings: Floats) -> float:
     """Return the error of the force with its memory [N] by those of the panels."""
     total = np.zeros_like(roundings)
     for length, weight in zip(fading.lengths, fading.weights.max(axis=1), strict=True):
-        decay = panels.width / length
+        decay = _decays(panels.width, length)
         own = roundings * _slope_limit(decay)
         total += weight * (own + _carried(np.exp(-decay), -np.expm1(-decay) * own)[1:])
     return float(total.max() + fading.long_term * roundings.max())

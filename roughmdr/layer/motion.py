@@ -1,5 +1,6 @@
 """The motion of the flat in time, and of which time of loading the contacts are."""
 
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -50,7 +51,8 @@ class FlatMotion(NamedTuple):
         lowest, top = float(separation[turn]), max(clear, float(separation.max()))
         dwelt, rising = self._since_turn(separation[turn + 1 :], lowest)
         retracted = self.retraction_speed / self.speed * relaxation.integral(np.zeros_like(rising), rising)
-        before = relaxation.duration(dwelt + rising, retracted, (top - lowest) / self.speed)
+        longest = min((top - lowest) / self.speed, sys.float_info.max)
+        before = relaxation.duration(dwelt + rising, retracted, longest)
         left = np.minimum(lowest + self.speed * before, top)
         ages = np.concatenate([np.zeros(turn + 1), dwelt + rising + before])
         return Contacts(np.concatenate([separation[: turn + 1], left]), ages)

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadSeparation
-from roughmdr.errors import OutOfRange
 from roughmdr.layer.hereditary import Fading, remembered_force
 from roughmdr.layer.motion import FlatMotion
 from roughmdr.layer.relaxation import Relaxation
@@ -33,6 +32,7 @@ class Viscoelasticity(NamedTuple):
     motion: FlatMotion
 
 
+@np.errstate(over="ignore", under="ignore")  # a time over one that is far shorter: nothing is remembered
 def viscoelastic_law(
     elastic: ElasticLaw,
     separation: Floats,

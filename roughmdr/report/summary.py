@@ -14,7 +14,7 @@ from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import DONE, FAILED
+from roughmdr.variables import DONE, FAILED, TIME
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
@@ -113,8 +113,9 @@ def resolution_error(result: Labelled) -> float:
 
 
 def _numerical_error(result: Labelled) -> tuple[str, str]:
-    """Return the line of the numerical error: of sums their rounding, of expected laws that of their integrals."""
-    name = "integration" if layout.estimator_of(result) == "expected" else "rounding"
+    """Return the line of the numerical error: of sums their rounding, of integrals over heights or time theirs."""
+    integrated = layout.estimator_of(result) == "expected" or TIME.name in result.coordinates
+    name = "integration" if integrated else "rounding"
     errors = _values(result, "numerical_error")[layout.done_of(result)]
     if not errors.size:
         return name, _NOT_KNOWN

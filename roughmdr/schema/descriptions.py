@@ -25,6 +25,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "asperities": "Where the asperities come from",
         "interaction": "How asperities feel each other; they are independent without this section",
         "reference": "The surface itself by boundary elements, beside the law of its asperities, without adhesion",
+        "viscoelastic": "Relaxation of the modulus while the flat moves in time; the bodies are elastic without it",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -84,6 +85,16 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "beyond": 'Where too many contacts overlap: "flag" marks the step, "boundary_elements" solves it on a grid',
     },
     "reference": {"model": "Method", "error": "Relative error of its force by the grid"},
+    "viscoelastic": {
+        "relaxation": "Terms of a Prony series: each lowers the modulus by share (1 - exp(-t/time)) of the instantaneous one",
+        "speed": "Speed of the flat while loading",
+        "retraction_speed": "Speed of the flat while it rises. Default: speed",
+        "dwell": "Time at the lowest separation, spread over path.hold and the repeated turning point",
+    },
+    "viscoelastic.relaxation[]": {
+        "time": "Relaxation time",
+        "share": "Share of the instantaneous modulus that is lost; all together at most 1",
+    },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",
         "force": "Dead loads in place of separations: a table of start, stop and steps, or a list",

@@ -13,6 +13,7 @@ _SECTIONS = {
         "radius": '"50 um"',
     },
     "interaction": {"model": '"pairwise"'},
+    "viscoelastic": {"relaxation": '[{ time = "10 ms", share = 0.5 }]', "speed": '"1 um/s"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
     "accuracy": {"relative": "1e-2"},
 }

@@ -14,6 +14,7 @@ from roughmdr.variables.law import (
     REMOTE,
     SEPARATION,
     STEP_COORDINATES,
+    TIME,
     TRAVEL,
 )
 from roughmdr.variables.run import (
@@ -57,6 +58,7 @@ __all__ = [
     "SEPARATION",
     "STATUSES",
     "STEP_COORDINATES",
+    "TIME",
     "TRAVEL",
     "Diagnostic",
     "Variable",
