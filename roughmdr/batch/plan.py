@@ -119,7 +119,7 @@ class Plan(NamedTuple):
         return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the swept values and, of the steps, the controlled quantity, the branch and, if it matters, the time."""
+        """Return the swept values and, over the steps, the controlled quantity, the branch and perhaps the time."""
         steps = {self.control: self._over_changing([cell.values for cell in self.cells], attributes_of(self.control))}
         if self.scene.viscoelastic is not None:
             steps["time"] = self._over_changing([time_of(cell.scene, cell.values) for cell in self.cells], TIME.attrs)

@@ -196,7 +196,7 @@ def _deviations(panels: _Panels, fading: Fading, roundings: Floats) -> Floats:
     for length, weight in zip(fading.lengths, fading.weights.max(axis=1), strict=True):
         decay = _decays(panels.width, length)
         total -= weight * off * np.expm1(-decay) * _slope_limit(decay)
-    return total
+    return np.asarray(total)
 
 
 def _slope_limit(decay: Floats) -> Floats:

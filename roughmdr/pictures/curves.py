@@ -124,8 +124,13 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
 
 
 def _legs(result: Labelled) -> list[Ints]:
-    """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat."""
+    """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat.
+
+    Where it does, some time may have passed.
+    """
     branches, control = result.coordinates["branch"].values, controlled_values(result)
+    if TIME.name in result.coordinates:
+        control = np.stack([control, coordinate_values(result, TIME.name)])
     legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
     return [
         leg if leg[0] == 0 or (control[..., leg[0]] == control[..., leg[0] - 1]).all() else np.append(leg[0] - 1, leg)

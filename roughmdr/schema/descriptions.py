@@ -86,7 +86,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
     },
     "reference": {"model": "Method", "error": "Relative error of its force by the grid"},
     "viscoelastic": {
-        "relaxation": "Terms of a Prony series: each lowers the modulus by share (1 - exp(-t/time)) of the instantaneous one",
+        "relaxation": "Terms of a Prony series: each takes share (1 - exp(-t/time)) of the instantaneous modulus away",
         "speed": "Speed of the flat while loading",
         "retraction_speed": "Speed of the flat while it rises. Default: speed",
         "dwell": "Time at the lowest separation, spread over path.hold and the repeated turning point",
