@@ -56,7 +56,7 @@ class _Panels(NamedTuple):
 
     @property
     def rounding(self) -> Floats:
-        """Of the separations [m]."""
+        """Rounding of the separations [m]."""
         return np.asarray(np.spacing(np.abs(self.separation).max(axis=1)))
 
     def halved(self, chosen: NDArray[np.bool_], force: Callable[[Floats], Floats]) -> "_Panels":
