@@ -60,7 +60,12 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
 
 
 def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
-    """Return the cost of the law of one run of a cell."""
+    """Return the cost of the law of one run of a cell: of a viscoelastic one as that of the elastic one tells."""
+    if cell.scene.viscoelastic is not None:
+        elastic = cell._replace(scene=cell.scene.model_copy(update={"viscoelastic": None}))
+        cost = _measure_law(elastic, estimator, variables, budget)
+        more = law_seconds(cell, estimator) / law_seconds(elastic, estimator)
+        return cost._replace(seconds=cost.seconds * more)
     if estimator == "expected" or cell.scene.needs_positions:
         return _in_proportion(cell, estimator, variables, budget)
     count = max(1, math.ceil(cell.scene.asperities.expected_count))

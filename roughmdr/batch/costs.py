@@ -19,6 +19,7 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 # more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
+_REMEMBERED = 5000  # separations that a viscoelastic law is integrated over, of kinked curves
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
@@ -46,6 +47,8 @@ def law_seconds(cell: Cell, estimator: str) -> float:
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
+    if cell.scene.viscoelastic is not None:
+        steps += _REMEMBERED
     simple = section.shape_name == "paraboloid" or not adhesion.work
     dugdale = "dugdale" in adhesion.candidates
     if estimator == "expected":

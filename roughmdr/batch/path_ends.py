@@ -28,7 +28,10 @@ class PathFinder:
         if not path.starts_clear and path.target is None:
             return path.whole(path.values(sigma))
         # Sections that cells of a sweep have in common are the same objects.
-        key = (cell.effective_modulus, cell.adhesion_model, cell.interaction_model, id(cell.asperities), id(path))
+        key = (
+            *(cell.effective_modulus, cell.adhesion_model, cell.interaction_model),
+            *(id(section) for section in (cell.asperities, path, cell.viscoelastic)),
+        )
         if key not in self._found:
             self._found[key] = _find(cell, *path.given(sigma))
         return path.whole(path.values(sigma, *self._found[key]))

@@ -11,6 +11,7 @@ from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.path_ends import PathFinder
 from roughmdr.batch.reference import check_surface, reference_variables
 from roughmdr.batch.usual_path import machine_path, usual_path
+from roughmdr.batch.viscoelastic import check_path, time_of
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
@@ -19,7 +20,7 @@ from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, TIME
 
 
 class Cell(NamedTuple):
@@ -118,22 +119,24 @@ class Plan(NamedTuple):
         return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the swept values, the controlled quantity over those of them that change it, and the branch."""
-        paths = [cell.values for cell in self.cells]
-        values, dims = paths[0], ["step"]
-        if any(path is not paths[0] for path in paths):
-            values = np.array(paths).reshape(*self.sizes.values(), -1)
+        """Return the swept values and, over the steps, the controlled quantity, the branch and perhaps the time."""
+        steps = {self.control: self._over_changing([cell.values for cell in self.cells], attributes_of(self.control))}
+        if self.scene.viscoelastic is not None:
+            steps["time"] = self._over_changing([time_of(cell.scene, cell.values) for cell in self.cells], TIME.attrs)
+        return {**self.scene.sweep.coordinates(), **steps, "branch": self.cells[0].controlled.branch()}
+
+    def _over_changing(self, rows: list[Floats], attrs: dict[str, str]) -> Array:
+        """Return rows over the steps, one for each cell, over those swept keys that change them, and the steps."""
+        values, dims = rows[0], ["step"]
+        if any(row is not rows[0] for row in rows):
+            values = np.array(rows).reshape(*self.sizes.values(), -1)
             for axis, name in reversed(list(enumerate(self.sizes))):
                 first_only = values.take([0], axis)
                 if (values == first_only).all():
                     values = first_only.squeeze(axis)
                 else:
                     dims.insert(0, name)
-        return {
-            **self.scene.sweep.coordinates(),
-            self.control: Array(tuple(dims), values, attributes_of(self.control)),
-            "branch": self.cells[0].controlled.branch(),
-        }
+        return Array(tuple(dims), values, attrs)
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -165,6 +168,8 @@ def make_plan(scene: Scene) -> Plan:
 
 def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], LoadingPath]) -> Cell:
     """Return a cell with its path; those of separations are made once for equal ``values``."""
+    if cell.viscoelastic is not None:
+        check_path(cell, values)
     if cell.path.control == "separation":
         key = values.tobytes(), cell.work > 0.0
         if key not in paths:
@@ -195,8 +200,9 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"range of the adhesion: where JKR is off by less than {scene.adhesion_model.error:g}, see tabor_number"
     elif scene.work > 0.0 and not scene.adhesion_model.cohesive:
         yield "range of the adhesion: adhesion.model is 'jkr'"
-    if scene.work == 0.0:
+    if scene.work == 0.0 and scene.viscoelastic is None:
         yield "hysteresis: without adhesion a contact has no memory"
+        yield "time: elastic bodies do not relax; the scene has no [viscoelastic]"
     if scene.batch.estimator == "expected":
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":

@@ -1,28 +1,47 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.layer.conductance import of_contacts, with_conductances
 from roughmdr.loading.machine import MachinePath
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.variables import REFERENCE_VARIABLES
+
+_NEGLIGIBLE = 1e-16  # mean number of asperities above the highest summit of an expected law
+
+
+class _Contacts(NamedTuple):
+    """The elastic contacts of a rough layer."""
+
+    law: Callable[[LoadingPath | MachinePath, list[str]], LoadSeparation]
+    """A path, variables -> their law."""
+    highest: Callable[[], float]
+    """The height of the highest summit [m]; -inf where there is none."""
 
 
 def simulate_ensemble(
     scene: Scene, path: LoadingPath | MachinePath, ensemble: Ensemble, variables: list[str]
 ) -> LoadSeparation:
     """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
-    law = simulate(
-        ensemble,
-        path,
-        effective_modulus=scene.effective_modulus,
-        adhesion=scene.adhesion_model,
-        interaction=scene.interaction_model,
-        variables=of_contacts(variables),
-    )
-    return with_conductances(law, scene.conductance_factors).only(variables)
+
+    def law(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+        return simulate(
+            ensemble,
+            path,
+            effective_modulus=scene.effective_modulus,
+            adhesion=scene.adhesion_model,
+            interaction=scene.interaction_model,
+            variables=variables,
+        )
+
+    contacts = _Contacts(law, lambda: float(ensemble.height.max(initial=-np.inf)))
+    return _layered(scene, path, variables, contacts, ensemble.nominal_area)
 
 
 def simulate_realization(
@@ -50,14 +69,38 @@ def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str
     from roughmdr import expected
     from roughmdr.expected.under_machine import compute_under_machine
 
+    source = scene.asperities
     given: dict[str, Any] = {
         "effective_modulus": scene.effective_modulus,
         "adhesion": scene.adhesion_model,
         "interaction": scene.interaction_model,
-        "variables": of_contacts(variables),
     }
-    if isinstance(path, MachinePath):
-        law = compute_under_machine(scene.asperities, path, **given)
+
+    def law(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+        if isinstance(path, MachinePath):
+            return compute_under_machine(source, path, **given, variables=variables)
+        return expected.compute(source, path, **given, variables=variables)
+
+    def highest() -> float:
+        return float(source.extremes(_NEGLIGIBLE / max(source.expected_count, 1.0)).height.max())
+
+    return _layered(scene, path, variables, _Contacts(law, highest), source.nominal_area)
+
+
+def _layered(
+    scene: Scene, path: LoadingPath | MachinePath, variables: list[str], contacts: _Contacts, area: float | None
+) -> LoadSeparation:
+    """Return the law of a scene from that of its elastic contacts, on a nominal area [m2]."""
+    asked = of_contacts(variables)
+    if scene.viscoelastic is None:
+        law = contacts.law(path, asked)
     else:
-        law = expected.compute(scene.asperities, path, **given)
+        from roughmdr.batch.viscoelastic import law_of
+
+        assert isinstance(path, LoadingPath)  # as ``Scene`` validates
+
+        def elastic(separation: Floats, names: list[str]) -> LoadSeparation:
+            return contacts.law(LoadingPath.along(separation, unload=False, adhesive=False), names)
+
+        law = law_of(scene, path.separation, asked, elastic, contacts.highest(), area)
     return with_conductances(law, scene.conductance_factors).only(variables)

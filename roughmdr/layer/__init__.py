@@ -1,1 +1,1 @@
-"""What follows from the finished law of a rough layer."""
+"""Laws of the rough layer that are made of a finished law of it."""

@@ -18,7 +18,7 @@ COMPILED = (
     "shapes",
 )
 """All that jitted functions are made of."""
-NUMBERS = (*COMPILED, "asperity", "batch", "elements", "ensemble", "scene", "schema", "spectrum.py")
+NUMBERS = (*COMPILED, "asperity", "batch", "elements", "ensemble", "layer", "scene", "schema", "spectrum.py")
 """All that decides the numbers of a realisation, given its scene."""
 
 

@@ -13,6 +13,7 @@ from roughmdr.result.layout import (
     abscissa_of,
     control_of,
     controlled_values,
+    coordinate_values,
     done_of,
     stored_variables,
     swept_sizes,
@@ -22,7 +23,7 @@ from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, TIME
 
 _PER_AREA = {
     **{total: (OVER_AREA[total], CURVE_VARIABLES[OVER_AREA[total]].units) for total in ("force", "contact_area")},
@@ -89,7 +90,8 @@ def drawn_against(result: Labelled, asked: str | None) -> str:
     """Return the variable that curves are drawn against; StoreError for one that the result lacks."""
     if asked is None:
         return abscissa_of(result)
-    available = [*dict.fromkeys([control_of(result), *stored_variables(result)])]
+    timed = [TIME.name] if TIME.name in result.coordinates else []
+    available = [*dict.fromkeys([control_of(result), *timed, *stored_variables(result)])]
     if asked not in available:
         raise StoreError(f"x is {asked!r}, which is not in the result{suggestion(asked, available)}")
     return asked
@@ -125,8 +127,13 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
 
 
 def _legs(result: Labelled) -> list[Ints]:
-    """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat."""
+    """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat.
+
+    Where it does, some time may have passed.
+    """
     branches, control = result.coordinates["branch"].values, controlled_values(result)
+    if TIME.name in result.coordinates:
+        control = np.stack([control, coordinate_values(result, TIME.name)])
     legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
     return [
         leg if leg[0] == 0 or (control[..., leg[0]] == control[..., leg[0] - 1]).all() else np.append(leg[0] - 1, leg)
@@ -160,13 +167,13 @@ def _runs(result: Labelled, name: str) -> Floats:
         return np.empty((*cells, 0, steps))
     if name in result.variables:
         return result.variables[name].values
-    return np.broadcast_to(controlled_values(result)[..., None, :], (*cells, result.sizes["realization"], steps))
+    return np.broadcast_to(coordinate_values(result, name)[..., None, :], (*cells, result.sizes["realization"], steps))
 
 
 def _mean(result: Labelled, name: str) -> tuple[Floats, Floats]:
-    """Return the mean of a variable and its standard error; the controlled quantity has none."""
+    """Return the mean of a variable and its standard error; a coordinate has none."""
     if name not in result.variables and f"{name}_mean" not in result.variables:
-        values = controlled_values(result)
+        values = coordinate_values(result, name)
         return values, np.full_like(values, np.nan)
     return mean_of(result, name)
 

@@ -64,6 +64,8 @@ class Snapshot(NamedTuple):
         if np.isnan(path[step]):
             raise StoreError(f"step is {step}, at which there is no separation: the load has pulled the flat off")
         scene = read(file or parse_toml(result.attrs["scene"])).cells[cells.index(cell)]
+        if scene.viscoelastic is not None:
+            raise StoreError("the result is viscoelastic: single contacts are not computed of its scene")
         method = method_of(result, cell) or estimator_of(result)
         if method == "expected":
             raise StoreError(

@@ -175,6 +175,26 @@ PERSSON = Paper(
     "R1-R62",
     "10.1088/0953-8984/17/1/R01",
 )
+LEE_RADOK = Paper(
+    "Lee1960",
+    ("E. H. Lee", "J. R. M. Radok"),
+    "The contact problem for viscoelastic bodies",
+    "Journal of Applied Mechanics",
+    1960,
+    "27",
+    "438-444",
+    "10.1115/1.3644020",
+)
+TING = Paper(
+    "Ting1966",
+    ("T. C. T. Ting",),
+    "The contact stresses between a rigid indenter and a viscoelastic half-space",
+    "Journal of Applied Mechanics",
+    1966,
+    "33",
+    "845-854",
+    "10.1115/1.3625192",
+)
 EWALD = Paper(
     "Ewald1921",
     ("P. P. Ewald",),

@@ -169,6 +169,8 @@ def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
     ranged = used.values("adhesion.strength") or used.values("adhesion.range")
     if models and ranged:
         yield "adhesion", papers.TABOR
+    if "viscoelastic" in used.table:
+        yield from (("viscoelastic", paper) for paper in (papers.LEE_RADOK, papers.TING))
 
 
 def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:

@@ -1,6 +1,6 @@
 """Summaries of plans, results and ensembles, for the command line."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,9 +13,10 @@ from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
+from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
-from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import DONE, FAILED
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.variables import DONE, FAILED, TIME
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
@@ -40,6 +41,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *prospect_lines(prospect),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
         *_reference(plan),
+        *_motion(plan.coordinates()),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
     lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
@@ -71,6 +73,14 @@ def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "", "where contacts are few and small it is finer, and takes longer, than was foreseen here"
 
 
+def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
+    """Yield how long a viscoelastic body is pressed and released."""
+    if TIME.name in coordinates:
+        last = coordinates[TIME.name].values[..., -1]
+        low, high = float(last.min()), float(last.max())
+        yield "motion", f"{format_quantity(low, 's', to=high if high > low else None)} from the first step to the last"
+
+
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
@@ -87,6 +97,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield "computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"
     yield "variables", ", ".join(layout.stored_variables(result))
     yield from _indent("path", attrs.get("path", "").splitlines())
+    yield from _motion(result.coordinates)
     yield from _indent("map", attrs.get("map", "").splitlines())
     yield from describe_pull_off(result, _NOT_KNOWN)
     yield from _avalanches(result)
@@ -115,8 +126,9 @@ def resolution_error(result: Labelled) -> float:
 
 
 def _numerical_error(result: Labelled) -> tuple[str, str]:
-    """Return the line of the numerical error: of sums their rounding, of expected laws that of their integrals."""
-    name = "integration" if layout.estimator_of(result) == "expected" else "rounding"
+    """Return the line of the numerical error: of sums their rounding, of integrals over heights or time theirs."""
+    integrated = layout.estimator_of(result) == "expected" or TIME.name in result.coordinates
+    name = "integration" if integrated else "rounding"
     errors = _values(result, "numerical_error")[layout.done_of(result)]
     if not errors.size:
         return name, _NOT_KNOWN

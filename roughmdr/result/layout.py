@@ -57,7 +57,12 @@ def abscissa_of(result: Labelled) -> str:
 
 def controlled_values(result: Labelled) -> Floats:
     """Return the controlled quantity of every cell in SI, over the swept keys and step."""
-    values, sizes = result.coordinates[control_of(result)], swept_sizes(result)
+    return coordinate_values(result, control_of(result))
+
+
+def coordinate_values(result: Labelled, name: str) -> Floats:
+    """Return a coordinate over the steps of every cell in SI, over the swept keys and step."""
+    values, sizes = result.coordinates[name], swept_sizes(result)
     shape = [size if name in values.dims else 1 for name, size in sizes.items()]
     return np.broadcast_to(values.values.reshape(*shape, -1), (*sizes.values(), values.values.shape[-1]))
 

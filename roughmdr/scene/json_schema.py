@@ -36,7 +36,7 @@ def scene_schema() -> JsonSchema:
     made = _Sections()
     scene = made.section(Scene, "")
     scene["required"].remove("title")  # which is that of the file
-    swept = {key: entries for key, entries in made.values.items() if may_be_swept(key)}
+    swept = {key: entries for key, entries in made.values.items() if may_be_swept(key) and "[]" not in key}
     sweep, definitions = sweep_schema(swept, sorted({name for names in own_parameters() for name in names}))
     scene["properties"]["sweep"] |= sweep
     # A key that is swept may be left out otherwise.

@@ -37,7 +37,8 @@ def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -
     for section in [each for each in sections if _allows(each, data)] or sections:
         for name, field in section.model_fields.items():
             key, value = f"{prefix}{name}", data.get(name)
-            yield from key_readers(sections_of(field.annotation), value, f"{key}.")
+            if get_origin(field.annotation) is not list:
+                yield from key_readers(sections_of(field.annotation), value, f"{key}.")
             reader = _reader((*field.metadata, field.annotation))
             if reader is not None:
                 yield key, reader

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import tomli_w
-from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, InstanceOf, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
@@ -25,6 +25,7 @@ from roughmdr.scene.sections import (
     ReferenceSection,
 )
 from roughmdr.scene.sweep import Sweep
+from roughmdr.scene.viscoelastic import ViscoelasticSection, check_viscoelastic, without_unknown
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.material import effective_modulus
@@ -53,8 +54,9 @@ class Scene(Section):
     interaction: InteractionSection | None = None
     reference: ReferenceSection | None = None
     conduction: ConductionSection | None = None
+    viscoelastic: ViscoelasticSection | None = None
     path: FlatPath
-    output: Output = Output()
+    output: Annotated[Output, Field(validate_default=True)] = Output()
     batch: Batch = Batch()
     accuracy: Accuracy | None = None
     sweep: InstanceOf[Sweep] = Sweep()
@@ -113,6 +115,12 @@ class Scene(Section):
         """Scenes of the sweep's cells, the last swept key fastest; the scene itself if it has no sweep."""
         return self._cells or (self,)
 
+    @field_validator("output")
+    @classmethod
+    def _usual_variables(cls, value: Output, info: ValidationInfo) -> Output:
+        usual = "variables" not in value.model_fields_set and info.data.get("viscoelastic") is not None
+        return value.model_copy(update={"variables": without_unknown()}) if usual else value
+
     @model_validator(mode="after")
     def _sections_agree(self) -> "Scene":
         if self.counter is not None and self.material.effective_modulus is not None:
@@ -131,6 +139,8 @@ class Scene(Section):
         if self.reference is not None:
             self._check_reference()
         check_conduction(self.conduction, self.output.variables)
+        others = {"adhesion": self.work > 0.0, "interaction": self.interaction, "reference": self.reference}
+        check_viscoelastic(self.viscoelastic, self.path, self.output.variables, others)
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:

@@ -26,6 +26,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "interaction": "How asperities feel each other; they are independent without this section",
         "reference": "The surface itself by boundary elements, beside the law of its asperities, without adhesion",
         "conduction": "How the bodies conduct, for thermal_conductance and electrical_conductance",
+        "viscoelastic": "Relaxation of the modulus while the flat moves in time; the bodies are elastic without it",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -90,6 +91,16 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "counter_conductivity": "Thermal conductivity of the other body",
         "resistivity": "Electrical resistivity, of both bodies unless counter_resistivity is given",
         "counter_resistivity": "Electrical resistivity of the other body",
+    },
+    "viscoelastic": {
+        "relaxation": "Terms of a Prony series: each takes share (1 - exp(-t/time)) of the instantaneous modulus away",
+        "speed": "Speed of the flat while loading",
+        "retraction_speed": "Speed of the flat while it rises. Default: speed",
+        "dwell": "Time at the lowest separation, spread over path.hold and the repeated turning point",
+    },
+    "viscoelastic.relaxation[]": {
+        "time": "Relaxation time",
+        "share": "Share of the instantaneous modulus that is lost; all together at most 1",
     },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",

@@ -14,6 +14,7 @@ _SECTIONS = {
     },
     "interaction": {"model": '"pairwise"'},
     "conduction": {"conductivity": '"400 W/m/K"', "resistivity": '"17e-9 ohm m"'},
+    "viscoelastic": {"relaxation": '[{ time = "10 ms", share = 0.5 }]', "speed": '"1 um/s"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
     "accuracy": {"relative": "1e-2"},
 }

@@ -19,6 +19,7 @@ from roughmdr.variables import (
     PULL_OFF_NUMBERS,
     RUN_DIAGNOSTICS,
     STEP_COORDINATES,
+    TIME,
 )
 
 _REQUIRED_TEXTS = ("title", "source", "history", "scene", "packages", "left_out")
@@ -97,10 +98,11 @@ def _arrays(data: Labelled) -> Iterator[str]:
         if name in holder:
             yield from _mismatches(name, holder[name], dims, kind)
     control = next(name for name in STEP_COORDINATES if name in data.coordinates)
-    values = data.coordinates[control]
-    if [dim for dim in cells if dim in values.dims] != list(values.dims[:-1]):
-        yield f"{control} has the dimensions {', '.join(values.dims)}; it must have swept keys and step"
-    yield from _mismatches(control, values, (*values.dims[:-1], "step"), "f")
+    for name in (control, *([TIME.name] if TIME.name in data.coordinates else [])):
+        values = data.coordinates[name]
+        if [dim for dim in cells if dim in values.dims] != list(values.dims[:-1]):
+            yield f"{name} has the dimensions {', '.join(values.dims)}; it must have swept keys and step"
+        yield from _mismatches(name, values, (*values.dims[:-1], "step"), "f")
     for name, array in data.coordinates.items():
         if name not in AUXILIARY_COORDINATES and not _is_text(array.attrs.get("units", "")):
             yield f"the units of {name} are no text"

@@ -15,6 +15,7 @@ from roughmdr.variables.law import (
     REMOTE,
     SEPARATION,
     STEP_COORDINATES,
+    TIME,
     TRAVEL,
 )
 from roughmdr.variables.run import (
@@ -59,6 +60,7 @@ __all__ = [
     "SEPARATION",
     "STATUSES",
     "STEP_COORDINATES",
+    "TIME",
     "TRAVEL",
     "Diagnostic",
     "Variable",

@@ -35,6 +35,9 @@ REMOTE = Variable(
 )
 """A coordinate where a path controls it, a variable where it follows from a preload."""
 
+TIME = Variable("time", "s", "time since the first step")
+"""A coordinate of a viscoelastic law."""
+
 REFERENCE_VARIABLES = declare(
     ("reference_force", "N", "normal force by boundary elements"),
     ("reference_contact_area", "m2", "contact area by boundary elements"),
@@ -49,7 +52,13 @@ REFERENCE_VARIABLES = declare(
 )
 """Variables of a law by boundary elements beside that of the asperities."""
 
-LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES, **REFERENCE_VARIABLES}
+LAW_VARIABLES = {
+    SEPARATION.name: SEPARATION,
+    REMOTE.name: REMOTE,
+    TIME.name: TIME,
+    **CURVE_VARIABLES,
+    **REFERENCE_VARIABLES,
+}
 """Variables that a result can have over its steps."""
 
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
@@ -80,4 +89,4 @@ COORDINATES = declare(
     ("height", "m", "summit height above the datum plane"),
     ("x", "m", "x of the summit"),
     ("y", "m", "y of the summit"),
-) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL}
+) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL, TIME.name: TIME}

@@ -173,6 +173,7 @@ RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | declare(
 
 AUXILIARY_COORDINATES = (
     "separation",
+    "time",
     "branch",
     "cell_key",
     *(row.name for row in RUN_DIAGNOSTICS.values() if row.dtype is str),

@@ -38,6 +38,12 @@ SCENES = {
     "statistics": wound(output={"variables": list(CURVE_VARIABLES), "keep": "statistics"}),
     "work": wound(sweep={"adhesion.work": [0.05, 0.0, 0.1]}),
     "expected": wound(batch={"estimator": "expected"}),
+    "relaxation": wound(
+        adhesion=None,
+        viscoelastic={"relaxation": [{"time": 1.0, "share": 0.6}], "speed": 1e-6},
+        path={"separation": {"start": "2 sigma", "stop": "-0.5 sigma", "steps": 10}, "unload": True},
+        output={"variables": ["force", "contact_area", "contact_count"]},
+    ),
 }
 
 
@@ -89,6 +95,12 @@ PLANTED: dict[str, tuple[str, Callable[[xr.Dataset], xr.Dataset], str]] = {
     "a loss undone": ("JKR", swapped("dissipated_energy", lambda r: -r.dissipated_energy), "what is lost"),
     "a mean that is too large": ("statistics", at(3.0, "contact_area_mean"), ".*contact_area.*"),
     "more force with more work": ("work", swapped("force", lambda r: r.force * r.adhesion_work), ".*force.*"),
+    "a force that pulls": ("relaxation", at(-1.0, "force"), "force is not negative"),
+    "a force that unloading raises": (
+        "relaxation",
+        swapped("force", lambda r: r.force * xr.where(r.branch == "unloading", 5.0, 1.0)),
+        "force does not rise",
+    ),
     "an area of the expected law": ("expected", at(100.0, "contact_area", "contact_fraction"), "contact_area .*"),
     "a reason that is none": ("JKR", failing, "a run fails for a reason"),
 }

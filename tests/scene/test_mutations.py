@@ -5,7 +5,7 @@ import copy
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_origin
 
 import numpy as np
 import pytest
@@ -154,6 +154,15 @@ BASES: dict[str, dict[str, Any]] = {
             "unload": True,
         },
     },
+    "relaxation": {
+        **{key: value for key, value in SCENE.items() if key != "adhesion"},
+        "viscoelastic": {
+            "relaxation": [{"time": "10 ms", "share": 0.5}],
+            "speed": "1 um/s",
+            "retraction_speed": "2 um/s",
+            "dwell": "1 s",
+        },
+    },
     "a preload": {**SCENE, "path": {"preload": "1 uN", "machine_stiffness": "1 kN/m", "steps": 9, "unload": True}},
     **{
         f"a preload by {quantity}": {**SCENE, "path": {f"preload_{quantity}": value, "steps": 9, "unload": True}}
@@ -251,10 +260,10 @@ ALL = list(mutations())
 
 
 def declared(section: type[BaseModel], at: str = "") -> Iterator[str]:
-    """Every key that the sections declare."""
+    """Every key that the sections declare, but those of the entries of a list."""
     for name, field in section.model_fields.items():
         yield f"{at}{name}"
-        for inner in sections_of(field.annotation):
+        for inner in sections_of(field.annotation) if get_origin(field.annotation) is not list else ():
             yield from declared(inner, f"{at}{name}.")
 
 

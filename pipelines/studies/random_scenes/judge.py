@@ -92,7 +92,10 @@ def _claims(result: xr.Dataset, scene: Scene) -> Claims:
     cells = list(curves_of(result, scene))
     for curves in cells:
         yield from _claims_on_each_step(curves)
-        yield from (_claims_with_adhesion if curves.scene.work > 0.0 else _claims_without_adhesion)(curves)
+        if curves.scene.viscoelastic is not None:
+            yield from _claims_with_relaxation(curves)
+        else:
+            yield from (_claims_with_adhesion if curves.scene.work > 0.0 else _claims_without_adhesion)(curves)
     if scene.accuracy is None:
         yield from _claims_over_work(scene, cells)
     else:
@@ -189,6 +192,23 @@ def _claims_with_adhesion(curves: Curves) -> Claims:
         for name, each, tolerance in curves.given(*_CONTACTS, *FORCES):
             gain = (each[:, after] - each[:, before]) * (-1.0 if name in FORCES else 1.0)
             yield f"{name} after the flat was lower, against before", gain >= -2.0 * tolerance[:, 0]
+
+
+def _claims_with_relaxation(curves: Curves) -> Claims:
+    """Contacts grow on loading and shrink on unloading, where they are smaller and bear less; nothing pulls."""
+    move = np.diff(curves.separation)
+    for name, each, tolerance in curves.given(*_CONTACTS):
+        rises, slack = np.diff(each, axis=1), 2.0 * tolerance
+        yield f"{name} does not fall as the flat comes down", rises[:, move <= 0.0] >= -slack
+        yield f"{name} does not rise as the flat does", rises[:, move >= 0.0] <= slack
+    for name, each, tolerance in curves.given(*FORCES):
+        yield f"{name} is not negative", each >= -tolerance
+        rises = np.diff(each, axis=1)
+        yield f"{name} does not fall as the flat comes down", rises[:, move < 0.0] >= -2.0 * tolerance
+        yield f"{name} does not rise as the flat stands or rises", rises[:, move >= 0.0] <= 2.0 * tolerance
+    for before, after in returns(curves.separation):
+        for name, each, tolerance in curves.given(*_CONTACTS, *FORCES):
+            yield f"{name} after loading, against before", each[:, after] <= each[:, before] + 2.0 * tolerance[:, 0]
 
 
 def _claims_over_work(scene: Scene, cells: list[Curves]) -> Claims:

@@ -13,6 +13,7 @@ import xarray as xr
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 from studies.random_scenes.numbers import Draw, Table, distribution, entry, number, power_of_ten, quantity, seldom
+from studies.random_scenes.relaxation import viscoelastic
 
 import roughmdr as rm
 from roughmdr.shapes import SCENE_SHAPES, SHAPES
@@ -277,4 +278,6 @@ def scenes(draw: Draw, folder: Path, cohesive: tuple[str, ...]) -> Table:
         table["adhesion"] = adhesion(draw, frame, model)
     table["asperities"] = asperities(draw, frame, shape, source, folder)
     table |= {"path": path(draw, frame), **batch(draw, frame, drawn=drawn)}
+    if model == "none" and seldom(draw, 3):
+        table |= viscoelastic(draw, frame.size, frame.datum)
     return table | (sweep(draw, table) if seldom(draw, 5) else {})

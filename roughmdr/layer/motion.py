@@ -1,0 +1,64 @@
+"""The motion of the flat in time, and of which time of loading the contacts are."""
+
+import sys
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.layer.relaxation import Relaxation
+from roughmdr.numerics.arguments import Floats
+
+
+class Contacts(NamedTuple):
+    """Contacts of a viscoelastic body: those of loading at an earlier time."""
+
+    separation: Floats
+    """Of the flat at that time [m]."""
+    age: Floats
+    """Time since then [s]."""
+
+
+class FlatMotion(NamedTuple):
+    """A flat that comes from infinity, may dwell at its lowest separation, and retracts."""
+
+    speed: float
+    """[m/s]"""
+    retraction_speed: float
+    """[m/s]"""
+    dwell: float
+    """[s]"""
+
+    def time(self, separation: Floats) -> Floats:
+        """Return the time of each step [s] since the first; the separations [m] fall, and then rise.
+
+        Steps at the lowest separation are spread evenly over the dwell.
+        """
+        turn = int(np.argmin(separation))
+        fallen = (separation[0] - separation[: turn + 1]) / self.speed
+        return np.concatenate([fallen, fallen[-1] + sum(self._since_turn(separation[turn + 1 :], separation[turn]))])
+
+    def contacts(self, separation: Floats, relaxation: Relaxation, clear: float) -> Contacts:
+        """Return the contacts at each step of separations [m] that fall, and then rise.
+
+        At ``clear`` [m] and above nothing touches. While the flat rises they are those of the time t1 of loading with
+        ∫_t1^t phi(t - s) h'(s) ds = 0 [1]_: one time for all shapes and heights.
+
+        References
+        ----------
+        .. [1] T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
+        """
+        turn = int(np.argmin(separation))
+        lowest, top = float(separation[turn]), max(clear, float(separation.max()))
+        dwelt, rising = self._since_turn(separation[turn + 1 :], lowest)
+        retracted = self.retraction_speed / self.speed * relaxation.integral(np.zeros_like(rising), rising)
+        longest = min((top - lowest) / self.speed, sys.float_info.max)
+        before = relaxation.duration(dwelt + rising, retracted, longest)
+        left = np.minimum(lowest + self.speed * before, top)
+        ages = np.concatenate([np.zeros(turn + 1), dwelt + rising + before])
+        return Contacts(np.concatenate([separation[: turn + 1], left]), ages)
+
+    def _since_turn(self, separation: Floats, lowest: float) -> tuple[Floats, Floats]:
+        """Return of the steps after the turning point how long the flat has dwelt there, and has risen since [s]."""
+        still = int(np.count_nonzero(separation == lowest))
+        dwelt = self.dwell * np.minimum(np.arange(1, separation.size + 1) / max(still, 1), 1.0)
+        return dwelt, (separation - lowest) / self.retraction_speed

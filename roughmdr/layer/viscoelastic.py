@@ -1,0 +1,94 @@
+"""The law of viscoelastic asperities without adhesion, from their elastic law; Poisson's ratio is constant in time.
+
+While contacts grow they are those of the elastic law, and the force is F(t) = ∫ phi(t - s) dF_el(h(s)) [1]_. While the
+flat rises they are those of an earlier time t1 of loading, and the integral ends there [2]_.
+
+References
+----------
+.. [1] E. H. Lee, J. R. M. Radok, J. Appl. Mech. 27 (1960) 438.
+.. [2] T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import LoadSeparation
+from roughmdr.layer.hereditary import Fading, remembered_force
+from roughmdr.layer.motion import FlatMotion
+from roughmdr.layer.relaxation import Relaxation
+from roughmdr.numerics.arguments import Floats
+
+ElasticLaw = Callable[[Floats, list[str]], LoadSeparation]
+"""Returns the elastic law at separations [m], in any order, in these variables."""
+_OF_FORCE = ("force", "pressure")
+
+
+class Viscoelasticity(NamedTuple):
+    """A body that relaxes, under a flat that moves in time."""
+
+    relaxation: Relaxation
+    motion: FlatMotion
+
+
+@np.errstate(over="ignore", under="ignore")  # a time over one that is far shorter: nothing is remembered
+def viscoelastic_law(
+    elastic: ElasticLaw,
+    separation: Floats,
+    names: list[str],
+    body: Viscoelasticity,
+    *,
+    clear: float,
+    nominal_area: float | None,
+) -> LoadSeparation:
+    """Return the law along separations [m] that fall, and then rise.
+
+    Parameters
+    ----------
+    elastic : callable
+        The law with the instantaneous modulus.
+    separation : numpy.ndarray, shape (n,)
+        [m]
+    names : list of str
+        Of force, pressure, contact_area, contact_fraction, contact_count, contact_radius_sum, model_error_curve.
+    body : Viscoelasticity
+        Its relaxation, and the motion of the flat.
+    clear : float
+        Separation [m] at and above which nothing touches.
+    nominal_area : float or None
+        [m2]; None only where no variable needs it.
+
+    Returns
+    -------
+    LoadSeparation
+        Its model error is that of the elastic law of the contacts.
+
+    Raises
+    ------
+    OutOfRange
+        As the elastic law does.
+    """
+    contacts = body.motion.contacts(separation, body.relaxation, clear)
+    law = elastic(contacts.separation, list(dict.fromkeys(["force", *(name for name in names if name != "pressure")])))
+    force, visits, error = law.variables["force"], law.visits, law.numerical_error
+
+    if force.any():
+
+        def force_at(separation: Floats) -> tuple[Floats, float]:
+            nonlocal visits
+            found = elastic(separation, ["force"])
+            visits += found.visits
+            return found.variables["force"], found.numerical_error
+
+        relaxation = body.relaxation
+        lengths = body.motion.speed * relaxation.times
+        weights = relaxation.shares[:, None] * np.exp(-contacts.age / relaxation.times[:, None])
+        fading = Fading(lengths, weights, relaxation.long_term, force)
+        force, off = remembered_force(force_at, fading, contacts.separation, clear)
+        error = off / float(np.abs(force).max())
+    variables = {"force": force}
+    if "pressure" in names:
+        assert nominal_area is not None
+        variables["pressure"] = force / nominal_area
+    return law._replace(variables=law.variables | variables, numerical_error=error, visits=visits).only(names)
