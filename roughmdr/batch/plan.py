@@ -19,7 +19,7 @@ from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import OUTPUT_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -208,7 +208,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     if scene.reference is None:
         yield "boundary elements: the scene has no [reference]"
-    if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
+    if unasked := [name for name in OUTPUT_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"

@@ -24,6 +24,7 @@ from roughmdr.scene.sections import (
     ReferenceSection,
 )
 from roughmdr.scene.sweep import Sweep
+from roughmdr.scene.tangential import TangentialSection, bodies_of, check_tangential, with_lateral_variables
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.material import effective_modulus
@@ -51,6 +52,7 @@ class Scene(Section):
     asperities: Asperities
     interaction: InteractionSection | None = None
     reference: ReferenceSection | None = None
+    tangential: TangentialSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -111,6 +113,11 @@ class Scene(Section):
         """Scenes of the sweep's cells, the last swept key fastest; the scene itself if it has no sweep."""
         return self._cells or (self,)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _variables(cls, table: Any) -> Any:
+        return with_lateral_variables(table)
+
     @model_validator(mode="after")
     def _sections_agree(self) -> "Scene":
         if self.counter is not None and self.material.effective_modulus is not None:
@@ -126,6 +133,9 @@ class Scene(Section):
         coupling = self.interaction_model
         if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
             raise mismatch("interaction", reason)
+        against = {"interaction": coupling, "adhesion": self.work or None, "reference": self.reference}
+        bodies = bodies_of(self.material, self.counter)
+        check_tangential(self.tangential, bodies, self.path, self.output.variables, against)
         if self.reference is not None:
             self._check_reference()
         if estimator != "sampled" and (reason := self.reason_against(estimator)):

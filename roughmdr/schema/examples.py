@@ -14,6 +14,7 @@ _SECTIONS = {
     },
     "interaction": {"model": '"pairwise"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
+    "tangential": {"friction": "0.3"},
     "accuracy": {"relative": "1e-2"},
 }
 _KEYS = {
@@ -37,6 +38,8 @@ _KEYS = {
     "path.pressure.steps": "200",
     "path.remote.stop": '"-2 sigma"',
     "path.remote.steps": "200",
+    "path.lateral.steps": "50",
+    "tangential.stiffness_ratio": "0.8",
     "path.machine_stiffness": '"1 kN/m"',
     "path.preload": '"1 mN"',
     "path.preload_pressure": '"1 MPa"',

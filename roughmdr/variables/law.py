@@ -17,7 +17,18 @@ CURVE_VARIABLES = declare(
 )
 """Variables of a load-separation law that [output] can name."""
 
+TANGENTIAL_VARIABLES = declare(
+    ("tangential_force", "N", "lateral force of all asperities at the lateral displacement"),
+    ("tangential_stiffness", "N m-1", "slope of the lateral force; on a normal path that of contacts that stick"),
+    ("friction_energy", "J", "energy lost by slip since the start of the lateral path"),
+)
+"""Variables that follow from a normal law and [tangential]."""
+
+OUTPUT_VARIABLES = CURVE_VARIABLES | TANGENTIAL_VARIABLES
+"""All variables that [output] can name."""
+
 DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
+DEFAULT_LATERAL_VARIABLES = ("tangential_force", "tangential_stiffness", "force")
 
 SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
 """A variable where a machine moves the flat, else a coordinate."""
@@ -38,7 +49,14 @@ REFERENCE_VARIABLES = declare(
 )
 """Variables of a law by boundary elements beside that of the asperities."""
 
-LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES, **REFERENCE_VARIABLES}
+LATERAL = Variable("lateral", "m", "lateral displacement of the flat, from rest")
+"""The coordinate of a lateral path, on which a separation or a load is held."""
+
+LAW_VARIABLES = {
+    **{each.name: each for each in (SEPARATION, REMOTE, LATERAL)},
+    **OUTPUT_VARIABLES,
+    **REFERENCE_VARIABLES,
+}
 """Variables that a result can have over its steps."""
 
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
@@ -60,7 +78,7 @@ PRELOADS = {
 DEFAULT_STEPS = 200
 """Of the loading to a preload."""
 
-STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units}
+STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units, LATERAL.name: LATERAL.units}
 """Coordinates that a result can have over its steps, with their units."""
 
 COORDINATES = declare(
@@ -69,4 +87,4 @@ COORDINATES = declare(
     ("height", "m", "summit height above the datum plane"),
     ("x", "m", "x of the summit"),
     ("y", "m", "y of the summit"),
-) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL}
+) | {each.name: each for each in (REMOTE, TRAVEL, LATERAL)}
