@@ -1,34 +1,38 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
+from functools import partial
 from typing import Any
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
+from roughmdr.layer.tangential import Path, with_tangential
 from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
 from roughmdr.variables import REFERENCE_VARIABLES
 
 
-def simulate_ensemble(
-    scene: Scene, path: LoadingPath | MachinePath, ensemble: Ensemble, variables: list[str]
-) -> LoadSeparation:
+def simulate_ensemble(scene: Scene, path: Path, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
     """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
-    return simulate(
-        ensemble,
-        path,
-        effective_modulus=scene.effective_modulus,
-        adhesion=scene.adhesion_model,
-        interaction=scene.interaction_model,
-        variables=variables,
-    )
+
+    def normal(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+        return simulate(
+            ensemble,
+            path,
+            effective_modulus=scene.effective_modulus,
+            adhesion=scene.adhesion_model,
+            interaction=scene.interaction_model,
+            variables=variables,
+        )
+
+    return with_tangential(scene, normal, path, variables)
 
 
 def simulate_realization(
-    scene: Scene, path: LoadingPath | MachinePath, realization: int, variables: list[str], estimator: str
+    scene: Scene, path: Path, realization: int, variables: list[str], estimator: str
 ) -> LoadSeparation:
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
-        return _expected(scene, path, variables)
+        return with_tangential(scene, partial(_expected, scene), path, variables)
     placed = scene.needs_positions or scene.reference is not None
     ensemble = scene.asperities.ensemble(
         scene.seed, realization, stratified=estimator == "stratified", with_positions=placed

@@ -20,7 +20,7 @@ Sources: C. Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; R. D. Mindlin, J. 
 Arch. Appl. Mech. 65 (1995) 478, for any shape; V. L. Popov, M. Hess, Method of Dimensionality Reduction (2015), ch. 5.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +40,11 @@ _NEEDED = {
     "friction_energy": ("force", "energy"),
 }
 _MAX_RATIO = 1e-6 / float(np.finfo(float).eps)  # of numbers to their difference, of which six digits remain
+
+
+def normal_variables(names: Iterable[str]) -> list[str]:
+    """Return the variables of the normal law that variables follow from, or which they are."""
+    return list(dict.fromkeys(each for name in names for each in _NEEDED.get(name, (name,))))
 
 
 class Tangential(NamedTuple):
@@ -75,8 +80,8 @@ def partial_slip(
         reduced = separation + tangential.reach * amplitude
     if not np.isfinite(reduced).all():
         raise OutOfRange(f"lateral displacements over a friction of {tangential.friction:g} are not representable")
-    asked = dict.fromkeys(each for name in names for each in _NEEDED.get(name, (name,)) if name != "separation")
-    normal = law(reduced, list(asked))
+    asked = normal_variables(name for name in names if name != "separation")
+    normal = law(reduced, asked)
     first, steps = FirstCurve(normal.variables, reduced, tangential), number[1:]
     if "tangential_force" in names and amplitude[-1] > 0.0:
         first.check_digits()

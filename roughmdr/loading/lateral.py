@@ -26,6 +26,12 @@ class LateralPath(NamedTuple):
         """Return the path of these displacements [m]."""
         return cls(held, displacement, Masing.along(displacement))
 
+    @property
+    def held_value(self) -> float:
+        """The separation, force or pressure that is held, in SI."""
+        values = self.held.separation if isinstance(self.held, LoadingPath) else self.held.values
+        return float(values[-1])
+
     @staticmethod
     def variables(names: list[str]) -> list[str]:
         """Return the variables of a law that is asked for ``names``: with the separation, which every one has."""

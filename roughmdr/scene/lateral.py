@@ -90,5 +90,5 @@ def check_held(key: str, given: Any) -> None:
         raise mismatch(f"path.{key}", "does not go with path.lateral, where separation, force or pressure is held")
     if isinstance(given, list | Section):
         raise mismatch(f"path.{key}", "must be a single value with path.lateral: it is held")
-    if key != "separation" and given < 0.0:
-        raise mismatch(f"path.{key}", "must be at least 0: contacts without adhesion hold no tension")
+    if key != "separation" and not given > 0.0:
+        raise mismatch(f"path.{key}", "must be above 0 with path.lateral: without a load there is no friction")
