@@ -41,8 +41,8 @@ class Prospect(NamedTuple):
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
     coupled_seconds: float
-    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion does not
-    let them."""
+    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion, or a
+    lateral path, does not let them."""
     interaction: Interaction | None
     """How asperities feel each other."""
 
@@ -62,7 +62,9 @@ def foresee_cells(plan: Plan) -> Prospect:
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     coupled = max(
-        math.inf if reason_against_adhesion(Interaction(), cell.scene.adhesion_model) else paired_seconds(cell)
+        math.inf
+        if cell.lateral is not None or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
+        else paired_seconds(cell)
         for cell in plan.cells
     )
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction_model)

@@ -13,7 +13,7 @@ from roughmdr.batch.reference import check_surface, reference_variables
 from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
-from roughmdr.layer.tangential import Path
+from roughmdr.layer.tangential import Path, neglected
 from roughmdr.loading.lateral import LateralPath
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
@@ -123,6 +123,12 @@ class Plan(NamedTuple):
     def warnings(self) -> list[str]:
         """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
+
+    @property
+    def slip_notes(self) -> list[str]:
+        """Lines on what the theory of slip neglects, with the number of cells where not in all."""
+        names = self.scene.output.variables
+        return count_by_cell((text for cell in self.cells for text in neglected(cell.scene, names)), len(self.cells))
 
     @property
     def map_lines(self) -> list[str]:

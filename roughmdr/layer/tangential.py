@@ -1,7 +1,7 @@
 """Lateral forces of a scene: partial slip along a lateral path, or the stiffness of contacts that stick on another."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.errors import OutOfRange
@@ -12,6 +12,8 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.tangential import bodies_of, ratio_of
+from roughmdr.schema.two_bodies import dundurs_beta
+from roughmdr.variables import TANGENTIAL_VARIABLES
 
 Path = LoadingPath | MachinePath | LateralPath
 NormalLaw = Callable[[LoadingPath | MachinePath, list[str]], LoadSeparation]
@@ -27,6 +29,19 @@ def tangential_of(scene: Scene) -> Tangential | None:
     if ratio is None:
         return None
     return Tangential(scene.effective_modulus, ratio, math.nan if friction is None else friction)
+
+
+def neglected(scene: Scene, names: Iterable[str]) -> Iterator[str]:
+    """Yield what the theory neglects in lateral forces of a scene that are among the ``names``, or lie on its path."""
+    bodies = bodies_of(scene.material, scene.counter)
+    if TANGENTIAL_VARIABLES.keys().isdisjoint(names):
+        return
+    if bodies is None:
+        yield "shear is taken not to move the surface along the normal, as where Dundurs' beta is 0"
+    elif beta := dundurs_beta(*bodies):
+        yield f"shear is taken not to move the surface along the normal, though Dundurs' beta is {beta:.2g}"
+    if bodies is None or any(bodies[1::2]):
+        yield "slip is taken to go along the displacement, as where Poisson's ratio is 0"
 
 
 def with_tangential(scene: Scene, normal: NormalLaw, path: Path, names: list[str]) -> LoadSeparation:

@@ -31,7 +31,10 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     closest = over_cells("m", lambda cell: float(cell.path.separation.min()))
     returns = any(cell.path.separation[-1] > cell.path.separation.min() for cell in cells)
     end = over_cells("m", lambda cell: float(cell.path.separation[-1]))
-    yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
+    if all(np.ptp(cell.path.separation) == 0.0 for cell in cells):
+        yield "path", f"at h = {start}"
+    else:
+        yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
     if all("pressure" in cell.law.variables for cell in cells):
         yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, as expected"
         if any(largest_tension(cell) > 0.0 for cell in cells):
@@ -43,14 +46,15 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
     numbers["grid_points"] = np.array([cell.law.grid_points for cell in cells])
     model = None if prospect.interaction is None else prospect.interaction.model
-    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], interaction=model)
+    coupled = prospect.coupled_seconds < math.inf
+    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], interaction=model, coupled=coupled)
     marked = sum(cell.law.marked_steps > 0.0 for cell in cells)
     if marked and prospect.interaction is not None:
         on_grid = prospect.interaction.beyond == "boundary_elements"
         becomes = "realisations are computed by boundary elements" if on_grid else "steps are marked"
         yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
     touches = any(cell.law.model_error.largest_fraction > 0.0 for cell in cells)
-    if model is None and touches and prospect.coupled_seconds < math.inf:
+    if model is None and touches and coupled:
         parts = any(not math.isnan(cell.fraction_at_pull_off) for cell in cells)
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"

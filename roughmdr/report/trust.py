@@ -21,6 +21,7 @@ from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import LATERAL
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
@@ -39,12 +40,13 @@ Numbers = Mapping[str, Any]
 
 
 def trust_lines(
-    numbers: Numbers, at_pull_off: ArrayLike = (), *, interaction: str | None = None
+    numbers: Numbers, at_pull_off: ArrayLike = (), *, interaction: str | None = None, coupled: bool = True
 ) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several.
 
     ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``interaction``
-    is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too.
+    is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too. ``coupled``
+    says whether they could feel each other.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -80,7 +82,7 @@ def trust_lines(
         yield "", _pull_off_error(tension)
     yield from _several("", others)
     yield "trust", _trust(known, coefficients, interaction)
-    if interaction is None and not tension.size:
+    if interaction is None and coupled and not tension.size:
         yield "", _advice(known, coefficients)
 
 
@@ -89,7 +91,8 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction)
+        coupled = LATERAL.name not in result.coordinates
+        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, coupled=coupled)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 

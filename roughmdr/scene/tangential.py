@@ -1,7 +1,6 @@
 """[tangential]: friction, the tangential stiffness of the bodies, and what must agree with them in a scene."""
 
-import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator
@@ -10,7 +9,7 @@ from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import Body, MaterialSection
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity, Section
-from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
+from roughmdr.schema.two_bodies import stiffness_ratio
 from roughmdr.variables import DEFAULT_LATERAL_VARIABLES, TANGENTIAL_VARIABLES
 
 _RATIOS = 0.5, 1.5  # isotropic bodies have 2/3 (nu = 1/2) to 4/3 (nu = -1)
@@ -42,17 +41,12 @@ def ratio_of(tangential: TangentialSection, bodies: Bodies | None) -> float | No
     return tangential.stiffness_ratio if bodies is None else stiffness_ratio(*bodies)
 
 
-def coupling_of(bodies: Bodies | None) -> float:
-    """Return Dundurs' beta [1]; NaN where only E* is known."""
-    return math.nan if bodies is None else dundurs_beta(*bodies)
-
-
 def check_tangential(
     tangential: TangentialSection | None,
     bodies: Bodies | None,
     path: FlatPath,
     variables: Iterable[str],
-    against: dict[str, object],
+    against: Mapping[str, object],
 ) -> None:
     """Raise a mismatch where lateral forces are asked for that other sections do not go with, or do not tell.
 
