@@ -76,12 +76,11 @@ def displacements(lateral: LateralRange | list[float]) -> Floats:
     return path
 
 
-def check_single_values(table: Any, otherwise: str) -> None:
-    """Raise EntryError for a single value that [path], as a table, has in place of several, and no lateral."""
-    if isinstance(table, dict) and "lateral" not in table:
-        for key in HELD:
-            if isinstance(table.get(key), float | int | str):
-                raise EntryError(key, table[key], f"{otherwise}; a single value is held, with path.lateral")
+def check_single_values(table: dict[str, Any], otherwise: str) -> None:
+    """Raise EntryError for a single value that [path] has in place of several, and no lateral."""
+    for key in HELD:
+        if "lateral" not in table and isinstance(table.get(key), float | int | str):
+            raise EntryError(key, table[key], f"{otherwise}; a single value is held, with path.lateral")
 
 
 def check_held(key: str, given: Any) -> None:

@@ -126,7 +126,8 @@ class FlatPath(Section):
     @model_validator(mode="before")
     @classmethod
     def _held(cls, table: Any) -> Any:
-        check_single_values(table, _NEITHER)
+        if isinstance(table, dict) and table.keys() <= cls.model_fields.keys():  # else a key is misspelt
+            check_single_values(table, _NEITHER)
         return table
 
     @model_validator(mode="after")
