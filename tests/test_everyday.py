@@ -21,7 +21,7 @@ import roughmdr as rm
 from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
 from roughmdr.schema.units import _BASES, format_quantity
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import OUTPUT_VARIABLES
 
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9}
 
@@ -46,7 +46,7 @@ def test_the_starter_scene_runs_and_shows_every_choice(tmp_path: Path) -> None:
     for key in keys_of(Scene):
         assert re.search(rf"\b{key}\b", text), f"{key} is not in the starter scene"
     for name in (
-        *CURVE_VARIABLES,
+        *OUTPUT_VARIABLES,
         *(base[0] for spellings in _BASES.values() for base in spellings if base[0] in ("m", "Pa")),
     ):
         assert name in text

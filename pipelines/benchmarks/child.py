@@ -89,7 +89,7 @@ def statistics(count: int) -> dict[str, float]:
 
 def ensemble(count: int) -> dict[str, float]:
     """Measure the time [s] to draw and to visit an asperity, 200 steps each way, and the memory [byte] it takes."""
-    scene, path, _ = make_plan(small_scene(count=count, steps=200)).cells[0]
+    scene, path, *_ = make_plan(small_scene(count=count, steps=200)).cells[0]
     names = list(scene.output.variables)
     simulate_realization(small_scene(), path, 0, names, "sampled")
     whole, memory = _cost_of(lambda: simulate_realization(scene, path, 0, names, "sampled"))

@@ -17,7 +17,6 @@ from roughmdr.aggregate.totals import jumps, jumps_between_branches
 from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import streams
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer.conductance import of_contacts
 from roughmdr.loading.staircase import staircase
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
@@ -106,7 +105,7 @@ def count_calls(asperities: int) -> list[Case]:
         forced: dict[str, dict[str, Any]] = {
             "positions": {"positions": True},
             "the other default variables": {"variables": DEFAULT_VARIABLES},
-            "all other variables": {"variables": of_contacts(CURVE_VARIABLES)},
+            "all other variables": {"variables": CURVE_VARIABLES},
         }
         if scene.work:
             forced["range of adhesion"] = {"adhesion": scene.adhesion_model._replace(model="dugdale")}

@@ -115,12 +115,11 @@ def load_separation(
     path = path_of(separation, given, unload=unload, area=asperities.nominal_area, adhesive=asked.work > 0.0)
     effective_modulus = effective_modulus_of(load_separation, given)
     names = [variables] if isinstance(variables, str) else list(variables)
-    available = [name for name in CURVE_VARIABLES if name not in CONDUCTANCES]
     for name in names:
         if name in CONDUCTANCES:
             raise SceneError(f"variables: {name!r} needs the [conduction] of a scene; ask for conductance_radius")
         if name not in CURVE_VARIABLES:
-            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(available)}")
+            raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
     result = simulate(
         asperities,
         path,

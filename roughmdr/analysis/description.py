@@ -19,7 +19,7 @@ from roughmdr.analysis.trust import trust_lines
 from roughmdr.errors import StoreError
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import printable
-from roughmdr.variables import AUXILIARY_COORDINATES, STEP_COORDINATES
+from roughmdr.variables import AUXILIARY_COORDINATES, LATERAL, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,8 @@ def _describe_result(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     branches = [branch for branch in BRANCHES if (dataset["branch"] == branch).any()]
     yield "path", f"{control} {_range(dataset[control])}, {' and '.join(branches)}"
     yield "curves", ", ".join(name.removesuffix("_mean") for name in curves_of(dataset) if not is_reference(name))
-    yield "pull-off", _pull_off(dataset)
+    if control != LATERAL.name:
+        yield "pull-off", _pull_off(dataset)
     if "model_error" in dataset:
         yield "trust", next((text for name, text in trust_lines(dataset) if name == "trust"), "not known")
     if warnings := str(dataset.attrs.get("warnings", "")).splitlines():

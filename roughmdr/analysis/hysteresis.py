@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, curve, separation_of
+from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, control_of, curve, separation_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import LATERAL
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,16 +17,26 @@ _NAMES = {
     "work_of_unloading": "work regained from the asperities while unloading, from force d(separation)",
     "energy_lost": "work of loading less that of unloading: what the loop loses where the path ends as it began",
 }
-_HELD = ("dissipated_energy", "machine_dissipated_energy")
+_LATERAL_NAMES = {
+    "work_of_loading": "work done on the contacts by forward motion, from tangential_force d(lateral)",
+    "work_of_unloading": "work regained from the contacts by backward motion, from -tangential_force d(lateral)",
+    "energy_lost": "work of loading less that of unloading: what slip loses where the path ends as it began",
+}
+_HELD = ("dissipated_energy", "machine_dissipated_energy", "friction_energy")
 _MISSING = "no value where a step has no force or no separation, as where a dead load has pulled the flat off"
 
 
 def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
-    """Return the energies [J] of the loop with their errors; the errors of the mean loop for statistics."""
+    """Return the energies [J] of the loop with their errors; the errors of the mean loop for statistics.
+
+    Of a lateral path they are those of the tangential force over the lateral displacement.
+    """
     import xarray as xr
 
     check_result(dataset)
-    force, separation = alone(curve(dataset, "force", "hysteresis needs")), alone(separation_of(dataset))
+    lateral = control_of(dataset) == LATERAL.name
+    force = alone(curve(dataset, "tangential_force" if lateral else "force", "hysteresis needs"))
+    separation = -alone(curve(dataset, LATERAL.name, "")) if lateral else alone(separation_of(dataset))
     loading, unloading = (Legs(dataset, branch).wanted[1:] for branch in BRANCHES)
     energies = xr.apply_ufunc(
         _energies,
@@ -39,7 +50,8 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
         output_dtypes=[np.float64] * 6,
     )
     found: dict[str, xr.DataArray] = {}
-    for (name, long_name), value, error in zip(_NAMES.items(), energies[::2], energies[1::2], strict=True):
+    names = _LATERAL_NAMES if lateral else _NAMES
+    for (name, long_name), value, error in zip(names.items(), energies[::2], energies[1::2], strict=True):
         attrs = {"units": "J", "long_name": long_name, "ancillary_variables": f"{name}_interpolation_error"}
         found[name] = value.assign_attrs(attrs)
         about = {"units": "J", "long_name": f"interpolation error of the {name.replace('_', ' ')}"}

@@ -42,6 +42,7 @@ class _Factors(NamedTuple):
 _FORCE = _Factors(4.0 / 3.0, (1.0, 1.0, 0.5, 1.5, 0.0), "4/3 N E* R^(1/2) sigma^(3/2)")
 _AREA = _Factors(math.pi, (1.0, 0.0, 1.0, 1.0, 0.0), "pi N R sigma")
 _ENERGY = _Factors(8.0 / 15.0, (1.0, 1.0, 0.5, 2.5, 0.0), "8/15 N E* R^(1/2) sigma^(5/2)")
+_STIFFNESS = _Factors(2.0, (1.0, 1.0, 0.5, 0.5, 0.0), "2 N E* (R sigma)^(1/2)")
 _COUNT = _Factors(1.0, (1.0, 0.0, 0.0, 0.0, 0.0), "N")
 _HEIGHT = _Factors(1.0, (0.0, 0.0, 0.0, 1.0, 0.0), "sigma")
 _SCALES = {
@@ -49,7 +50,7 @@ _SCALES = {
     "contact_area": _AREA,
     "contact_count": _COUNT,
     "contacts": _COUNT,
-    "stiffness": _Factors(2.0, (1.0, 1.0, 0.5, 0.5, 0.0), "2 N E* (R sigma)^(1/2)"),
+    "stiffness": _STIFFNESS,
     "pressure": _Factors(4.0 / 3.0, (1.0, 1.0, 0.5, 1.5, -1.0), f"{_FORCE.text}/A"),
     "contact_fraction": _Factors(math.pi, (1.0, 0.0, 1.0, 1.0, -1.0), f"{_AREA.text}/A"),
     "contact_radius_sum": _Factors(1.0, (1.0, 0.0, 0.5, 0.5, 0.0), "N (R sigma)^(1/2)"),
@@ -57,6 +58,10 @@ _SCALES = {
     "energy": _ENERGY,
     "dissipated_energy": _ENERGY,
     "machine_dissipated_energy": _ENERGY,
+    "friction_energy": _ENERGY,
+    "tangential_force": _FORCE,
+    "tangential_stiffness": _STIFFNESS,
+    "lateral": _HEIGHT,
     "separation": _HEIGHT,
     "remote": _HEIGHT,
 }

@@ -15,6 +15,8 @@ from roughmdr.batch.costs import law_seconds, reference_bytes, reference_seconds
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
+from roughmdr.layer.tangential import Path
+from roughmdr.loading.lateral import LateralPath
 from roughmdr.scene import Scene
 
 _PARTS = (
@@ -72,7 +74,7 @@ def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float
     sizes = list(dict.fromkeys((min(most, count), min(steps, cell.steps)) for most, steps in _PARTS))
 
     def run_part(asperities: int, steps: int) -> _Time:
-        return _draw_and_sum(cell.scene, _thinned(cell, steps), asperities, estimator, variables)
+        return _draw_and_sum(cell.scene, _thinned(cell, steps).usual, asperities, estimator, variables)
 
     def run(size: int) -> _Time:
         return run_part(*sizes[size])
@@ -101,7 +103,7 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
     sizes = list(dict.fromkeys((min(most, math.ceil(total)), min(steps, cell.steps)) for most, steps in _PARTS))
     sections = [whole.limited_to(asperities) if drawn else whole for asperities, _ in sizes]
     parts = [
-        Cell(cell.scene.model_copy(update={"asperities": section}), _thinned(cell, steps))
+        _thinned(cell, steps)._replace(scene=cell.scene.model_copy(update={"asperities": section}))
         for section, (_, steps) in zip(sections, sizes, strict=True)
     ]
     foreseen = [law_seconds(part, estimator) for part in (*parts, cell)]
@@ -111,9 +113,9 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
     def run(size: int) -> _Time:
         started = time.thread_time()
         if drawn:
-            simulate_ensemble(cell.scene, parts[size].path, _drawn(cell.scene, sizes[size][0], estimator), variables)
+            simulate_ensemble(cell.scene, parts[size].usual, _drawn(cell.scene, sizes[size][0], estimator), variables)
         else:
-            simulate_realization(cell.scene, parts[size].path, 0, variables, estimator)
+            simulate_realization(cell.scene, parts[size].usual, 0, variables, estimator)
         return _Time(0.0, time.thread_time() - started)
 
     def scaled(taken: _Time, size: int, other: int) -> float:
@@ -160,18 +162,20 @@ def _traced(run: Callable[[int], _Time], size: int) -> tuple[_Time, float]:
         tracemalloc.stop()
 
 
-def _thinned(cell: Cell, steps: int) -> LoadingPath:
-    """Return the path of a cell with so many of its steps, in loading: to find a pull-off takes time of its own, which
-    does not grow with them.
+def _thinned(cell: Cell, steps: int) -> Cell:
+    """Return a cell with so many steps of its path, in loading: to find a pull-off takes time of its own, which does
+    not grow with them.
     """
-    path, adhesive = cell.path, cell.scene.work > 0.0
     if steps >= cell.steps:
-        return path
+        return Cell(cell.scene, cell.path, None, cell.lateral)
     some = np.linspace(0, cell.steps - 1, steps).astype(int)
-    return LoadingPath.along(np.sort(path.separation[some])[::-1], unload=False, adhesive=adhesive)
+    separation = np.sort(cell.path.separation[some])[::-1]
+    path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
+    lateral = cell.lateral and LateralPath.along(cell.lateral.held, cell.lateral.displacement[some])
+    return Cell(cell.scene, path, None, lateral)
 
 
-def _draw_and_sum(scene: Scene, path: LoadingPath, count: int, estimator: str, variables: list[str]) -> _Time:
+def _draw_and_sum(scene: Scene, path: Path, count: int, estimator: str, variables: list[str]) -> _Time:
     started = time.thread_time()
     ensemble = _drawn(scene, count, estimator)
     drawn = time.thread_time()

@@ -45,6 +45,8 @@ def seconds(cell: Cell, estimator: str) -> float:
 def law_seconds(cell: Cell, estimator: str) -> float:
     """Return about how long the law of one run takes [s]."""
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
+    if cell.lateral is not None:  # whose law is computed once at each amplitude
+        steps = np.unique(cell.lateral.memory.amplitude).size
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
     if cell.scene.viscoelastic is not None:

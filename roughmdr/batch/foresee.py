@@ -41,8 +41,8 @@ class Prospect(NamedTuple):
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
     coupled_seconds: float
-    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion or their
-    relaxation does not let them."""
+    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion, their
+    relaxation or a lateral path does not let them."""
     interaction: Interaction | None
     """How asperities feel each other."""
 
@@ -63,7 +63,9 @@ def foresee_cells(plan: Plan) -> Prospect:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     coupled = max(
         math.inf
-        if cell.scene.viscoelastic is not None or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
+        if cell.scene.viscoelastic is not None
+        or cell.lateral is not None
+        or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
         else paired_seconds(cell)
         for cell in plan.cells
     )

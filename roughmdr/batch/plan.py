@@ -14,13 +14,16 @@ from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.batch.viscoelastic import check_path, time_of
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
+from roughmdr.layer.tangential import Path, neglected
+from roughmdr.loading.lateral import LateralPath
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
+from roughmdr.scene.lateral import displacements
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CURVE_VARIABLES, TIME
+from roughmdr.variables import LATERAL, OUTPUT_VARIABLES, TIME
 
 
 class Cell(NamedTuple):
@@ -31,11 +34,20 @@ class Cell(NamedTuple):
     """Under a machine that of usual asperities, by which costs and contacts are foreseen."""
     machine: MachinePath | None = None
     """What the machine does; None where the flat itself is moved."""
+    lateral: LateralPath | None = None
+    """How the flat is moved sideways, along a path that stays where it is; None where it is not."""
 
     @property
-    def controlled(self) -> LoadingPath | MachinePath:
+    def controlled(self) -> Path:
         """The path that is controlled."""
-        return self.path if self.machine is None else self.machine
+        return self.lateral or (self.path if self.machine is None else self.machine)
+
+    @property
+    def usual(self) -> Path:
+        """The path of the flat itself: over usual asperities, where their force decides on its separation."""
+        if self.lateral is None:
+            return self.path
+        return self.lateral._replace(held=LoadingPath.along(self.path.separation[:1], unload=False, adhesive=False))
 
     @property
     def fixed_grips(self) -> bool:
@@ -45,6 +57,8 @@ class Cell(NamedTuple):
     @property
     def values(self) -> Floats:
         """The controlled quantity at each step, in SI."""
+        if self.lateral is not None:
+            return self.lateral.displacement
         return self.path.separation if self.machine is None else self.machine.values
 
     @property
@@ -74,6 +88,8 @@ class Plan(NamedTuple):
     @property
     def watched(self) -> str:
         """The variable that [accuracy] is about: under a dead load, which is the force itself, the separation."""
+        if self.control == LATERAL.name:
+            return "tangential_force"
         return "separation" if self.control in ("force", "pressure") else "force"
 
     @property
@@ -91,12 +107,15 @@ class Plan(NamedTuple):
     @property
     def control(self) -> str:
         """The quantity that the path controls."""
-        return self.scene.cells[0].path.control
+        path = self.scene.cells[0].path
+        return path.control if path.lateral is None else LATERAL.name
 
     @property
     def variables(self) -> list[str]:
         """The variables of the result over its steps."""
         asked, machine = self.scene.output.variables, self.cells[0].machine
+        if self.control == LATERAL.name:
+            return LateralPath.variables(asked)
         if machine is not None:
             return machine.variables(asked)
         return asked if self.scene.reference is None else [*asked, *reference_variables(asked)]
@@ -105,6 +124,12 @@ class Plan(NamedTuple):
     def warnings(self) -> list[str]:
         """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
+
+    @property
+    def slip_notes(self) -> list[str]:
+        """Lines on what the theory of slip neglects, with the number of cells where not in all."""
+        names = self.scene.output.variables
+        return count_by_cell((text for cell in self.cells for text in neglected(cell.scene, names)), len(self.cells))
 
     @property
     def map_lines(self) -> list[str]:
@@ -147,7 +172,7 @@ def make_plan(scene: Scene) -> Plan:
     paths: dict[tuple[object, ...], LoadingPath] = {}
     cells: list[Cell] = []
     first: NDArray[Any] | None = None
-    last: LoadingPath | MachinePath | None = None
+    last: Path | None = None
     finder = PathFinder()
     for cell, values in zip(scene.cells, scene.sweep.cells(), strict=True):
         try:
@@ -170,6 +195,8 @@ def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], Loadin
     """Return a cell with its path; those of separations are made once for equal ``values``."""
     if cell.viscoelastic is not None:
         check_path(cell, values)
+    if cell.path.lateral is not None:
+        return _moved_sideways(cell, values[:1])
     if cell.path.control == "separation":
         key = values.tobytes(), cell.work > 0.0
         if key not in paths:
@@ -177,6 +204,19 @@ def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], Loadin
         return Cell(cell, paths[key])
     machine = machine_path(cell, values)
     return Cell(cell, usual_path(cell, machine), machine)
+
+
+def _moved_sideways(cell: Scene, held: Floats) -> Cell:
+    """Return a cell whose flat is moved sideways while a separation or a load, in SI, is held."""
+    assert cell.path.lateral is not None
+    displacement = cell.path.whole(displacements(cell.path.lateral))
+    if cell.path.control == "separation":
+        machine, usual = None, LoadingPath.along(held, unload=False, adhesive=False)
+    else:
+        machine = machine_path(cell, held)
+        usual = usual_path(cell, machine)
+    stays = LoadingPath.along(np.full(displacement.size, usual.separation[0]), unload=False, adhesive=False)
+    return Cell(cell, stays, machine, LateralPath.along(usual if machine is None else machine, displacement))
 
 
 def _check_asperities_read(cell: Scene) -> None:
@@ -214,7 +254,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     parts = {"reference": "boundary elements", "conduction": "conductances"}
     yield from (f"{part}: the scene has no [{key}]" for key, part in parts.items() if getattr(scene, key) is None)
-    if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
+    if unasked := [name for name in OUTPUT_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"

@@ -8,6 +8,7 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.layer.conductance import of_contacts, with_conductances
+from roughmdr.layer.tangential import NormalLaw, Path, with_tangential
 from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
@@ -19,15 +20,12 @@ _NEGLIGIBLE = 1e-16  # mean number of asperities above the highest summit of an 
 class _Contacts(NamedTuple):
     """The elastic contacts of a rough layer."""
 
-    law: Callable[[LoadingPath | MachinePath, list[str]], LoadSeparation]
-    """A path, variables -> their law."""
+    law: NormalLaw
     highest: Callable[[], float]
     """The height of the highest summit [m]; -inf where there is none."""
 
 
-def simulate_ensemble(
-    scene: Scene, path: LoadingPath | MachinePath, ensemble: Ensemble, variables: list[str]
-) -> LoadSeparation:
+def simulate_ensemble(scene: Scene, path: Path, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
     """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
 
     def law(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
@@ -45,7 +43,7 @@ def simulate_ensemble(
 
 
 def simulate_realization(
-    scene: Scene, path: LoadingPath | MachinePath, realization: int, variables: list[str], estimator: str
+    scene: Scene, path: Path, realization: int, variables: list[str], estimator: str
 ) -> LoadSeparation:
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
@@ -64,7 +62,7 @@ def simulate_realization(
     return with_reference(law, scene, path.separation, realization, ensemble).only(variables)
 
 
-def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
     """Return the expected law of a scene without a sweep."""
     from roughmdr import expected
     from roughmdr.expected.under_machine import compute_under_machine
@@ -87,13 +85,11 @@ def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str
     return _layered(scene, path, variables, _Contacts(law, highest), source.nominal_area)
 
 
-def _layered(
-    scene: Scene, path: LoadingPath | MachinePath, variables: list[str], contacts: _Contacts, area: float | None
-) -> LoadSeparation:
+def _layered(scene: Scene, path: Path, variables: list[str], contacts: _Contacts, area: float | None) -> LoadSeparation:
     """Return the law of a scene from that of its elastic contacts, on a nominal area [m2]."""
     asked = of_contacts(variables)
     if scene.viscoelastic is None:
-        law = contacts.law(path, asked)
+        law = with_tangential(scene, contacts.law, path, asked)
     else:
         from roughmdr.batch.viscoelastic import law_of
 

@@ -19,6 +19,7 @@ from roughmdr.batch.resume.keys import check_versions, versions
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
 from roughmdr.layer.conductance import of_contacts
+from roughmdr.layer.slip import normal_variables
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
@@ -101,7 +102,7 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
         from roughmdr import expected
 
         one = LoadingPath.along(path.separation[:1], unload=False, adhesive=scene.work > 0.0)
-        modulus, variables = scene.effective_modulus, of_contacts(plan.scene.output.variables)
+        modulus, variables = scene.effective_modulus, normal_variables(of_contacts(plan.scene.output.variables))
         with suppress(RoughmdrError):  # the run itself will report it
             expected.prepare(asperities, one, effective_modulus=modulus, adhesion=adhesion, variables=variables)
 

@@ -38,7 +38,7 @@ class RareAsperities:
     def spread(self, realizations: int) -> Floats:
         """Return the spread, [step], from asperities that so many realisations may not have met.
 
-        It is that of the force [N] or, under a dead load, of the separation [m].
+        It is that of the force [N], on a lateral path the tangential one, or, under a dead load, of the separation [m].
         """
         from scipy.special import ndtri
 
@@ -55,7 +55,7 @@ def _per_force(cell: Cell) -> float | Floats:
 
     Behind a spring of stiffness k_m the force itself changes by 1/(1 + k/k_m).
     """
-    if cell.machine is None:
+    if cell.machine is None or cell.lateral is not None:
         return 1.0
     source = cell.scene.asperities
     stratified = source.is_random and not source.reason_against("stratified")
@@ -93,7 +93,8 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     one = slice(number, number + 1)
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
+    name = "force" if cell.lateral is None else "tangential_force"
     try:
-        return simulate_ensemble(cell.scene, cell.path, alone, ["force"]).variables["force"]
+        return simulate_ensemble(cell.scene, cell.usual, alone, [name]).variables[name]
     except RoughmdrError:
         return np.zeros(cell.steps)

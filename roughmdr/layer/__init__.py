@@ -1,1 +1,1 @@
-"""Laws of the rough layer that are made of a finished law of it."""
+"""Laws of the rough layer that are made of a finished load-separation law."""

@@ -36,8 +36,11 @@ _PER_AREA = {
     "energy": ("energy per area", "J m-2"),
     "dissipated_energy": ("dissipated energy per area", "J m-2"),
     "machine_dissipated_energy": ("energy that the machine dissipates per area", "J m-2"),
+    "tangential_force": ("tangential force per area", "Pa"),
+    "tangential_stiffness": ("tangential stiffness per area", "Pa m-1"),
+    "friction_energy": ("energy lost by slip per area", "J m-2"),
 }
-_LONG_NAMES = {"remote": "position of the far end of the spring"}
+_LONG_NAMES = {"remote": "position of the far end of the spring", "lateral": "lateral displacement"}
 _FEW, _ROBUST = 30, 9  # of fewer realisations than these the median is taken over so many steps, too
 _BAND = (0.16, 0.84)
 

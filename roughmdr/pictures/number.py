@@ -55,12 +55,12 @@ def number_of(result: Labelled, request: Request) -> Number:
 
 
 def _usual(result: Labelled, request: Request) -> str:
-    """Return the variable that a sweep is usually about: the pull-off force, or else the force."""
+    """Return the variable that a sweep is usually about: the pull-off force or, the tangential one first, the force."""
     if not request.at and holds(result, _PULL_OFF) and np.isfinite(mean_of(result, _PULL_OFF)[0]).any():
         return _PULL_OFF
     available = stored_variables(result)
     others = [name for name in available if name not in request.at] or available
-    return next((name for name in ("force", "pressure") if name in others), others[0])
+    return next((name for name in ("tangential_force", "force", "pressure") if name in others), others[0])
 
 
 def _of_curve(result: Labelled, name: str, request: Request) -> Number:

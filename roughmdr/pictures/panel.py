@@ -22,7 +22,7 @@ _DECADES = 4.0  # of a logarithmic axis at most
 _EXPONENTIAL = 1e3  # ratio of the largest to the least positive value from which an axis is logarithmic
 _INSETS = ((0.42, 0.5, 0.55, 0.46), (0.12, 0.12, 0.36, 0.24))
 """Places of an inset, in shares of a panel: left, bottom, width and height."""
-_SIGNED = ("force", "pressure", "stiffness")
+_SIGNED = ("force", "pressure", "stiffness", "tangential_force")
 
 Style = dict[str, Any]
 

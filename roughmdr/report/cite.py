@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.report import citations as papers
+from roughmdr.report import citations_of_slip as slip_papers
 from roughmdr.report.citations import Paper
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import done_of
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 _ROUND = ("paraboloid", "sphere")
 _FLAT = ("flat_punch", "truncated_cone", "truncated_paraboloid")
 _PROGRAM = "roughmdr"
-_NAMES = {"“": "``", "”": "''", "ß": "{\\ss}", "ö": '{\\"o}', "ü": '{\\"u}'}
+_NAMES = {"“": "``", "”": "''", "ß": "{\\ss}", "ä": '{\\"a}', "ö": '{\\"o}', "ü": '{\\"u}'}
 
 
 def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> str:
@@ -152,6 +153,7 @@ def _papers(used: _Used) -> Iterator[tuple[str, Paper]]:
     yield from _of_coupling(used)
     if not {"conductance_radius", *CONDUCTANCES}.isdisjoint(used.table.get("output", {}).get("variables", ())):
         yield from (("conductance", paper) for paper in (papers.HOLM, papers.BARBER))
+    yield from _of_slip(used)
 
 
 def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -196,6 +198,14 @@ def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
             yield "elements", papers.STANLEY_KATO
         if "free" in boundaries or ("surface" in used.sources and "interaction" not in used.table):
             yield "elements", papers.LOVE
+
+
+def _of_slip(used: _Used) -> Iterator[tuple[str, Paper]]:
+    if "lateral" in used.table.get("path", {}):
+        own = slip_papers.CATTANEO, slip_papers.MINDLIN, slip_papers.JAEGER, slip_papers.MASING
+        yield from (("slip", paper) for paper in (*own, slip_papers.MINDLIN_DERESIEWICZ))
+    elif "tangential_stiffness" in used.table.get("output", {}).get("variables", ()):
+        yield "slip", slip_papers.MINDLIN
 
 
 def _line(paper: Paper) -> str:

@@ -31,7 +31,10 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     closest = over_cells("m", lambda cell: float(cell.path.separation.min()))
     returns = any(cell.path.separation[-1] > cell.path.separation.min() for cell in cells)
     end = over_cells("m", lambda cell: float(cell.path.separation[-1]))
-    yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
+    if all(np.ptp(cell.path.separation) == 0.0 for cell in cells):
+        yield "path", f"at h = {start}"
+    else:
+        yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
     if all("pressure" in cell.law.variables for cell in cells):
         yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, as expected"
         if any(largest_tension(cell) > 0.0 for cell in cells):

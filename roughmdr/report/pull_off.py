@@ -10,6 +10,7 @@ from roughmdr.result import layout
 from roughmdr.result.means import mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import LATERAL
 
 _FEW = 10.0
 """Contacts: the number of fewer that carry the tension of a patch scatters by more than a third of itself."""
@@ -18,6 +19,8 @@ _MAX_CELLS = 30
 
 def describe_pull_off(result: Labelled, not_known: str) -> Iterator[tuple[str, str]]:
     """Yield the pull-off of each cell, and how it is defined; ``not_known`` stands for cells that were not computed."""
+    if layout.control_of(result) == LATERAL.name:
+        return
     if "unloading" not in result.coordinates["branch"].values:
         yield "pull-off", "none: the path has no unloading"
         return

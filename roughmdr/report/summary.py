@@ -16,7 +16,7 @@ from roughmdr.result import layout
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import DONE, FAILED, TIME
+from roughmdr.variables import DONE, FAILED, LATERAL, TIME
 
 if TYPE_CHECKING:
     from roughmdr.batch.estimate import Estimate
@@ -38,7 +38,9 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),
+        *_lateral(plan),
         *prospect_lines(prospect),
+        *_indent("slip", plan.slip_notes),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
         *_reference(plan),
         *_motion(plan.coordinates()),
@@ -81,6 +83,14 @@ def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
         yield "motion", f"{format_quantity(low, 's', to=high if high > low else None)} from the first step to the last"
 
 
+def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
+    """Yield the range of the lateral displacements."""
+    if any(cell.lateral is not None for cell in plan.cells):
+        ends = [(float(cell.values.min()), float(cell.values.max())) for cell in plan.cells]
+        lowest, highest = min(low for low, _ in ends), max(high for _, high in ends)
+        yield "lateral", f"displacement from {format_quantity(lowest, 'm', to=highest)}, what is normal held"
+
+
 def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
@@ -104,6 +114,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield from _contacts_at_ends(result)
     yield from trust_of_result(result)
     yield from conduction_lines(result)
+    yield from _indent("slip", attrs.get("slip", "").splitlines())
     yield from advice_lines(attrs["scene"], resolution_error(result))
     yield from reference_lines(result)
     yield from _adhesion(result)
@@ -205,6 +216,8 @@ def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield a note if a path that unloads begins or ends in contact; fewer than half a contact, expected, are none."""
     name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
     if name not in result.variables or "unloading" not in result.coordinates["branch"].values:
+        return
+    if layout.control_of(result) == LATERAL.name:  # which is in contact throughout
         return
     count = result.variables[name].values
     first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))

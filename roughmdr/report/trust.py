@@ -22,6 +22,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import LATERAL
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
@@ -91,7 +92,7 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        advise = "viscoelastic" not in parse_toml(result.attrs["scene"])
+        advise = LATERAL.name not in result.coordinates and "viscoelastic" not in parse_toml(result.attrs["scene"])
         yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, advise=advise)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"

@@ -84,6 +84,8 @@ def assemble(
         attrs["interaction"] = scene.interaction.model
     if plan.path_notes:
         attrs["path"] = "\n".join(plan.path_notes)
+    if plan.slip_notes:
+        attrs["slip"] = "\n".join(plan.slip_notes)
     if plan.map_lines:
         attrs["map"] = "\n".join(plan.map_lines)
     if scene.accuracy is not None:

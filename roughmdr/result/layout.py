@@ -13,11 +13,13 @@ from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
     DONE,
+    LATERAL,
     LAW_VARIABLES,
     REFERENCE_VARIABLES,
     REMOTE,
     SEPARATION,
     STEP_COORDINATES,
+    TANGENTIAL_VARIABLES,
     TRAVEL,
 )
 
@@ -85,9 +87,13 @@ def method_of(result: Labelled, cell: tuple[int, ...]) -> str:
 
 
 def asked_variables(result: Labelled, asked: Iterable[str]) -> list[str]:
-    """Return the variables ``asked`` for, or else all that the result holds; StoreError for one that it lacks."""
+    """Return the variables ``asked`` for, or else all that the result holds; StoreError for one that it lacks.
+
+    Of a lateral path those are all that change along it.
+    """
     available = stored_variables(result)
-    names = list(asked) or available
+    names = list(asked) or [name for name in available if name in TANGENTIAL_VARIABLES]
+    names = names if asked or (names and control_of(result) == LATERAL.name) else available
     for name in names:
         if name not in available:
             raise StoreError(f"variable {name!r} is not in the result; it holds {', '.join(available)}")

@@ -163,10 +163,10 @@ def execute(
 
 
 def _computed_variables(plan: Plan) -> tuple[str, ...]:
-    """Return the variables that are computed: those asked for and, for an error asked for or a pull-off, the force."""
-    asked = plan.variables
-    needed = plan.control == "separation" and (plan.scene.accuracy is not None or plan.unloads)
-    return tuple([*asked, _FORCE] if needed and _FORCE not in asked else asked)
+    """Return the variables that are computed: those asked for, and those of an error asked for and of a pull-off."""
+    of_error = [] if plan.scene.accuracy is None else [plan.watched]
+    of_pull_off = [_FORCE] if plan.control == "separation" and plan.unloads else []
+    return tuple(dict.fromkeys([*plan.variables, *of_error, *of_pull_off]))
 
 
 @dataclass

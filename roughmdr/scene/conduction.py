@@ -1,14 +1,17 @@
 """[conduction]: how the bodies conduct heat and electricity."""
 
 import math
-from collections.abc import Iterable
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, model_validator
 
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.variables import CONDUCTANCES
+
+if TYPE_CHECKING:
+    from roughmdr.scene.scene import Scene
+
 
 _Conductivity = Annotated[float, BeforeValidator(Quantity("W/m/K", above=0.0))]
 _Resistivity = Annotated[float, BeforeValidator(Quantity("ohm m", above=0.0))]
@@ -57,9 +60,8 @@ class ConductionSection(Section):
         return found
 
 
-def check_conduction(section: ConductionSection | None, variables: Iterable[str]) -> None:
+def check_conduction(scene: "Scene") -> None:
     """Raise the fault of a conductance that is asked for without what it takes."""
-    known = {} if section is None else section.factors
-    for name in variables:
-        if name in CONDUCTANCES and name not in known:
+    for name in scene.output.variables:
+        if name in CONDUCTANCES and name not in scene.conductance_factors:
             raise mismatch("output.variables", f"{name} needs conduction.{_NEEDED[name]}")

@@ -1,6 +1,7 @@
 """Parts of a scene in words: its asperities, its path, the values of a swept key. No file is read."""
 
 from roughmdr.ensemble import Source
+from roughmdr.scene.lateral import displacements
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.separation import CLEAR, Separation, Target
 from roughmdr.scene.sweep import Axis
@@ -19,7 +20,10 @@ def asperities_in_words(section: Source) -> str:
 def path_in_words(path: FlatPath) -> str:
     """Return the ends of a path, and its steps."""
     given = getattr(path, path.key)
-    if isinstance(given, list):
+    if path.lateral is not None:
+        held = f"{path.key} {_end(given, CONTROLS[path.key])}"
+        steps = f"lateral in {displacements(path.lateral).size} steps at {held}"
+    elif isinstance(given, list):
         steps = f"{path.key} in {len(given)} steps"
     elif path.to_preload:
         steps = f"{path.key} {format_quantity(given, PRELOADS[path.key][1])} in {path.steps} steps"

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, mod
 from roughmdr.errors import SceneError
 from roughmdr.loading.machine import Preload, travel
 from roughmdr.numerics.arguments import Floats
+from roughmdr.scene.lateral import Lateral, check_held, check_single_values, kind_of
 from roughmdr.scene.separation import CLEAR, Separation, SeparationReader, Target
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity, Section, WholeNumber
@@ -58,15 +59,19 @@ class PressureRange(Section):
     steps: Annotated[int, BeforeValidator(_STEPS)]
 
 
-_RangeOrList = Discriminator(
-    lambda value: "list" if isinstance(value, list) else ("range" if isinstance(value, dict | Section) else None),
+_NEITHER = "must be a table with start, stop and steps, or a list"
+_RangeOrList = Discriminator(kind_of, custom_error_type="neither", custom_error_message=_NEITHER)
+_RangeListOrHeld = Discriminator(
+    lambda value: "held" if isinstance(value, float | int | str | Separation) else kind_of(value),
     custom_error_type="neither",
-    custom_error_message="must be a table with start, stop and steps, or a list",
+    custom_error_message=_NEITHER,
 )
 
 
 class FlatPath(Section):
     """[path]: a range or a list of separations, or of what a machine controls in place of them.
+
+    With ``lateral`` the flat moves sideways, and one separation, force or pressure is held.
 
     A machine presses with a ``force`` or a ``pressure``, a dead load, or moves the far end of a spring of
     ``machine_stiffness``, ``remote``. A preload is loaded to in ``steps`` steps, by the flat itself or through that
@@ -75,8 +80,10 @@ class FlatPath(Section):
 
     separation: (
         Annotated[
-            Annotated[Range, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
-            _RangeOrList,
+            Annotated[Range, Tag("range")]
+            | Annotated[list[_Separation], Field(min_length=1), Tag("list")]
+            | Annotated[Separation, BeforeValidator(SeparationReader()), Tag("held")],
+            _RangeListOrHeld,
         ]
         | None
     ) = None
@@ -90,19 +97,22 @@ class FlatPath(Section):
     force: (
         Annotated[
             Annotated[ForceRange, Tag("range")]
-            | Annotated[list[Annotated[float, BeforeValidator(_FORCE)]], Field(min_length=1), Tag("list")],
-            _RangeOrList,
+            | Annotated[list[Annotated[float, BeforeValidator(_FORCE)]], Field(min_length=1), Tag("list")]
+            | Annotated[float, BeforeValidator(_FORCE), Tag("held")],
+            _RangeListOrHeld,
         ]
         | None
     ) = None
     pressure: (
         Annotated[
             Annotated[PressureRange, Tag("range")]
-            | Annotated[list[Annotated[float, BeforeValidator(_PRESSURE)]], Field(min_length=1), Tag("list")],
-            _RangeOrList,
+            | Annotated[list[Annotated[float, BeforeValidator(_PRESSURE)]], Field(min_length=1), Tag("list")]
+            | Annotated[float, BeforeValidator(_PRESSURE), Tag("held")],
+            _RangeListOrHeld,
         ]
         | None
     ) = None
+    lateral: Lateral | None = None
     machine_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0.0))] | None = None
     preload: Annotated[float, BeforeValidator(Quantity("N", above=0.0))] | None = None
     preload_pressure: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
@@ -113,6 +123,13 @@ class FlatPath(Section):
     hold: Annotated[int, BeforeValidator(WholeNumber(0, 1_000_000))] = 0
     unload: StrictBool = False
 
+    @model_validator(mode="before")
+    @classmethod
+    def _held(cls, table: Any) -> Any:
+        if isinstance(table, dict) and table.keys() <= cls.model_fields.keys():  # else a key is misspelt
+            check_single_values(table, _NEITHER)
+        return table
+
     @model_validator(mode="after")
     def _one_control(self) -> "FlatPath":
         given = [name for name in (*CONTROLS, *PRELOADS) if getattr(self, name) is not None]
@@ -120,6 +137,8 @@ class FlatPath(Section):
             raise mismatch("path.separation", "is missing")
         if len(given) > 1:
             raise mismatch(f"path.{given[1]}", f"does not go with path.{given[0]}: a path controls one of the two")
+        if self.lateral is not None:
+            check_held(given[0], getattr(self, given[0]))
         if self.machine_stiffness is None and given == ["remote"]:
             raise mismatch("path.machine_stiffness", "is missing")
         if self.machine_stiffness is not None and given != ["remote"] and given[0] not in PRELOADS:
@@ -157,8 +176,8 @@ class FlatPath(Section):
 
     @property
     def _steps(self) -> Range | RemoteRange | ForceRange | PressureRange | list[Any]:
-        steps: Range | RemoteRange | ForceRange | PressureRange | list[Any] = getattr(self, self.control)
-        return steps
+        steps = getattr(self, self.control)
+        return steps if isinstance(steps, Range | RemoteRange | ForceRange | PressureRange | list) else [steps]
 
     @property
     def _ends(self) -> list[Separation | Target | float | None]:

@@ -5,14 +5,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import tomli_w
-from pydantic import BeforeValidator, Field, InstanceOf, PrivateAttr, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
 from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.scene.conduction import ConductionSection, check_conduction
+from roughmdr.scene.conduction import ConductionSection
 from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
+from roughmdr.scene.layers import check_layers, with_usual_variables
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
@@ -25,7 +26,8 @@ from roughmdr.scene.sections import (
     ReferenceSection,
 )
 from roughmdr.scene.sweep import Sweep
-from roughmdr.scene.viscoelastic import ViscoelasticSection, check_viscoelastic, without_unknown
+from roughmdr.scene.tangential import TangentialSection
+from roughmdr.scene.viscoelastic import ViscoelasticSection
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.material import effective_modulus
@@ -55,8 +57,9 @@ class Scene(Section):
     reference: ReferenceSection | None = None
     conduction: ConductionSection | None = None
     viscoelastic: ViscoelasticSection | None = None
+    tangential: TangentialSection | None = None
     path: FlatPath
-    output: Annotated[Output, Field(validate_default=True)] = Output()
+    output: Output = Output()
     batch: Batch = Batch()
     accuracy: Accuracy | None = None
     sweep: InstanceOf[Sweep] = Sweep()
@@ -115,11 +118,10 @@ class Scene(Section):
         """Scenes of the sweep's cells, the last swept key fastest; the scene itself if it has no sweep."""
         return self._cells or (self,)
 
-    @field_validator("output")
+    @model_validator(mode="before")
     @classmethod
-    def _usual_variables(cls, value: Output, info: ValidationInfo) -> Output:
-        usual = "variables" not in value.model_fields_set and info.data.get("viscoelastic") is not None
-        return value.model_copy(update={"variables": without_unknown()}) if usual else value
+    def _usual_variables(cls, table: Any) -> Any:
+        return with_usual_variables(table)
 
     @model_validator(mode="after")
     def _sections_agree(self) -> "Scene":
@@ -138,9 +140,7 @@ class Scene(Section):
             raise mismatch("interaction", reason)
         if self.reference is not None:
             self._check_reference()
-        check_conduction(self.conduction, self.output.variables)
-        others = {"adhesion": self.work > 0.0, "interaction": self.interaction, "reference": self.reference}
-        check_viscoelastic(self.viscoelastic, self.path, self.output.variables, others)
+        check_layers(self)
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:

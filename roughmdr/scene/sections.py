@@ -11,7 +11,7 @@ from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Bound
 from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
 from roughmdr.schema.material import check_one_body
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
+from roughmdr.variables import DEFAULT_VARIABLES, OUTPUT_VARIABLES
 
 _MAX_REALIZATIONS = 1_000_000_000
 _REFERENCE_ERRORS = 1e-3, 0.5
@@ -108,12 +108,12 @@ class ReferenceSection(Section):
 
 
 def _check_variable(value: object) -> object:
-    if not isinstance(value, str) or value not in CURVE_VARIABLES:
-        raise RoughmdrError(f"no such variable; there are {', '.join(CURVE_VARIABLES)}")
+    if not isinstance(value, str) or value not in OUTPUT_VARIABLES:
+        raise RoughmdrError(f"no such variable; there are {', '.join(OUTPUT_VARIABLES)}")
     return value
 
 
-_VARIABLE = Annotated[str, BeforeValidator(_check_variable), WithJsonSchema({"enum": list(CURVE_VARIABLES)})]
+_VARIABLE = Annotated[str, BeforeValidator(_check_variable), WithJsonSchema({"enum": list(OUTPUT_VARIABLES)})]
 
 
 class Output(Section):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.scene.lateral import HELD
 from roughmdr.scene.separation import CLEAR, Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS
@@ -17,12 +18,14 @@ from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS
 
-SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction", "conduction", "viscoelastic")
+SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction", "conduction", "tangential", "viscoelastic")
 _STOP = "path.separation.stop"
 _PATH_KEYS = (
     *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),
     f"{_STOP}.contact_fraction",
     f"{_STOP}.pressure",
+    *(f"path.{held}" for held in HELD),
+    *(f"path.lateral.{end}" for end in ("start", "stop", "amplitude")),
     "path.machine_stiffness",
     *(f"path.{preload}" for preload in PRELOADS),
 )

@@ -1,14 +1,17 @@
 """[viscoelastic]: how the modulus relaxes, and how fast the flat moves; what it does not go with."""
 
 import math
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from roughmdr.scene.path import FlatPath
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.variables import DEFAULT_VARIABLES
+
+if TYPE_CHECKING:
+    from roughmdr.scene.scene import Scene
+
 
 _UNKNOWN = ("stiffness", "energy", "dissipated_energy", "machine_dissipated_energy")
 """Variables that a viscoelastic law does not have."""
@@ -50,16 +53,16 @@ def without_unknown() -> list[str]:
     return [name for name in DEFAULT_VARIABLES if name not in _UNKNOWN]
 
 
-def check_viscoelastic(
-    section: ViscoelasticSection | None, path: FlatPath, variables: list[str], others: dict[str, Any]
-) -> None:
-    """Raise the error of a section that [viscoelastic], if it is there, does not go with: ``others`` are by name."""
-    if section is None:
+def check_viscoelastic(scene: "Scene") -> None:
+    """Raise a mismatch where [viscoelastic], if it is there, does not go with another section of a scene."""
+    if scene.viscoelastic is None:
         return
+    path = scene.path
+    others = {"adhesion": scene.work > 0.0, "interaction": scene.interaction, "reference": scene.reference}
     for name, other in others.items():
         if other:
             raise mismatch(name, "does not go with [viscoelastic]: its asperities are independent and do not adhere")
     if path.control != "separation":
         raise mismatch(f"path.{path.key}", "does not go with [viscoelastic], which needs path.separation")
-    if unknown := [name for name in variables if name in _UNKNOWN]:
+    if unknown := [name for name in scene.output.variables if name in _UNKNOWN]:
         raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with [viscoelastic]")

@@ -16,6 +16,7 @@ _SECTIONS = {
     "conduction": {"conductivity": '"400 W/m/K"', "resistivity": '"17e-9 ohm m"'},
     "viscoelastic": {"relaxation": '[{ time = "10 ms", share = 0.5 }]', "speed": '"1 um/s"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
+    "tangential": {"friction": "0.3"},
     "accuracy": {"relative": "1e-2"},
 }
 _KEYS = {
@@ -39,6 +40,8 @@ _KEYS = {
     "path.pressure.steps": "200",
     "path.remote.stop": '"-2 sigma"',
     "path.remote.steps": "200",
+    "path.lateral.steps": "50",
+    "tangential.stiffness_ratio": "0.8",
     "path.machine_stiffness": '"1 kN/m"',
     "path.preload": '"1 mN"',
     "path.preload_pressure": '"1 MPa"',

@@ -11,11 +11,11 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
-    CURVE_VARIABLES,
     DONE,
     FAILED,
     LAW_VARIABLES,
     NOT_RUN,
+    OUTPUT_VARIABLES,
     PULL_OFF_NUMBERS,
     RUN_DIAGNOSTICS,
     STEP_COORDINATES,
@@ -125,7 +125,7 @@ def _curves(data: Labelled) -> Iterator[str]:
                 found = True
                 yield from _mismatches(part, data.variables[part], dims, "f")
     if not found:
-        yield f"it has none of {', '.join(CURVE_VARIABLES)}"
+        yield f"it has none of {', '.join(OUTPUT_VARIABLES)}"
 
 
 def _pull_offs(data: Labelled) -> Iterator[str]:
@@ -161,7 +161,7 @@ def _numbers(data: Labelled) -> Iterator[str]:
             yield f"{name} is not finite"
     marked = data.variables["marked_steps"].values if "marked_steps" in data.variables else np.zeros_like(status)
     whole = (status == DONE) & (marked == 0.0)  # marked steps may have no value
-    for name in ("run_time", "numerical_error", *CURVE_VARIABLES, *(f"{name}_mean" for name in CURVE_VARIABLES)):
+    for name in ("run_time", "numerical_error", *OUTPUT_VARIABLES, *(f"{name}_mean" for name in OUTPUT_VARIABLES)):
         if name in data.variables and not np.isfinite(data.variables[name].values[whole]).all():
             yield f"{name} is not finite, and status says that it was computed"
     if "realization_count" in data.variables:

@@ -2,12 +2,6 @@
 
 from roughmdr.variables.variable import Variable, declare
 
-CONDUCTANCES = declare(
-    ("thermal_conductance", "W K-1", "thermal conductance of all contacts"),
-    ("electrical_conductance", "S", "electrical conductance of all contacts"),
-)
-"""Conductances, of the dimension of a conductivity times the conductance radius; those of a scene with [conduction]."""
-
 CURVE_VARIABLES = declare(
     ("force", "N", "normal force of all asperities, compression positive"),
     ("contact_area", "m2", "sum of the contact areas"),
@@ -22,10 +16,26 @@ CURVE_VARIABLES = declare(
     ("machine_dissipated_energy", "J", "part of it that the machine loses in its jumps; 0 under fixed grips"),
     ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
 )
-CURVE_VARIABLES |= CONDUCTANCES
-"""Variables of a load-separation law that [output] can name."""
+"""Variables of the contacts."""
+
+CONDUCTANCES = declare(
+    ("thermal_conductance", "W K-1", "thermal conductance of all contacts"),
+    ("electrical_conductance", "S", "electrical conductance of all contacts"),
+)
+"""Conductances, of the dimension of a conductivity times the conductance radius; those of a scene with [conduction]."""
+
+TANGENTIAL_VARIABLES = declare(
+    ("tangential_force", "N", "lateral force of all asperities at the lateral displacement"),
+    ("tangential_stiffness", "N m-1", "slope of the lateral force; on a normal path that of contacts that stick"),
+    ("friction_energy", "J", "energy lost by slip since the start of the lateral path"),
+)
+"""Variables that follow from a normal law and [tangential]."""
+
+OUTPUT_VARIABLES = CURVE_VARIABLES | CONDUCTANCES | TANGENTIAL_VARIABLES
+"""All variables that [output] can name."""
 
 DEFAULT_VARIABLES = ("force", "contact_area", "contact_count", "stiffness")
+DEFAULT_LATERAL_VARIABLES = ("tangential_force", "tangential_stiffness", "force")
 
 SEPARATION = Variable("separation", "m", "rigid flat above the datum plane; none where a dead load has pulled it off")
 """A variable where a machine moves the flat, else a coordinate."""
@@ -52,11 +62,12 @@ REFERENCE_VARIABLES = declare(
 )
 """Variables of a law by boundary elements beside that of the asperities."""
 
+LATERAL = Variable("lateral", "m", "lateral displacement of the flat, from rest")
+"""The coordinate of a lateral path, on which a separation or a load is held."""
+
 LAW_VARIABLES = {
-    SEPARATION.name: SEPARATION,
-    REMOTE.name: REMOTE,
-    TIME.name: TIME,
-    **CURVE_VARIABLES,
+    **{each.name: each for each in (SEPARATION, REMOTE, LATERAL, TIME)},
+    **OUTPUT_VARIABLES,
     **REFERENCE_VARIABLES,
 }
 """Variables that a result can have over its steps."""
@@ -80,7 +91,7 @@ PRELOADS = {
 DEFAULT_STEPS = 200
 """Of the loading to a preload."""
 
-STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units}
+STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units, LATERAL.name: LATERAL.units}
 """Coordinates that a result can have over its steps, with their units."""
 
 COORDINATES = declare(
@@ -89,4 +100,4 @@ COORDINATES = declare(
     ("height", "m", "summit height above the datum plane"),
     ("x", "m", "x of the summit"),
     ("y", "m", "y of the summit"),
-) | {REMOTE.name: REMOTE, TRAVEL.name: TRAVEL, TIME.name: TIME}
+) | {each.name: each for each in (REMOTE, TRAVEL, LATERAL, TIME)}

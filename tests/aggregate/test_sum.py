@@ -18,7 +18,7 @@ from roughmdr.kernels.choose import choose
 from roughmdr.variables import CURVE_VARIABLES
 
 E, W = 4e6, 0.05
-_OWN = ("energy", "error", "thermal", "electrical")  # these have their own
+_OWN = ("energy", "error")  # these have their own
 ALL = tuple(name for name in CURVE_VARIABLES if not any(part in name for part in _OWN))
 
 

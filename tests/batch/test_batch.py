@@ -16,7 +16,7 @@ from roughmdr.model_error import PARTS
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
 
 def assert_same_bits(one: xr.Dataset, other: xr.Dataset) -> None:
@@ -109,10 +109,11 @@ def test_what_is_left_out_is_said() -> None:
 
 
 def test_every_variable_can_be_asked_for_alone_and_equals_itself_among_others() -> None:
-    every = rm.run(scene(output={"variables": list(CURVE_VARIABLES)}, conduction=CONDUCTION, batch=None))
-    for name in CURVE_VARIABLES:
+    known = CURVE_VARIABLES | CONDUCTANCES
+    every = rm.run(scene(output={"variables": list(known)}, conduction=CONDUCTION, batch=None))
+    for name in known:
         alone = rm.run(scene(output={"variables": [name]}, conduction=CONDUCTION, batch=None))
-        assert [v for v in alone.data_vars if v in CURVE_VARIABLES] == [name]
+        assert [v for v in alone.data_vars if v in known] == [name]
         np.testing.assert_array_equal(alone[name], every[name])
 
 

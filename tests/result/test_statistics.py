@@ -16,9 +16,10 @@ from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.moments import MomentTree
 from roughmdr.report.summary import describe_result
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
-EVERY = list(CURVE_VARIABLES)
+VARIABLES = CURVE_VARIABLES | CONDUCTANCES
+EVERY = list(VARIABLES)
 SWEEP = {"adhesion.work": [0.0, 0.05], "asperities.count": [50, 200]}
 
 
@@ -42,7 +43,7 @@ def test_they_are_the_statistics_of_the_curves(sweep: dict[str, Any] | None) -> 
         for what, values in expected.items():
             variable = statistics[f"{name}_{what}"]
             assert variable.dims == (*swept, "step")
-            assert variable.attrs["units"] == CURVE_VARIABLES[name].units
+            assert variable.attrs["units"] == VARIABLES[name].units
             known = np.isfinite(variable)
             assert known.all() or (name, what) == ("stiffness", "sem")
             scale = float(np.abs(values).max()) or 1.0

@@ -104,6 +104,7 @@ SWEEPS: list[dict[str, Any]] = [
     {"path.separation.start": ["3 sigma", "4 sigma"], "path.separation.stop": ["1 um"]},
     {"path": {"separation": {"stop": {"contact_fraction": [0.01, 0.02]}}}},
     {"path.machine_stiffness": ["1 kN/m"]},
+    {"tangential.friction": [0.1, 0.3], "path.separation": ["1 sigma", "2 sigma"], "path.lateral.amplitude": ["1 nm"]},
 ]
 WRONG_SWEEPS: list[dict[str, Any]] = [
     {"adhesion.wrok": [0.05]},

@@ -168,8 +168,27 @@ BASES: dict[str, dict[str, Any]] = {
         f"a preload by {quantity}": {**SCENE, "path": {f"preload_{quantity}": value, "steps": 9, "unload": True}}
         for quantity, value in (("pressure", "1 Pa"), ("contact_fraction", 0.01))
     },
+    **{
+        f"a lateral path with {kind}": {
+            **{key: value for key, value in SCENE.items() if key != "adhesion"},
+            **constants,
+            "path": {"separation": "1 sigma", "lateral": {**lateral, "steps": 9}},
+        }
+        for kind, lateral, constants in (
+            ("an end", {"start": "0 nm", "stop": "-5 nm"}, {"tangential": {"friction": 0.3}}),
+            (
+                "cycles",
+                {"amplitude": "5 nm", "cycles": 2},
+                {
+                    "material": {"effective_modulus": "4 MPa"},
+                    "tangential": {"friction": 0.3, "stiffness_ratio": 0.8},
+                },
+            ),
+        )
+    },
 }
-MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height")
+HELD = ("separation", "force", "pressure")  # whose single values need path.lateral, which no schema tells
+MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height", *HELD)
 NONSENSE: dict[str, object] = {
     "unit": "3 parsec",
     "no number": "three",

@@ -11,14 +11,14 @@ import tomli_w
 from scenes import ASPERITIES, CONDUCTION, scene
 from test_cli import SCENES, roughmdr
 
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
 SMALL: dict[str, Any] = {**ASPERITIES, "count": 30}
 _DRAWN = {key: value for key, value in SMALL.items() if key != "radius"}
 POWER = {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 1e7}
 PRODUCT = {"adhesion.work": [0.0, 0.05, 0.02], "asperities.height.distribution": ["normal", "uniform"]}
 SIGMA = {"mode": "zip", "path.separation.start": ["3 sigma", "4 sigma"], "asperities.coefficient": [1e7, 5e6]}
-EVERY = {"variables": list(CURVE_VARIABLES)}
+EVERY = {"variables": list(CURVE_VARIABLES | CONDUCTANCES)}
 RESULTS = {
     "curves": scene(asperities=SMALL, output=EVERY, conduction=CONDUCTION),
     "statistics": scene(asperities=SMALL, output={**EVERY, "keep": "statistics"}, conduction=CONDUCTION),

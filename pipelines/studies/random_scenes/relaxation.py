@@ -3,9 +3,9 @@
 from hypothesis import strategies as st
 from studies.random_scenes.numbers import Draw, Table, number, power_of_ten
 
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
-_VARIABLES = sorted(name for name in CURVE_VARIABLES if name != "stiffness" and "energy" not in name)
+_VARIABLES = sorted(name for name in CURVE_VARIABLES | CONDUCTANCES if name != "stiffness" and "energy" not in name)
 
 
 def viscoelastic(draw: Draw, size: float, datum: float) -> Table:

@@ -17,7 +17,7 @@ from studies.random_scenes.relaxation import viscoelastic
 
 import roughmdr as rm
 from roughmdr.shapes import SCENE_SHAPES, SHAPES
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
 _FILE_SIZE = 1e-6  # of the heights in files [m]
 # Powers of ten of shape parameters; of lengths over the size of all.
@@ -216,9 +216,11 @@ def path(draw: Draw, frame: Frame) -> Table:
 
 def batch(draw: Draw, frame: Frame, *, drawn: bool) -> Table:
     """Draw [output], [batch] and [accuracy]."""
-    names = draw(st.lists(st.sampled_from(sorted(CURVE_VARIABLES)), min_size=1, max_size=9, unique=True))
+    names = draw(st.lists(st.sampled_from(sorted(CURVE_VARIABLES | CONDUCTANCES)), min_size=1, max_size=9, unique=True))
     keep = draw(st.sampled_from(("curves", "statistics")))
-    parts: Table = {"output": {"variables": names if draw(st.booleans()) else sorted(CURVE_VARIABLES), "keep": keep}}
+    parts: Table = {
+        "output": {"variables": names if draw(st.booleans()) else sorted(CURVE_VARIABLES | CONDUCTANCES), "keep": keep}
+    }
     parts["conduction"] = {"conductivity": power_of_ten(draw, -2.0, 3.0), "resistivity": power_of_ten(draw, -8.0, 9.0)}
     if not drawn:
         return parts

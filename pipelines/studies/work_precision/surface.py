@@ -84,7 +84,7 @@ def simulate(rough: Rough, estimator: str, realization: int = 0) -> Curve:
 
 def _by_nodes(rough: Rough, order: float) -> Callable[[], Curve]:
     """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
-    scene, path, _ = _cell(rough)
+    scene, path, *_ = _cell(rough)
     problem = Problem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
 
     def action() -> Curve:

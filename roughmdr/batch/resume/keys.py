@@ -8,6 +8,7 @@ from typing import Any
 
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.errors import RoughmdrError
+from roughmdr.layer.tangential import tangential_of
 from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr
@@ -54,6 +55,8 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
         hashlib.sha256(cell.values.tobytes()).hexdigest(),
         *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine), cell.machine.preload)),
         *scene.conductance_factors.items(),
+        *(() if cell.lateral is None else (cell.lateral.held_value,)),
+        *(() if (tangential := tangential_of(scene)) is None else tangential),
         scene.seed,
         estimator,
         versions(),

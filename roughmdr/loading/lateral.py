@@ -1,0 +1,47 @@
+"""The path of a flat that is moved sideways while something normal is held: its separation, or the load on it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.masing import Masing
+from roughmdr.loading.path import LoadingPath
+from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.labelled import Array
+from roughmdr.variables import COORDINATES, LATERAL, SEPARATION
+
+
+class LateralPath(NamedTuple):
+    """The lateral displacement at each step, from rest at 0."""
+
+    held: LoadingPath | MachinePath
+    """The normal path of one step that leads to what is held."""
+    displacement: Floats
+    """[m]: [step]."""
+    memory: Masing
+
+    @classmethod
+    def along(cls, held: LoadingPath | MachinePath, displacement: Floats) -> "LateralPath":
+        """Return the path of these displacements [m]."""
+        return cls(held, displacement, Masing.along(displacement))
+
+    @property
+    def held_value(self) -> float:
+        """The separation, force or pressure that is held, in SI."""
+        values = self.held.separation if isinstance(self.held, LoadingPath) else self.held.values
+        return float(values[-1])
+
+    @staticmethod
+    def variables(names: list[str]) -> list[str]:
+        """Return the variables of a law that is asked for ``names``: with the separation, which every one has."""
+        return [SEPARATION.name, *names]
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the displacement and the branch of each step, labelled."""
+        return {LATERAL.name: Array(("step",), self.displacement, LATERAL.attrs), "branch": self.branch()}
+
+    def branch(self) -> Array:
+        """Return the branch of each step, labelled: "unloading" backward."""
+        names = np.where(self.memory.direction < 0.0, "unloading", "loading")
+        return Array(("step",), names, {"long_name": COORDINATES["branch"].long_name})
