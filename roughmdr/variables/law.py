@@ -38,7 +38,18 @@ REFERENCE_VARIABLES = declare(
 )
 """Variables of a law by boundary elements beside that of the asperities."""
 
-LAW_VARIABLES = {SEPARATION.name: SEPARATION, REMOTE.name: REMOTE, **CURVE_VARIABLES, **REFERENCE_VARIABLES}
+NOMINAL_VARIABLES = declare(
+    ("nominal_contact_radius", "m", "effective radius of the contact of the curved body, 3 pi/4 ∫ r |p| dr / ∫ |p| dr"),
+)
+"""Variables of a law under a curved body beside those asked for."""
+
+LAW_VARIABLES = {
+    SEPARATION.name: SEPARATION,
+    REMOTE.name: REMOTE,
+    **CURVE_VARIABLES,
+    **REFERENCE_VARIABLES,
+    **NOMINAL_VARIABLES,
+}
 """Variables that a result can have over its steps."""
 
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}

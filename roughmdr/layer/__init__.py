@@ -1,0 +1,1 @@
+"""Laws that are made of a finished law of the rough layer."""
