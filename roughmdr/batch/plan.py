@@ -19,7 +19,7 @@ from roughmdr.scene import Scene
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CURVE_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, NOMINAL_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -98,6 +98,8 @@ class Plan(NamedTuple):
         asked, machine = self.scene.output.variables, self.cells[0].machine
         if machine is not None:
             return machine.variables(asked)
+        if self.scene.nominal is not None:
+            return [*asked, *NOMINAL_VARIABLES]
         return asked if self.scene.reference is None else [*asked, *reference_variables(asked)]
 
     @property
@@ -208,6 +210,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     if scene.reference is None:
         yield "boundary elements: the scene has no [reference]"
+    if scene.nominal is None:
+        yield "curvature of the bodies: the scene has no [nominal]"
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

@@ -54,6 +54,12 @@ def _expected(scene: Scene, path: LoadingPath | MachinePath, variables: list[str
         "interaction": scene.interaction_model,
         "variables": variables,
     }
+    if scene.nominal is not None:
+        from roughmdr.layer import curved
+
+        assert isinstance(path, LoadingPath)  # as ``Scene`` validates
+        layer = curved.Layer(scene.asperities, scene.effective_modulus, scene.adhesion_model)
+        return curved.compute(layer, scene.nominal.body, path, error=scene.nominal.error, variables=variables)
     if isinstance(path, MachinePath):
         return compute_under_machine(scene.asperities, path, **given)
     return expected.compute(scene.asperities, path, **given)

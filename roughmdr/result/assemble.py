@@ -62,7 +62,7 @@ def assemble(
 
     if plan.keeps_statistics or scene.accuracy is not None:
         data["realization_count"] = of_cells("realization_count", [float(each.realizations) for each in methods])
-    areas = [cell.scene.asperities.nominal_area for cell in plan.cells]
+    areas = [cell.scene.nominal_area for cell in plan.cells]
     if not any(area is None for area in areas):
         data["nominal_area"] = of_cells("nominal_area", areas)
     coordinates["cell_key"] = of_cells("cell_key", [each.key for each in methods])

@@ -12,6 +12,7 @@ from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
 from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
+from roughmdr.scene.nominal import NominalSection, check_nominal
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
@@ -51,6 +52,7 @@ class Scene(Section):
     asperities: Asperities
     interaction: InteractionSection | None = None
     reference: ReferenceSection | None = None
+    nominal: NominalSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -136,6 +138,8 @@ class Scene(Section):
             raise mismatch(self.path.area_key, "needs a nominal area: asperities.patch")
         if estimator == "expected" and realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
+        if self.nominal is not None:
+            check_nominal(self)
         if not asperities.is_random:
             return self
         if fault := self.path.sigma_fault(asperities.sigma):
@@ -179,6 +183,8 @@ class Scene(Section):
         """
         if self.accuracy is None:
             return (self.batch.estimator,)
+        if self.nominal is not None and self.accuracy.method == "auto":
+            return ("expected",)
         if self.accuracy.method != "auto":
             return (self.accuracy.method,)
         count = self.asperities.expected_count
@@ -218,6 +224,11 @@ class Scene(Section):
     def needs_positions(self) -> bool:
         """Whether the law depends on where the asperities stand."""
         return self.interaction is not None and self.interaction.model == "pairwise"
+
+    @property
+    def nominal_area(self) -> float | None:
+        """[m2]; None where it is unknown, and under a curved body, which has none."""
+        return self.asperities.nominal_area if self.nominal is None else None
 
     @property
     def repeats(self) -> bool:

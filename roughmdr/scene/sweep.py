@@ -17,7 +17,7 @@ from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS
 
-SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction")
+SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction", "nominal")
 _STOP = "path.separation.stop"
 _PATH_KEYS = (
     *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),

@@ -25,6 +25,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "asperities": "Where the asperities come from",
         "interaction": "How asperities feel each other; they are independent without this section",
         "reference": "The surface itself by boundary elements, beside the law of its asperities, without adhesion",
+        "nominal": "A curved body that presses the asperities, in place of the flat, on an elastic half-space",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -84,6 +85,11 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "beyond": 'Where too many contacts overlap: "flag" marks the step, "boundary_elements" solves it on a grid',
     },
     "reference": {"model": "Method", "error": "Relative error of its force by the grid"},
+    "nominal": {
+        **_SHAPE,
+        "shape": "Shape of the body, which decides the other keys",
+        "error": "Error of the force by the rings of the contact, over the largest force",
+    },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",
         "force": "Dead loads in place of separations: a table of start, stop and steps, or a list",

@@ -21,7 +21,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
 _FIRST_ELEMENTS, _GRADING = 16, 1.5  # equal steps of radius^(1/grading): a light contact is small
-_MAX_ELEMENTS = 400  # with more of them a step takes a second
+_MAX_ELEMENTS = 256  # with more of them a step takes a second
 _MAX_PASSES = 16
 _RULE_STEPS = 32  # of a path over all separations, for which the rule over the shape parameters is chosen
 _DEEPER, _WIDER = 2.0, 1.25  # factors by which tables reach deeper, and rings farther out, where they do not suffice
