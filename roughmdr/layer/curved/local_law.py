@@ -16,6 +16,7 @@ from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.intervals import Intervals
 from roughmdr.expected.node import QuadratureNode
+from roughmdr.expected.table import AdaptiveTable
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.chebyshev import evaluate_series, find_piece
@@ -24,10 +25,14 @@ from roughmdr.numerics.jit import njit
 ROWS = (FORCE, STIFFNESS, AREA, COUNT, RADIUS)
 """Rows of the totals that the nodes have tables of, in this order."""
 _OF_SLOPE = 2  # of them, the first
+_RTOL_TABLE, _NARROWEST = 1e-11, 1e-7  # of the largest value on a piece; of the scale of the layer
 
 
 class LocalLaw(NamedTuple):
-    """The nodes of the expected law, each asperity of which stands for so many per area."""
+    """The nodes of the expected law, each asperity of which stands for so many per area.
+
+    Without adhesion, where all depends on the separation alone, it is tabulated.
+    """
 
     nodes: list[QuadratureNode]
     density: float
@@ -36,6 +41,28 @@ class LocalLaw(NamedTuple):
     """The width of the heights [m], over which the pressure changes."""
     closest: float
     """The least separation [m] that the tables are for; where a solution is sought, closer ones count as this one."""
+    table: AdaptiveTable | None = None
+    """``ROWS`` per area over the separation."""
+
+    @classmethod
+    def of(cls, nodes: list[QuadratureNode], density: float, scale: float, closest: float) -> "LocalLaw":
+        """Return the law of nodes; the arguments are the fields."""
+        law = cls(nodes, density, scale, closest)
+        if law.adhesive:
+            return law
+
+        def rows(s: Floats) -> Floats:
+            return law._summed(s, np.broadcast_to(s, (len(nodes), s.size)), len(ROWS))
+
+        def min_width(low: Floats, high: Floats) -> Floats:
+            return np.full_like(low, _NARROWEST * scale)
+
+        def weight(low: Floats, high: Floats, largest: Floats) -> Floats:
+            return np.ones_like(low)
+
+        ends = np.array([closest, max(law.highest, closest + scale)])
+        tolerance = np.full(len(ROWS), _RTOL_TABLE)
+        return law._replace(table=AdaptiveTable.of(rows, ends, tolerance, min_width, weight))
 
     @property
     def highest(self) -> float:
@@ -69,22 +96,30 @@ class LocalLaw(NamedTuple):
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p [Pa] and dp/ds [Pa/m] at separations s [m], which are reached in one go after ``memory``."""
         s = np.maximum(s, self.closest)
-        lowest, found = self.remember(s, memory), np.zeros((2, s.size))
+        if self.table is not None:
+            pressure, stiffness = _read(self.table, s, _OF_SLOPE)
+            return pressure, -stiffness
+        lowest = self.remember(s, memory)
+        pressure, stiffness = self._summed(s, lowest, _OF_SLOPE)
+        slope = -stiffness
         for node, edge, before in zip(self.nodes, lowest, memory, strict=True):
-            values = _integrals(node, s, edge, _OF_SLOPE)
-            values[1] *= -1.0
-            if self.adhesive:  # contacts that are made, or lost, as s changes
-                touching, detaching = _end_forces(node)
-                gained = np.where(edge < before, touching, np.where(edge > before, detaching, 0.0))
-                values[1] -= np.where(gained != 0.0, gained * _density(node.heights, edge - node.heights.origin), 0.0)
-            found += node.fraction * values
-        return self.density * found[0], self.density * found[1]
+            touching, detaching = _end_forces(node)
+            gained = np.where(edge < before, touching, np.where(edge > before, detaching, 0.0))
+            made = np.where(gained != 0.0, gained * _density(node.heights, edge - node.heights.origin), 0.0)
+            slope -= self.density * node.fraction * made  # contacts that are made, or lost, as s changes
+        return pressure, slope
 
     def totals(self, s: Floats, lowest: Floats) -> dict[int, Floats]:
         """Return the totals per area of ``ROWS`` at separations s [m] with contacts above ``lowest`` [node, ring]."""
-        pairs = zip(self.nodes, lowest, strict=True)
-        found = sum(node.fraction * _integrals(node, s, edge, len(ROWS)) for node, edge in pairs)
-        return dict(zip(ROWS, self.density * np.asarray(found), strict=True))
+        found = self._summed(s, lowest, len(ROWS)) if self.table is None else _read(self.table, s, len(ROWS))
+        return dict(zip(ROWS, found, strict=True))
+
+    def _summed(self, s: Floats, lowest: Floats, rows: int) -> Floats:
+        """Return the first ``rows`` totals per area, summed over the nodes: [row, ring]."""
+        found = np.zeros((rows, s.size))
+        for node, edge in zip(self.nodes, lowest, strict=True):
+            found += node.fraction * _integrals(node, s, edge, rows)
+        return self.density * found
 
 
 def _integrals(node: QuadratureNode, s: Floats, lowest: Floats, rows: int) -> Floats:
@@ -94,6 +129,22 @@ def _integrals(node: QuadratureNode, s: Floats, lowest: Floats, rows: int) -> Fl
     each = Intervals(np.arange(s.size), ones, ones, lowest - origin, infinite)
     integrate(each, s - origin, node.contact.depth[0], node.curve, node.heights, ROWS.index(STIFFNESS), found)
     return np.asarray(found[:-1] * scales_of(node.contact, ROWS[:rows])[:, None])
+
+
+@njit
+def _read(table: AdaptiveTable, s: Floats, rows: int) -> Floats:
+    """Return the first ``rows`` of a table at separations s [m] above its lower end; 0 above its upper: [row, ring]."""
+    found = np.zeros((rows, s.size))
+    u, value, before, earlier = np.empty((4, 1))
+    for i in range(s.size):
+        if s[i] < table.high[-1]:
+            piece = find_piece(table.high, s[i])
+            low, high = table.low[piece], table.high[piece]
+            u[0] = (2.0 * s[i] - low - high) / (high - low)
+            for row in range(rows):
+                evaluate_series(table.coefficients[piece, row], u, value, before, earlier)
+                found[row, i] = value[0]
+    return found
 
 
 def _end_forces(node: QuadratureNode) -> tuple[float, float]:

@@ -65,7 +65,7 @@ def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solut
         path = LoadingPath.along(some, unload=hysteretic, adhesive=adhesive)
         problem = Problem(source, path, layer.effective_modulus, layer.adhesion, ROWS)
         rule = converge(problem, None, dissipating=False)
-        law = LocalLaw(set_up(problem, rule.rule), density, scale, deepest)
+        law = LocalLaw.of(set_up(problem, rule.rule), density, scale, deepest)
         body, places, change = _on_wide_rings(law, shape, layer.effective_modulus, separation, error)
         if not adhesive or min(float(place.state.s.min()) for place in places) >= deepest:
             return Solution(body, places, change, rule.error)
