@@ -43,14 +43,16 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     numbers = {name: np.array([cell.law.model_error.named[name] for cell in cells]) for name in names}
     numbers["grid_points"] = np.array([cell.law.grid_points for cell in cells])
     model = None if prospect.interaction is None else prospect.interaction.model
-    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], interaction=model)
+    curved = all("nominal_contact_radius" in cell.law.variables for cell in cells)
+    at_pull_off = [cell.fraction_at_pull_off for cell in cells]
+    yield from trust_lines(numbers, at_pull_off, interaction=model, curved=curved)
     marked = sum(cell.law.marked_steps > 0.0 for cell in cells)
     if marked and prospect.interaction is not None:
         on_grid = prospect.interaction.beyond == "boundary_elements"
         becomes = "realisations are computed by boundary elements" if on_grid else "steps are marked"
         yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
     touches = any(cell.law.model_error.largest_fraction > 0.0 for cell in cells)
-    if model is None and touches and prospect.coupled_seconds < math.inf:
+    if model is None and touches and not curved and prospect.coupled_seconds < math.inf:
         parts = any(not math.isnan(cell.fraction_at_pull_off) for cell in cells)
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"

@@ -82,6 +82,8 @@ def assemble(
     }
     if scene.interaction is not None:
         attrs["interaction"] = scene.interaction.model
+    if scene.nominal is not None:
+        attrs["nominal"] = scene.nominal.shape
     if plan.path_notes:
         attrs["path"] = "\n".join(plan.path_notes)
     if plan.map_lines:
