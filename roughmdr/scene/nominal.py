@@ -28,9 +28,9 @@ class _Nominal(Section):
     """
 
     shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
-    error: Annotated[
-        float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR))
-    ] = DEFAULT_ERROR
+    error: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR))] = (
+        DEFAULT_ERROR
+    )
 
     @model_validator(mode="after")
     def _is_a_shape(self) -> "_Nominal":
@@ -80,7 +80,8 @@ def check_nominal(scene: "Scene") -> None:
         raise mismatch(f"path.separation.stop.{scene.path.target.variable}", "does not go with [nominal]")
     for name in scene.output.variables:
         if name not in _VARIABLES:
-            raise mismatch("output.variables", f"{name!r} is not there with [nominal]; there are {', '.join(_VARIABLES)}")
+            allowed = ", ".join(_VARIABLES)
+            raise mismatch("output.variables", f"{name!r} is not available with [nominal]; there are {allowed}")
     if scene.estimators != ("expected",):
         key = "batch.estimator" if scene.accuracy is None else "accuracy.method"
         raise mismatch(key, 'must be "expected" with [nominal]: the layer has the expected law of its asperities')

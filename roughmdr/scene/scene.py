@@ -138,8 +138,7 @@ class Scene(Section):
             raise mismatch(self.path.area_key, "needs a nominal area: asperities.patch")
         if estimator == "expected" and realizations > 1:
             raise mismatch("batch.realizations", "must be 1 with estimator 'expected': there is only one expected law")
-        if self.nominal is not None:
-            check_nominal(self)
+        check_nominal(self)
         if not asperities.is_random:
             return self
         if fault := self.path.sigma_fault(asperities.sigma):
@@ -183,10 +182,10 @@ class Scene(Section):
         """
         if self.accuracy is None:
             return (self.batch.estimator,)
-        if self.nominal is not None and self.accuracy.method == "auto":
-            return ("expected",)
         if self.accuracy.method != "auto":
             return (self.accuracy.method,)
+        if self.nominal is not None:
+            return ("expected",)
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
         drawn = "stratified" if is_whole else "sampled"

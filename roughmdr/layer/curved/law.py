@@ -21,9 +21,7 @@ _OF_LAYER = ("model_error_curve",)
 """Variables that are those of the layer where it is pressed most."""
 
 
-def compute(
-    layer: Layer, shape: Shape, path: LoadingPath, *, error: float, variables: Iterable[str]
-) -> LoadSeparation:
+def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, variables: Iterable[str]) -> LoadSeparation:
     """Return the law of a body of this shape along a path of its apex.
 
     The force has an estimated error of at most ``error`` times the largest, or a warning says which it has. OutOfRange
