@@ -187,6 +187,13 @@ def _check_asperities_read(cell: Scene) -> None:
         check_placed(ensemble, cell.interaction_model)
 
 
+def _without_section(scene: Scene) -> Iterator[str]:
+    """Yield what is left out because the scene has no section for it."""
+    for part, section in (("boundary elements", "reference"), ("curvature of the bodies", "nominal")):
+        if getattr(scene, section) is None:
+            yield f"{part}: the scene has no [{section}]"
+
+
 def _left_out(scene: Scene) -> Iterator[str]:
     """Yield what a scene without a sweep does not need, and why, as lines "part: reason"."""
     if scene.adhesion is None:
@@ -208,10 +215,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"positions: {independent}; nothing depends on their positions"
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
-    if scene.reference is None:
-        yield "boundary elements: the scene has no [reference]"
-    if scene.nominal is None:
-        yield "curvature of the bodies: the scene has no [nominal]"
+    yield from _without_section(scene)
     if unasked := [name for name in CURVE_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

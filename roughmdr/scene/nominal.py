@@ -69,7 +69,9 @@ else:
 
 
 def check_nominal(scene: "Scene") -> None:
-    """Raise a mismatch where a curved body does not go with another section of a scene."""
+    """Raise a mismatch where a curved body, if there is one, does not go with another section of a scene."""
+    if scene.nominal is None:
+        return
     if scene.interaction is not None:
         raise mismatch("nominal", "does not go with [interaction]: the half-space gives way under all asperities")
     if scene.reference is not None:

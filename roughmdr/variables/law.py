@@ -39,7 +39,11 @@ REFERENCE_VARIABLES = declare(
 """Variables of a law by boundary elements beside that of the asperities."""
 
 NOMINAL_VARIABLES = declare(
-    ("nominal_contact_radius", "m", "effective radius of the contact of the curved body, 3 pi/4 ∫ r |p| dr / ∫ |p| dr"),
+    (
+        "nominal_contact_radius",
+        "m",
+        "effective radius of the nominal contact, 3 pi/4 int(r p dr)/int(p dr), p of contacts that push",
+    ),
 )
 """Variables of a law under a curved body beside those asked for."""
 

@@ -49,7 +49,8 @@ class Body(NamedTuple):
 
     def along(self, separation: Floats, place: Place | None = None) -> list[Place]:
         """Return the rings at each separation [m] of a path that comes from infinity, or from a place."""
-        places, last = [], self.apart() if place is None else place
+        places: list[Place] = []
+        last = self.apart() if place is None else place
         for h in separation.tolist():
             last = last if h == last.h and places else self.moved(last, h)
             places.append(last)
@@ -69,10 +70,11 @@ class Body(NamedTuple):
         return -float((self.rings.area_weights * place.state.slope * place.response).sum())
 
     def contact_radius(self, place: Place) -> float:
-        """Return the effective radius of the nominal contact [m], 3 pi/4 ∫ r |p| dr / ∫ |p| dr; 0 without contact.
+        """Return the effective radius of the nominal contact [m], 3 pi/4 ∫ r p dr / ∫ p dr, p of the contacts that push;
+        0 without any.
 
-        Without tension it is Greenwood and Tripp's, which under Hertz's pressure is his radius.
+        Without adhesion it is Greenwood and Tripp's, which under Hertz's pressure is his radius.
         """
-        magnitude = np.abs(place.state.pressure) * self.rings.weights
-        whole = float(magnitude.sum())
-        return 0.75 * math.pi * float((self.rings.radius * magnitude).sum()) / whole if whole > 0.0 else 0.0
+        load = self.half.law.pushing(place.state.s, place.memory) * self.rings.weights
+        whole = float(load.sum())
+        return 0.75 * math.pi * float((self.rings.radius * load).sum()) / whole if whole > 0.0 else 0.0

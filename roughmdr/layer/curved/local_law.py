@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE, RADIUS, STIFFNESS
-from roughmdr.expected.curve import Curve, scales_of
+from roughmdr.expected.curve import scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.intervals import Intervals
@@ -91,7 +91,7 @@ class LocalLaw(NamedTuple):
         """Return the lowest height [m] in contact, of each node on each ring, at separations s [m] after ``memory``."""
         if not self.adhesive:
             return np.broadcast_to(s, memory.shape)
-        return np.minimum(np.maximum(memory, s - np.array(self._depths)[:, None]), s)
+        return np.asarray(np.minimum(np.maximum(memory, s - np.array(self._depths)[:, None]), s))
 
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p [Pa] and dp/ds [Pa/m] at separations s [m], which are reached in one go after ``memory``."""
@@ -113,6 +113,13 @@ class LocalLaw(NamedTuple):
         """Return the totals per area of ``ROWS`` at separations s [m] with contacts above ``lowest`` [node, ring]."""
         found = self._summed(s, lowest, len(ROWS)) if self.table is None else _read(self.table, s, len(ROWS))
         return dict(zip(ROWS, found, strict=True))
+
+    def pushing(self, s: Floats, lowest: Floats) -> Floats:
+        """Return the pressure [Pa] of the contacts that push, at least 0: without adhesion of all."""
+        if not self.adhesive:
+            return self.pressure(s, lowest)[0]
+        unloaded = [float(node.contact.at_force(np.zeros(1))["indentation"][0]) for node in self.nodes]
+        return self._summed(s, np.maximum(lowest, s + np.array(unloaded)[:, None]), 1)[0]
 
     def _summed(self, s: Floats, lowest: Floats, rows: int) -> Floats:
         """Return the first ``rows`` totals per area, summed over the nodes: [row, ring]."""
