@@ -20,6 +20,8 @@ _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1
 _TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
 _FIRST_RULE = 8
 _REMEMBERED = 5000  # separations that a viscoelastic law is integrated over, of kinked curves
+# Under a curved body: tables of each node, a step on all its rings, and with adhesion each node of the first rule.
+_CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
@@ -56,6 +58,8 @@ def law_seconds(cell: Cell, estimator: str) -> float:
     if estimator == "expected":
         nodes = section.node_count(_FIRST_RULE)
         node = (_NODE_ADHESIVE if adhesion.work else _NODE) * (1.0 if simple else _OWN_TABLES)
+        if cell.scene.nominal is not None:
+            return _CURVED_TABLES * nodes + steps * (_CURVED_STEP + (_CURVED_NODE * nodes if adhesion.work else 0.0))
         tables = _TABLES_DUGDALE_PROFILE if dugdale and not simple else _TABLES
         return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
     paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)

@@ -23,7 +23,7 @@ from roughmdr.scene.lateral import displacements
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import LATERAL, OUTPUT_VARIABLES, TIME
+from roughmdr.variables import LATERAL, NOMINAL_VARIABLES, OUTPUT_VARIABLES, TIME
 
 
 class Cell(NamedTuple):
@@ -118,6 +118,8 @@ class Plan(NamedTuple):
             return LateralPath.variables(asked)
         if machine is not None:
             return machine.variables(asked)
+        if self.scene.nominal is not None:
+            return [*asked, *NOMINAL_VARIABLES]
         return asked if self.scene.reference is None else [*asked, *reference_variables(asked)]
 
     @property
@@ -230,6 +232,12 @@ def _check_asperities_read(cell: Scene) -> None:
         check_placed(ensemble, cell.interaction_model)
 
 
+def _without_section(scene: Scene) -> Iterator[str]:
+    """Yield what is left out because the scene has no section for it."""
+    parts = {"reference": "boundary elements", "conduction": "conductances", "nominal": "curvature of the bodies"}
+    yield from (f"{part}: the scene has no [{key}]" for key, part in parts.items() if getattr(scene, key) is None)
+
+
 def _left_out(scene: Scene) -> Iterator[str]:
     """Yield what a scene without a sweep does not need, and why, as lines "part: reason"."""
     if scene.adhesion is None:
@@ -252,8 +260,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"positions: {independent}; nothing depends on their positions"
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
-    parts = {"reference": "boundary elements", "conduction": "conductances"}
-    yield from (f"{part}: the scene has no [{key}]" for key, part in parts.items() if getattr(scene, key) is None)
+    yield from _without_section(scene)
     if unasked := [name for name in OUTPUT_VARIABLES if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":

@@ -68,6 +68,12 @@ def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
     from roughmdr.expected.under_machine import compute_under_machine
 
     source = scene.asperities
+    if scene.nominal is not None:
+        from roughmdr.layer import curved
+
+        assert isinstance(path, LoadingPath)  # as ``Scene`` validates
+        layer = curved.Layer(source, scene.effective_modulus, scene.adhesion_model)
+        return curved.compute(layer, scene.nominal.body, path, error=scene.nominal.error, variables=variables)
     given: dict[str, Any] = {
         "effective_modulus": scene.effective_modulus,
         "adhesion": scene.adhesion_model,

@@ -7,7 +7,7 @@ from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.expected.intervals import contact_intervals
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, totals_of
-from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, Unloading, locate, unloadings
 from roughmdr.numerics.arguments import Floats
 
 _FEW, _FEW_OF_MOST = 0.5, 0.01
@@ -22,9 +22,7 @@ def pull_off_of(problem: Problem, split: KinkSplit | None, nodes: list[Quadratur
     """
     path, count = problem.path, problem.source.expected_count
     rises = unloadings(path.separation, force)
-    bearing = count * _fraction_in_contact(nodes, path.separation.size)
-    parted = min(_FEW, _FEW_OF_MOST * float(bearing.max()))
-    if not any(bearing[rise.last] <= parted for rise in rises):
+    if not ends_apart(rises, count * _fraction_in_contact(nodes, path.separation.size)):
         return PullOff()
     if not problem.law.adhesive:
         return WITHOUT_TENSION
@@ -46,6 +44,12 @@ def pull_off_of(problem: Problem, split: KinkSplit | None, nodes: list[Quadratur
     else:
         there = totals(found.path)[:, last]
     return PullOff(*map(float, (there[FORCE], found.path.separation[last], there[COUNT], there[AREA])))
+
+
+def ends_apart(rises: list[Unloading], contacts: Floats) -> bool:
+    """Return whether an unloading ends out of contact, given the number of contacts at each step."""
+    parted = min(_FEW, _FEW_OF_MOST * float(contacts.max()))
+    return any(contacts[rise.last] <= parted for rise in rises)
 
 
 def _fraction_in_contact(nodes: list[QuadratureNode], steps: int) -> Floats:

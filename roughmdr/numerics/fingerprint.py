@@ -13,6 +13,7 @@ COMPILED = (
     "expected",
     "interaction",
     "kernels",
+    "layer",
     "loading",
     "numerics",
     "shapes",

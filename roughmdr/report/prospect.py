@@ -47,7 +47,9 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     numbers["grid_points"] = np.array([cell.law.grid_points for cell in cells])
     model = None if prospect.interaction is None else prospect.interaction.model
     advise = prospect.coupled_seconds < math.inf
-    yield from trust_lines(numbers, [cell.fraction_at_pull_off for cell in cells], interaction=model, advise=advise)
+    curved = all("nominal_contact_radius" in cell.law.variables for cell in cells)
+    at_pull_off = [cell.fraction_at_pull_off for cell in cells]
+    yield from trust_lines(numbers, at_pull_off, interaction=model, advise=advise, curved=curved)
     marked = sum(cell.law.marked_steps > 0.0 for cell in cells)
     if marked and prospect.interaction is not None:
         on_grid = prospect.interaction.beyond == "boundary_elements"

@@ -41,13 +41,19 @@ Numbers = Mapping[str, Any]
 
 
 def trust_lines(
-    numbers: Numbers, at_pull_off: ArrayLike = (), *, interaction: str | None = None, advise: bool = True
+    numbers: Numbers,
+    at_pull_off: ArrayLike = (),
+    *,
+    interaction: str | None = None,
+    advise: bool = True,
+    curved: bool = False,
 ) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several.
 
     ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``interaction``
     is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too.
-    ``advise`` says whether they could feel each other where they do not.
+    ``advise`` says whether they could feel each other where they do not. Under a ``curved`` body the numbers are those
+    of the layer where it is pressed most.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -65,7 +71,8 @@ def trust_lines(
     places = [(largest, "at closest approach")]
     if tension.size:
         places.insert(0, (tension, "at pull-off"))
-    shares = [f"{_range(fraction)}{'' if i else ' of the patch'} {place}" for i, (fraction, place) in enumerate(places)]
+    area = " of the area where the layer is pressed most," if curved else " of the patch"
+    shares = [f"{_range(fraction)}{'' if i else area} {place}" for i, (fraction, place) in enumerate(places)]
     coefficients = _coefficients(known)
     yield "contact", f"summed contact area {', '.join(shares)}"
     if not (known["model_error"] > 0.0).any():
@@ -92,8 +99,10 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        advise = LATERAL.name not in result.coordinates and "viscoelastic" not in parse_toml(result.attrs["scene"])
-        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, advise=advise)
+        alone = {"viscoelastic", "nominal"} & parse_toml(result.attrs["scene"]).keys()
+        advise = LATERAL.name not in result.coordinates and not alone
+        curved = "nominal" in result.attrs
+        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, advise=advise, curved=curved)
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
 

@@ -62,7 +62,7 @@ def assemble(
 
     if plan.keeps_statistics or scene.accuracy is not None:
         data["realization_count"] = of_cells("realization_count", [float(each.realizations) for each in methods])
-    areas = [cell.scene.asperities.nominal_area for cell in plan.cells]
+    areas = [cell.scene.nominal_area for cell in plan.cells]
     if not any(area is None for area in areas):
         data["nominal_area"] = of_cells("nominal_area", areas)
     coordinates["cell_key"] = of_cells("cell_key", [each.key for each in methods])
@@ -82,12 +82,10 @@ def assemble(
     }
     if scene.interaction is not None:
         attrs["interaction"] = scene.interaction.model
-    if plan.path_notes:
-        attrs["path"] = "\n".join(plan.path_notes)
-    if plan.slip_notes:
-        attrs["slip"] = "\n".join(plan.slip_notes)
-    if plan.map_lines:
-        attrs["map"] = "\n".join(plan.map_lines)
+    if scene.nominal is not None:
+        attrs["nominal"] = scene.nominal.shape
+    notes = {"path": plan.path_notes, "slip": plan.slip_notes, "map": plan.map_lines}
+    attrs |= {name: "\n".join(lines) for name, lines in notes.items() if lines}
     if scene.accuracy is not None:
         data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])

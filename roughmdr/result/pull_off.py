@@ -50,7 +50,7 @@ def pull_off_numbers(
         mean_lowest, _ = mean_and_error(found[..., 0], np.isfinite(found[..., 0]))
         count = np.isfinite(found[..., 0]).sum(axis=1).astype(float)
         numbers = {name: found[..., number] for number, name in enumerate(PULL_OFF_NUMBERS)}
-    area = np.array([cell.scene.asperities.nominal_area or math.nan for cell in plan.cells])
+    area = np.array([cell.scene.nominal_area or math.nan for cell in plan.cells])
     if np.isfinite(area).any():
         numbers |= {
             name.replace(total, OVER_AREA[total]): (values.T / area).T

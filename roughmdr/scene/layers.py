@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from roughmdr.scene.conduction import check_conduction
+from roughmdr.scene.nominal import check_nominal
 from roughmdr.scene.tangential import check_tangential
 from roughmdr.scene.viscoelastic import check_viscoelastic, without_unknown
 from roughmdr.schema.faults import mismatch
@@ -29,8 +30,11 @@ def with_usual_variables(table: Any) -> Any:
 
 def check_layers(scene: "Scene") -> None:
     """Raise a mismatch where one of these sections lacks something, or does not go with another section."""
-    if scene.path.lateral is not None and scene.viscoelastic is not None:
-        raise mismatch("path.lateral", "does not go with [viscoelastic]: contacts that relax do not stick")
+    alone = {"path.lateral": scene.path.lateral, "viscoelastic": scene.viscoelastic, "nominal": scene.nominal}
+    given = [key for key, section in alone.items() if section is not None]
+    if len(given) > 1:
+        raise mismatch(given[0], f"does not go with {given[1]}: each is of the elastic law under a flat")
     check_conduction(scene)
     check_tangential(scene)
     check_viscoelastic(scene)
+    check_nominal(scene)

@@ -14,6 +14,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.conduction import ConductionSection
 from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
 from roughmdr.scene.layers import check_layers, with_usual_variables
+from roughmdr.scene.nominal import NominalSection
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
@@ -58,6 +59,7 @@ class Scene(Section):
     conduction: ConductionSection | None = None
     viscoelastic: ViscoelasticSection | None = None
     tangential: TangentialSection | None = None
+    nominal: NominalSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -194,6 +196,8 @@ class Scene(Section):
             return (self.batch.estimator,)
         if self.accuracy.method != "auto":
             return (self.accuracy.method,)
+        if self.nominal is not None:
+            return ("expected",)
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
         drawn = "stratified" if is_whole else "sampled"
@@ -236,6 +240,11 @@ class Scene(Section):
     def needs_positions(self) -> bool:
         """Whether the law depends on where the asperities stand."""
         return self.interaction is not None and self.interaction.model == "pairwise"
+
+    @property
+    def nominal_area(self) -> float | None:
+        """[m2]; None where it is unknown, and under a curved body, which has none."""
+        return self.asperities.nominal_area if self.nominal is None else None
 
     @property
     def repeats(self) -> bool:

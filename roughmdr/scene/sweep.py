@@ -18,7 +18,17 @@ from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS
 
-SECTIONS = ("material", "counter", "adhesion", "asperities", "interaction", "conduction", "tangential", "viscoelastic")
+SECTIONS = (
+    "material",
+    "counter",
+    "adhesion",
+    "asperities",
+    "interaction",
+    "conduction",
+    "nominal",
+    "tangential",
+    "viscoelastic",
+)
 _STOP = "path.separation.stop"
 _PATH_KEYS = (
     *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),

@@ -28,6 +28,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "conduction": "How the bodies conduct, for thermal_conductance and electrical_conductance",
         "viscoelastic": "Relaxation of the modulus while the flat moves in time; the bodies are elastic without it",
         "tangential": "Friction, for path.lateral, and the tangential stiffness of the bodies",
+        "nominal": "A curved body that presses the asperities, in place of the flat, on an elastic half-space",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -106,6 +107,11 @@ _SECTIONS: dict[str, dict[str, str]] = {
     "viscoelastic.relaxation[]": {
         "time": "Relaxation time",
         "share": "Share of the instantaneous modulus that is lost; all together at most 1",
+    },
+    "nominal": {
+        **_SHAPE,
+        "shape": "Shape of the body, which decides the other keys",
+        "error": "Error of the force by the rings of the contact, over the largest force",
     },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",

@@ -65,10 +65,20 @@ REFERENCE_VARIABLES = declare(
 LATERAL = Variable("lateral", "m", "lateral displacement of the flat, from rest")
 """The coordinate of a lateral path, on which a separation or a load is held."""
 
+NOMINAL_VARIABLES = declare(
+    (
+        "nominal_contact_radius",
+        "m",
+        "effective radius of the nominal contact, 3 pi/4 int(r p dr)/int(p dr), p of contacts that push",
+    ),
+)
+"""Variables of a law under a curved body beside those asked for."""
+
 LAW_VARIABLES = {
     **{each.name: each for each in (SEPARATION, REMOTE, LATERAL, TIME)},
     **OUTPUT_VARIABLES,
     **REFERENCE_VARIABLES,
+    **NOMINAL_VARIABLES,
 }
 """Variables that a result can have over its steps."""
 

@@ -51,6 +51,7 @@ def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
         scene.interaction_model,
         None if scene.reference is None else scene.reference.error,
         repr(scene.viscoelastic),
+        *(() if scene.nominal is None else (repr(scene.nominal),)),
         sections[id(section)],
         hashlib.sha256(cell.values.tobytes()).hexdigest(),
         *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine), cell.machine.preload)),

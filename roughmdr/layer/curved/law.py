@@ -1,0 +1,100 @@
+"""The law of a curved body on a flat with a rough layer between them, along the path of the body."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from roughmdr import expected
+from roughmdr.aggregate import LoadingPath, LoadSeparation
+from roughmdr.aggregate.totals import AREA, COUNT, RADIUS
+from roughmdr.errors import OutOfRange
+from roughmdr.layer.curved.follow import Body, Place
+from roughmdr.layer.curved.local_law import LocalLaw
+from roughmdr.layer.curved.pull_off import pull_off_of
+from roughmdr.layer.curved.refine import Layer, Solution, solve
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes import Shape
+
+_MAX_ERROR = 0.1  # of the largest force: a larger error is refused
+_OF_LAYER = ("model_error_curve",)
+"""Variables that are those of the layer where it is pressed most."""
+
+
+def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, variables: Iterable[str]) -> LoadSeparation:
+    """Return the law of a body of this shape along a path of its apex.
+
+    The force has an estimated error of at most ``error`` times the largest, or a warning says which it has. OutOfRange
+    where there is no equilibrium, or no number for it; TooMuchContact where the layer is full somewhere.
+    """
+    names, separation = list(variables), path.separation
+    solution = _solved(layer, shape, separation, error)
+    body, places = solution.body, solution.places
+    own = _variables(body, places)
+    if not all(np.isfinite(values).all() for values in own.values()):
+        raise OutOfRange(f"the contact of the {shape.name} is not representable")
+    ring = int(np.argmin(np.min([place.state.s for place in places], axis=0)))
+    pressed = np.array([place.state.s[ring] for place in places])
+    local = _of_layer(layer, pressed, names)
+    law = body.half.law
+    numerical = solution.error + local.numerical_error + _rule_error(solution, law)
+    if not numerical <= _MAX_ERROR:
+        raise OutOfRange(f"the force of the {shape.name} is right only to {numerical:.1g} of its largest")
+    late = separation[pressed <= local.model_error.trusted_separation]
+    own |= local.variables
+    return local._replace(
+        variables={name: own[name] for name in names},
+        numerical_error=numerical,
+        model_error=local.model_error._replace(trusted_separation=float(late.max()) if late.size else math.nan),
+        pull_off=pull_off_of(body, places, separation, error),
+        warnings=(*local.warnings, *_remarks(solution.error, error)),
+    )
+
+
+def _solved(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solution:
+    """Return the rings at each step; without adhesion, which has no memory, each separation is solved once."""
+    if layer.adhesion.work > 0.0:
+        return solve(layer, shape, separation, error)
+    descending, step = np.unique(-separation, return_inverse=True)
+    solution = solve(layer, shape, -descending, error)
+    return solution._replace(places=[solution.places[number] for number in step.tolist()])
+
+
+def _variables(body: Body, places: list[Place]) -> dict[str, Floats]:
+    """Return the variables of the whole body over the steps."""
+    totals = [body.totals(place) for place in places]
+    return {
+        "force": body.force(places),
+        "contact_area": np.array([total[AREA] for total in totals]),
+        "contact_count": np.array([total[COUNT] for total in totals]),
+        "contact_radius_sum": np.array([total[RADIUS] for total in totals]),
+        "stiffness": np.array([body.stiffness(place) for place in places]),
+        "nominal_contact_radius": np.array([body.contact_radius(place) for place in places]),
+    }
+
+
+def _of_layer(layer: Layer, pressed: Floats, names: list[str]) -> LoadSeparation:
+    """Return the law of the layer along the path of the ring that is pressed most: its errors and its limits."""
+    path = LoadingPath.along(pressed, unload=False, adhesive=layer.adhesion.work > 0.0)
+    return expected.compute(
+        layer.source,
+        path,
+        effective_modulus=layer.effective_modulus,
+        adhesion=layer.adhesion,
+        variables=[name for name in _OF_LAYER if name in names],
+    )
+
+
+def _rule_error(solution: Solution, law: LocalLaw) -> float:
+    """Return the error by the rule over the shape parameters, over the largest pressure of all rings and steps."""
+    peak = max(float(np.abs(place.state.pressure).max()) for place in solution.places)
+    deepest = np.array([law.closest])
+    largest = abs(float(law.pressure(deepest, law.untouched(1))[0][0]))
+    return solution.rule_error * max(largest / peak, 1.0) if peak > 0.0 else 0.0
+
+
+def _remarks(error: float, asked: float) -> list[str]:
+    """Return how far the rings fall short."""
+    if error <= asked:
+        return []
+    return [f"the force of the curved body changes by {error:.2g} of its largest with finer rings; {asked:g} was asked"]
