@@ -1,7 +1,7 @@
 """[conduction]: how the bodies conduct heat and electricity."""
 
 import math
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import BeforeValidator, model_validator
 
@@ -9,13 +9,9 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.variables import CONDUCTANCES
 
-if TYPE_CHECKING:
-    from roughmdr.scene.scene import Scene
-
-
 _Conductivity = Annotated[float, BeforeValidator(Quantity("W/m/K", above=0.0))]
 _Resistivity = Annotated[float, BeforeValidator(Quantity("ohm m", above=0.0))]
-_NEEDED = dict(zip(CONDUCTANCES, ("conductivity", "resistivity"), strict=True))
+NEEDED = dict(zip(CONDUCTANCES, ("conductivity", "resistivity"), strict=True))
 
 
 class ConductionSection(Section):
@@ -31,7 +27,7 @@ class ConductionSection(Section):
 
     @model_validator(mode="after")
     def _of_both_bodies(self) -> "ConductionSection":
-        for key in _NEEDED.values():
+        for key in NEEDED.values():
             other = getattr(self, f"counter_{key}")
             if other is not None and getattr(self, key) is None:
                 raise EntryError(f"counter_{key}", other, f"goes with {key} only, that of the other body")
@@ -39,7 +35,7 @@ class ConductionSection(Section):
             raise mismatch("conduction", "needs conductivity, resistivity, or both")
         for name, factor in self.factors.items():
             if not 0.0 < factor < math.inf:
-                raise EntryError(_NEEDED[name], getattr(self, _NEEDED[name]), "is beyond the range of floats")
+                raise EntryError(NEEDED[name], getattr(self, NEEDED[name]), "is beyond the range of floats")
         return self
 
     @property
@@ -58,10 +54,3 @@ class ConductionSection(Section):
             counter = self.resistivity if self.counter_resistivity is None else self.counter_resistivity
             found["electrical_conductance"] = 4.0 / (self.resistivity + counter)
         return found
-
-
-def check_conduction(scene: "Scene") -> None:
-    """Raise the fault of a conductance that is asked for without what it takes."""
-    for name in scene.output.variables:
-        if name in CONDUCTANCES and name not in scene.conductance_factors:
-            raise mismatch("output.variables", f"{name} needs conduction.{_NEEDED[name]}")

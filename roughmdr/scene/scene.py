@@ -1,70 +1,28 @@
-"""The scene: its sections together, what must agree between them, and what follows from them."""
+"""The scene: its sections, and what must agree between them; its cells and files."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import tomli_w
-from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
+from pydantic import PrivateAttr, model_validator
 
-from roughmdr.ensemble import Asperities
-from roughmdr.errors import Fault, OutOfRange, RoughmdrError, SceneError
-from roughmdr.interaction.settings import Interaction, reason_against_adhesion
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.scene.conduction import ConductionSection
+from roughmdr.errors import Fault, OutOfRange, SceneError
+from roughmdr.interaction.settings import reason_against_adhesion
+from roughmdr.scene.content import Sections
 from roughmdr.scene.description import asperities_in_words, axis_in_words, path_in_words
 from roughmdr.scene.layers import check_layers, with_usual_variables
-from roughmdr.scene.nominal import NominalSection
-from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
-    AdhesionSection,
-    Batch,
-    Body,
-    InteractionSection,
-    MaterialSection,
-    Output,
-    ReferenceSection,
 )
-from roughmdr.scene.sweep import Sweep
-from roughmdr.scene.tangential import TangentialSection
-from roughmdr.scene.viscoelastic import ViscoelasticSection
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
-from roughmdr.schema.material import effective_modulus
-from roughmdr.schema.quantities import Section, WholeNumber
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import printable
 
-_NEGLIGIBLE = 0.01  # of the required error
 
-
-def _check_title(value: object) -> str:
-    if not isinstance(value, str) or not value.isprintable():
-        raise RoughmdrError("must be a text on one line, of characters that can be printed")
-    return value
-
-
-class Scene(Section):
+class Scene(Sections):
     """A whole scene. ``roughmdr.scene.read`` makes one from a file or a dictionary."""
-
-    title: Annotated[str, BeforeValidator(_check_title)]
-    seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
-    material: MaterialSection
-    counter: Body | None = None
-    adhesion: AdhesionSection | None = None
-    asperities: Asperities
-    interaction: InteractionSection | None = None
-    reference: ReferenceSection | None = None
-    conduction: ConductionSection | None = None
-    viscoelastic: ViscoelasticSection | None = None
-    tangential: TangentialSection | None = None
-    nominal: NominalSection | None = None
-    path: FlatPath
-    output: Output = Output()
-    batch: Batch = Batch()
-    accuracy: Accuracy | None = None
-    sweep: InstanceOf[Sweep] = Sweep()
 
     _table: dict[str, Any] = PrivateAttr(default_factory=dict)
     _file: Path | None = PrivateAttr(default=None)
@@ -177,79 +135,6 @@ class Scene(Section):
             raise mismatch("batch.realizations", message)
         if accuracy.method != "auto" and (reason := self.reason_against(accuracy.method)):
             raise mismatch("accuracy.method", f"cannot be {accuracy.method!r}: {reason}")
-
-    def reason_against(self, estimator: str) -> str:
-        """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
-        if estimator == "expected" and self.reference is not None:
-            return "the reference presses single surfaces, which the expected law does not know"
-        if estimator == "expected" and self.needs_positions:
-            return "asperities that feel each other in pairs have positions, which the expected law does not know"
-        return self.asperities.reason_against(estimator)
-
-    @property
-    def estimators(self) -> tuple[str, ...]:
-        """Estimators to choose from: one, or with accuracy.method "auto" one that draws and, if possible, "expected".
-
-        Stratified draws need fewer realisations, but their number of asperities is rounded, which must be negligible.
-        """
-        if self.accuracy is None:
-            return (self.batch.estimator,)
-        if self.accuracy.method != "auto":
-            return (self.accuracy.method,)
-        if self.nominal is not None:
-            return ("expected",)
-        count = self.asperities.expected_count
-        is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
-        drawn = "stratified" if is_whole else "sampled"
-        # Under a machine the expected law is that of a surface without end, not the mean of such patches.
-        alone = self.path.control != "separation" or bool(self.reason_against("expected"))
-        return (drawn,) if alone else (drawn, "expected")
-
-    @property
-    def effective_modulus(self) -> float:
-        """E* [Pa] (H 43)."""
-        material = self.material
-        if material.effective_modulus is not None:
-            return material.effective_modulus
-        assert material.modulus is not None  # as ``MaterialSection`` validates
-        assert material.poisson is not None
-        counter = () if self.counter is None else (self.counter.modulus, self.counter.poisson)
-        return effective_modulus(material.modulus, material.poisson, *counter)
-
-    @property
-    def work(self) -> float:
-        """Work of adhesion [J/m^2]; 0 without adhesion."""
-        return 0.0 if self.adhesion is None else self.adhesion.work
-
-    @property
-    def adhesion_model(self) -> Adhesion:
-        """Adhesion model with its parameters."""
-        return Adhesion() if self.adhesion is None else self.adhesion.adhesion_model
-
-    @property
-    def interaction_model(self) -> Interaction | None:
-        """Interaction with its parameters; None where asperities are independent."""
-        return None if self.interaction is None else self.interaction.interaction_model
-
-    @property
-    def conductance_factors(self) -> dict[str, float]:
-        """Each conductance over the conductance radius [SI], where [conduction] tells it."""
-        return {} if self.conduction is None else self.conduction.factors
-
-    @property
-    def needs_positions(self) -> bool:
-        """Whether the law depends on where the asperities stand."""
-        return self.interaction is not None and self.interaction.model == "pairwise"
-
-    @property
-    def nominal_area(self) -> float | None:
-        """[m2]; None where it is unknown, and under a curved body, which has none."""
-        return self.asperities.nominal_area if self.nominal is None else None
-
-    @property
-    def repeats(self) -> bool:
-        """Whether the surface repeats beyond its patch: as the interaction says, or else as its map says."""
-        return self.asperities.repeats if self.interaction is None else self.interaction.boundary == "periodic"
 
     @property
     def without_grid(self) -> "Scene":
