@@ -29,7 +29,7 @@ class Document(NamedTuple):
 
     @property
     def argument(self) -> Column:
-        """What the value is a function of."""
+        """The column that the value is a function of."""
         return self.columns[0]
 
     @property

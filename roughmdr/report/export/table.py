@@ -27,7 +27,7 @@ class Table(NamedTuple):
     departure: float
     """Difference of the pressure to that of steps left out as a load jumps over them [Pa]; 0 where it is negligible."""
     warnings: tuple[str, ...]
-    """What a user should know before the table is used."""
+    """Parts of the law that the table leaves out, in words."""
 
 
 def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_tension: bool) -> Table:

@@ -33,7 +33,7 @@ _BRANCHES = ("loading", "unloading")
 
 @dataclass(frozen=True)
 class Export:
-    """What is to be exported, and how."""
+    """Choices of an export: the format, the quantity and its error, the units, the branch and the cell."""
 
     to: str
     quantity: str = "pressure"
