@@ -1,1 +1,1 @@
-"""What follows from the finished law of a rough layer."""
+"""Laws that follow from the finished law of a rough layer."""

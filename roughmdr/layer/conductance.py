@@ -37,5 +37,7 @@ def conductances(radius: Floats, factors: Mapping[str, float]) -> dict[str, Floa
         found = {name: factor * radius for name, factor in factors.items()}
     for name, values in found.items():
         if not np.isfinite(values[np.isfinite(radius)]).all():
-            raise OutOfRange(f"{name} is not representable: {factors[name]:g} {CONDUCTANCES[name].units} m-1 is too much")
+            raise OutOfRange(
+                f"{name} is not representable: {factors[name]:g} {CONDUCTANCES[name].units} m-1 of conductivity"
+            )
     return found

@@ -28,7 +28,7 @@ def errors(result: xr.Dataset, name: str = "conductance") -> xr.DataArray:
 def grid_errors(result: xr.Dataset) -> xr.DataArray:
     """Return about the error of boundary elements, over cases and steps."""
     off = _GRID * abs(result["conductance_coarse"] / result["conductance_bem"] - 1.0)
-    return np.maximum(off, _UNKNOWN).where(np.isfinite(off))
+    return off.where(~(off < _UNKNOWN), _UNKNOWN)
 
 
 def bounded(result: xr.Dataset, under_load: bool = False) -> xr.DataArray:
