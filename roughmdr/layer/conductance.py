@@ -38,6 +38,6 @@ def conductances(radius: Floats, factors: Mapping[str, float]) -> dict[str, Floa
     for name, values in found.items():
         if not np.isfinite(values[np.isfinite(radius)]).all():
             raise OutOfRange(
-                f"{name} is not representable: {factors[name]:g} {CONDUCTANCES[name].units} m-1 is too much"
+                f"{name} is not representable: {factors[name]:g} {CONDUCTANCES[name].units} m-1 of conductivity"
             )
     return found

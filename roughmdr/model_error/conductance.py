@@ -8,13 +8,15 @@ from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.model_error.parts import Assumptions, ModelError
 from roughmdr.numerics.arguments import Floats
 
-_INDEPENDENT: dict[Origin, float] = {"asperities": 2.0, "summits": 3.0, "hills": 10.0}
+_INDEPENDENT: dict[Origin, float] = {"asperities": 2.2, "summits": 3.5, "hills": 10.0}
 """Of contacts that do not feel each other, over the root of the contact fraction."""
-_FIRST_ORDER, _THIRD, _SECOND_ORDER, _FIFTH = 2.0, 1.5, 0.15, 2.5
-"""Of separated contacts that are coupled in pairs, over these powers of the contact fraction: (a/D)^3 and (a/D)^5."""
-_OVERLAP = 0.1
-"""Of contacts that overlap, over their share of the force."""
-_HILLS, _SUMMITS = 0.06, 1.3
+_NEAR, _OVERLAP = 0.1, 0.2
+"""Of contacts that are coupled in pairs: over the contact fraction, and over the share of the force of those that
+overlap.
+"""
+_FIRST_ORDER, _THIRD = 2.0, 1.5
+"""What the first order adds, over this power of the contact fraction, as (a/D)^3."""
+_HILLS, _SUMMITS = 0.06, 1.5
 """Of the hills of an isotropic map; of summits, over the root of the contact fraction."""
 
 
@@ -24,13 +26,14 @@ def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensembl
     ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
     contacts that overlap; shape (n,) each.
     """
-    error = _SECOND_ORDER * contact_fraction**_FIFTH + _OVERLAP * overlap
-    if order == 1:
-        error = error + _FIRST_ORDER * contact_fraction**_THIRD
-    if ensemble.origin == "hills":
-        error = error + np.where(contact_fraction > 0.0, _HILLS * math.sqrt(ensemble.anisotropy), 0.0)
+    if ensemble.origin == "hills":  # parts of one surface, whose contacts overlap
+        error = np.where(contact_fraction > 0.0, _HILLS * math.sqrt(ensemble.anisotropy), 0.0)
+    else:
+        error = _NEAR * contact_fraction + _OVERLAP * overlap
     if ensemble.origin == "summits":
         error = error + _SUMMITS * np.sqrt(contact_fraction)
+    if order == 1:
+        error = error + _FIRST_ORDER * contact_fraction**_THIRD
     return np.minimum(error, 1.0)
 
 
