@@ -13,7 +13,7 @@ from roughmdr.batch.reference import check_surface, reference_variables
 from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
-from roughmdr.layer.tangential import Path, neglected
+from roughmdr.layer.tangential import Path, neglected, unneeded
 from roughmdr.loading.lateral import LateralPath
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
@@ -22,7 +22,7 @@ from roughmdr.scene.lateral import displacements
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import LATERAL, OUTPUT_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, LATERAL, OUTPUT_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -248,7 +248,9 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     if scene.reference is None:
         yield "boundary elements: the scene has no [reference]"
-    if unasked := [name for name in OUTPUT_VARIABLES if name not in scene.output.variables]:
+    yield from unneeded(scene)
+    available = CURVE_VARIABLES if scene.tangential is None else OUTPUT_VARIABLES
+    if unasked := [name for name in available if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"
