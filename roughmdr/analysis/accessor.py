@@ -85,6 +85,7 @@ class Analysis:
             ``work_of_loading``, ``work_of_unloading`` (regained) and ``energy_lost``, their difference [J], each with
             ``NAME_interpolation_error`` [J]: how far the trapezoid rule changes where every other step is left out,
             and by jumps, which may cancel in that. ``dissipated_energy`` [J] at the last step, where the result has it.
+            Of a lateral path they are those of the tangential force, with ``friction_energy`` [J].
 
         Raises
         ------

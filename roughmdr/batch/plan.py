@@ -14,7 +14,7 @@ from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.batch.viscoelastic import check_path, time_of
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
-from roughmdr.layer.tangential import Path, neglected
+from roughmdr.layer.tangential import Path, neglected, unneeded
 from roughmdr.loading.lateral import LateralPath
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
@@ -23,7 +23,7 @@ from roughmdr.scene.lateral import displacements
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import LATERAL, NOMINAL_VARIABLES, OUTPUT_VARIABLES, TIME
+from roughmdr.variables import CURVE_VARIABLES, LATERAL, NOMINAL_VARIABLES, OUTPUT_VARIABLES, TIME
 
 
 class Cell(NamedTuple):
@@ -261,7 +261,9 @@ def _left_out(scene: Scene) -> Iterator[str]:
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     yield from _without_section(scene)
-    if unasked := [name for name in OUTPUT_VARIABLES if name not in scene.output.variables]:
+    yield from unneeded(scene)
+    available = CURVE_VARIABLES if scene.tangential is None else OUTPUT_VARIABLES
+    if unasked := [name for name in available if name not in scene.output.variables]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"

@@ -16,6 +16,7 @@ from roughmdr.schema.wording import short_repr, suggestion
 OFFSET = "offset"
 """The separation, or position of the far end, of the scene where the measurement reads 0."""
 MACHINE = "path.machine_stiffness"
+_FITTED = {*SECTIONS} - {"tangential"}  # on which a normal law depends
 _WIDEST = math.log(1e4)  # of a logarithm, from its start
 _FARTHEST = 1e4  # of other numbers from their start, in their scale
 _NEARBY = math.log(5.0)  # where other starts are sought
@@ -59,7 +60,7 @@ def free_parameters(free: list[str], scene: Scene, table: dict[str, Any], curve:
     readers = {
         key: reader
         for key, reader in key_readers([Scene], table)
-        if key.split(".")[0] in SECTIONS or (key == MACHINE and curve.control == "remote")
+        if key.split(".")[0] in _FITTED or (key == MACHINE and curve.control == "remote")
     }
     parameters, faults = [], []
     for position, key in enumerate(free):

@@ -31,6 +31,14 @@ def tangential_of(scene: Scene) -> Tangential | None:
     return Tangential(scene.effective_modulus, ratio, math.nan if friction is None else friction)
 
 
+def unneeded(scene: Scene) -> Iterator[str]:
+    """Yield what a scene does not need of lateral forces, and why, as lines "part: reason"."""
+    if scene.tangential is None:
+        yield "lateral forces: the scene has no [tangential]"
+    elif scene.path.lateral is None:
+        yield "slip: the scene has no path.lateral"
+
+
 def neglected(scene: Scene, names: Iterable[str]) -> Iterator[str]:
     """Yield what the theory neglects in lateral forces of a scene that are among the ``names``, or lie on its path."""
     bodies = bodies_of(scene.material, scene.counter)

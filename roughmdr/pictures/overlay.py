@@ -18,6 +18,7 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.storage.labelled import Labelled
 from roughmdr.theory.equal_summits import Variable
+from roughmdr.variables import LATERAL
 
 # Variables of a result: the theory's variable, and whether it is per unit of nominal area.
 _THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
@@ -36,7 +37,8 @@ def plan_of_result(file: Path | None, result: Labelled) -> Plan:
     SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
     """
     if control_of(result) != "separation":
-        raise StoreError(f"{file or 'result'}: theories and the expected law are over separation, not under a machine")
+        where = "on a lateral path" if control_of(result) == LATERAL.name else "under a machine"
+        raise StoreError(f"{file or 'result'}: theories and the expected law are over separation, not {where}")
     plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), controlled_values(result)
     planned = np.array([cell.values for cell in plan.cells])
     if (

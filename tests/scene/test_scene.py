@@ -131,7 +131,7 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"batch": {"realizations": 0}}, "batch.realizations = 0: must be from 1"),
         ({"batch": {"realizations": True}}, "batch.realizations = True: expected a whole number"),
         ({"seed": -1}, "seed = -1"),
-        ({"conduction": {"resistivity": 1.0}}, "conduction: unknown key"),
+        ({"convection": {"resistivity": 1.0}}, "convection: unknown key"),
         ({"asperities": {"source": "surface", "file": __file__}}, "batch.realizations: must be 1 with source"),
             ({"asperities": {"source": "surface", "file": "a.nc"}}, "asperities.file = '.*a.nc': no such file"),
             ({"path": {"separation": ["1e999 sigma"]}}, "expected a finite number"),
