@@ -39,11 +39,7 @@ REFERENCE_VARIABLES = declare(
 """Variables of a law by boundary elements beside that of the asperities."""
 
 NOMINAL_VARIABLES = declare(
-    (
-        "nominal_contact_radius",
-        "m",
-        "effective radius of the nominal contact, 3 pi/4 int(r p dr)/int(p dr), p of contacts that push",
-    ),
+    ("nominal_contact_radius", "m", "effective radius of the pressure of the contacts that push under a curved body"),
 )
 """Variables of a law under a curved body beside those asked for."""
 
