@@ -66,11 +66,7 @@ LATERAL = Variable("lateral", "m", "lateral displacement of the flat, from rest"
 """The coordinate of a lateral path, on which a separation or a load is held."""
 
 NOMINAL_VARIABLES = declare(
-    (
-        "nominal_contact_radius",
-        "m",
-        "effective radius of the nominal contact, 3 pi/4 int(r p dr)/int(p dr), p of contacts that push",
-    ),
+    ("nominal_contact_radius", "m", "effective radius of the pressure of the contacts that push under a curved body"),
 )
 """Variables of a law under a curved body beside those asked for."""
 

@@ -70,10 +70,10 @@ class Body(NamedTuple):
         return -float((self.rings.area_weights * place.state.slope * place.response).sum())
 
     def contact_radius(self, place: Place) -> float:
-        """Return the effective radius of the nominal contact [m], 3 pi/4 ∫ r p dr / ∫ p dr, p of the contacts that push;
-        0 without any.
+        """Return the effective radius of the nominal contact [m], 3 pi/4 ∫ r p dr / ∫ p dr; 0 without contact.
 
-        Without adhesion it is Greenwood and Tripp's, which under Hertz's pressure is his radius.
+        p is the pressure of the contacts that push, which has a meaning at pull-off too. Without adhesion the radius is
+        Greenwood and Tripp's, which under Hertz's pressure is his.
         """
         load = self.half.law.pushing(place.state.s, place.memory) * self.rings.weights
         whole = float(load.sum())

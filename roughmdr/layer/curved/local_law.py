@@ -111,7 +111,7 @@ class LocalLaw(NamedTuple):
 
     def totals(self, s: Floats, lowest: Floats) -> dict[int, Floats]:
         """Return the totals per area of ``ROWS`` at separations s [m] with contacts above ``lowest`` [node, ring]."""
-        found = self._summed(s, lowest, len(ROWS)) if self.table is None else _read(self.table, s, len(ROWS))
+        found: Floats = self._summed(s, lowest, len(ROWS)) if self.table is None else _read(self.table, s, len(ROWS))
         return dict(zip(ROWS, found, strict=True))
 
     def pushing(self, s: Floats, lowest: Floats) -> Floats:
@@ -119,14 +119,14 @@ class LocalLaw(NamedTuple):
         if not self.adhesive:
             return self.pressure(s, lowest)[0]
         unloaded = [float(node.contact.at_force(np.zeros(1))["indentation"][0]) for node in self.nodes]
-        return self._summed(s, np.maximum(lowest, s + np.array(unloaded)[:, None]), 1)[0]
+        return np.asarray(self._summed(s, np.maximum(lowest, s + np.array(unloaded)[:, None]), 1)[0])
 
     def _summed(self, s: Floats, lowest: Floats, rows: int) -> Floats:
         """Return the first ``rows`` totals per area, summed over the nodes: [row, ring]."""
         found = np.zeros((rows, s.size))
         for node, edge in zip(self.nodes, lowest, strict=True):
             found += node.fraction * _integrals(node, s, edge, rows)
-        return self.density * found
+        return np.asarray(self.density * found)
 
 
 def _integrals(node: QuadratureNode, s: Floats, lowest: Floats, rows: int) -> Floats:
