@@ -155,6 +155,16 @@ NAYAK = Paper(
     "398-407",
     "10.1115/1.3451608",
 )
+GREENWOOD_TRIPP = Paper(
+    "Greenwood1967",
+    ("J. A. Greenwood", "J. H. Tripp"),
+    "The elastic contact of rough spheres",
+    "Journal of Applied Mechanics",
+    1967,
+    "34",
+    "153-159",
+    "10.1115/1.3607616",
+)
 GREENWOOD = Paper(
     "Greenwood2006",
     ("J. A. Greenwood",),

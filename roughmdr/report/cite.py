@@ -184,6 +184,8 @@ def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
         yield "roughness", papers.GREENWOOD
     if used.values("asperities.hurst"):
         yield "roughness", papers.PERSSON
+    if "nominal" in used.table or any(key.startswith("nominal.") for key in used.table.get("sweep", {})):
+        yield "curvature", papers.GREENWOOD_TRIPP
 
 
 def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:

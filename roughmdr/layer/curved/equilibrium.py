@@ -19,7 +19,7 @@ _MAX_STEPS, _MAX_HALVINGS = 60, 12
 _MAX_DAMPED = 2000
 _FIRST_DURATION, _GROWTH = 1.0, 2.0  # of a damped step, over the time in which a ring alone comes to rest
 _SHORT, _LONG = 1e-12, 1e3  # of these durations: no progress, and hardly any damping
-_STRIDE = 0.5  # of the scale of the layer: the farthest that a ring goes in one damped step
+_NEARLY_LINEAR = 0.25  # of the residual: how far a damped step may miss its linear prediction
 
 
 class Half(NamedTuple):
@@ -84,24 +84,22 @@ def _newton(half: Half, rigid: Floats, memory: Floats, start: Floats, tolerance:
 
 
 def _damped(half: Half, rigid: Floats, memory: Floats, start: Floats, tolerance: float) -> State | None:
-    """Return the equilibrium at which damped rings come to rest: steps of the linearly implicit Euler method, the
-    longer the nearer they are to rest (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
+    """Return the equilibrium at which damped rings come to rest: steps of the linearly implicit Euler method, as long
+    as the residual stays near its linear prediction (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
     """
     state, duration = state_at(half, rigid, memory, start), _FIRST_DURATION
     for _ in range(_MAX_DAMPED):
-        step, stable = linear_response(half, state, -state.residual, 1.0 / duration)
-        largest = float(np.abs(step).max())
         if duration >= _LONG and (found := _newton(half, rigid, memory, state.s, tolerance)) is not None:
             return found
-        if not stable or not largest <= _STRIDE * half.law.scale + tolerance:
-            if duration < _SHORT:
-                return None
-            duration /= _GROWTH
-            continue
+        if not duration > _SHORT:
+            return None
+        step, stable = linear_response(half, state, -state.residual, 1.0 / duration)
         trial = state_at(half, rigid, memory, state.s + step)
-        falls = float(np.abs(trial.residual).max()) < float(np.abs(state.residual).max())
-        duration *= _GROWTH if falls or largest <= tolerance else 1.0
-        state = trial
+        off = float(np.abs(trial.residual + step / duration).max())
+        if stable and off <= max(_NEARLY_LINEAR * float(np.abs(state.residual).max()), tolerance):
+            state, duration = trial, duration * _GROWTH
+        else:
+            duration /= _GROWTH
     return None
 
 

@@ -40,7 +40,8 @@ class LocalLaw(NamedTuple):
     scale: float
     """The width of the heights [m], over which the pressure changes."""
     closest: float
-    """The least separation [m] that the tables are for; where a solution is sought, closer ones count as this one."""
+    """The least separation [m] that the tables are for; beyond it the pressure is taken to stay the same, which lets
+    rings come so close that one sees what tables they need."""
     table: AdaptiveTable | None = None
     """``ROWS`` per area over the separation."""
 
@@ -95,10 +96,18 @@ class LocalLaw(NamedTuple):
 
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p [Pa] and dp/ds [Pa/m] at separations s [m], which are reached in one go after ``memory``."""
-        s = np.maximum(s, self.closest)
-        if self.table is not None:
-            pressure, stiffness = _read(self.table, s, _OF_SLOPE)
-            return pressure, -stiffness
+        within = np.maximum(s, self.closest)
+        pressure, slope = self._tabulated(within) if self.table is not None else self._remembered(within, memory)
+        return pressure, np.where(s < self.closest, 0.0, slope)
+
+    def _tabulated(self, s: Floats) -> tuple[Floats, Floats]:
+        """Return p and dp/ds without adhesion."""
+        assert self.table is not None
+        pressure, stiffness = _read(self.table, s, _OF_SLOPE)
+        return pressure, -stiffness
+
+    def _remembered(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
+        """Return p and dp/ds with adhesion, contacts that are made or lost as s changes included."""
         lowest = self.remember(s, memory)
         pressure, stiffness = self._summed(s, lowest, _OF_SLOPE)
         slope = -stiffness
@@ -106,7 +115,7 @@ class LocalLaw(NamedTuple):
             touching, detaching = _end_forces(node)
             gained = np.where(edge < before, touching, np.where(edge > before, detaching, 0.0))
             made = np.where(gained != 0.0, gained * _density(node.heights, edge - node.heights.origin), 0.0)
-            slope -= self.density * node.fraction * made  # contacts that are made, or lost, as s changes
+            slope -= self.density * node.fraction * made
         return pressure, slope
 
     def totals(self, s: Floats, lowest: Floats) -> dict[int, Floats]:
