@@ -33,6 +33,7 @@ class _Nominal(Section):
             if name not in shape.units:
                 raise EntryError(name, self._given[name], f"is no parameter of the {shape.name}: {_listed(shape)}")
         try:
+            shape.parameter_set(set(self._given))
             _ = self.body
         except ShapeError as error:
             raise EntryError("shape", self.shape, str(error)) from None

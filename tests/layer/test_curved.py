@@ -1,4 +1,4 @@
-"""A curved body on a rough layer: the half-space, Hertz, JKR, rigid bulk, a twin by ring kernels, units, properties."""
+"""A curved body on a rough layer: half-space, Hertz, JKR, rigid bulk, a twin by ring kernels, units, properties."""
 
 import math
 from typing import Any
@@ -65,7 +65,7 @@ def test_the_half_space_under_hertz_pressure_converges_inside_and_outside() -> N
 
 
 def smooth_error(elements: int) -> float:
-    """Error of u under p = exp(-2 r^2), whose q is sqrt(pi/2) exp(-2 x^2), and whose u has a Bessel function."""
+    """Error of u under p = exp(-2 r^2), whose q is sqrt(pi/2) exp(-2 x^2); u is by a Bessel function."""
     from scipy.special import ive
 
     rings = Rings.between(np.linspace(0.0, 4.0, elements + 1))

@@ -1,0 +1,140 @@
+"""[nominal]: its shapes, what it does not go with, and a run, a sweep and a plan of it."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from scenes import ASPERITIES, scene
+
+import roughmdr as rm
+from roughmdr.batch.plan import make_plan
+from roughmdr.scene import read
+from roughmdr.shapes import Cone, Paraboloid, PowerLaw
+
+EXPECTED = {"estimator": "expected"}
+PATH = {"separation": {"start": "3 sigma", "stop": "0 sigma", "steps": 5}, "unload": True}
+LAYER = {**ASPERITIES, "radius": "50 um"}
+
+
+def curved(**changes: Any) -> dict[str, Any]:
+    return scene(
+        **{"nominal": {"radius": "10 mm"}, "batch": EXPECTED, "path": PATH, "adhesion": None, "asperities": LAYER}
+        | changes
+    )
+
+
+@pytest.mark.parametrize(
+    ("section", "body"),
+    [
+        ({"radius": "10 mm"}, Paraboloid(radius=0.01)),
+        ({"shape": "cone", "slope": 0.1}, Cone(slope=0.1)),
+        (
+            {"shape": "power_law", "exponent": 4, "width": "1 mm", "rise": "1 um"},
+            PowerLaw(exponent=4.0, width=1e-3, rise=1e-6),
+        ),
+    ],
+)
+def test_a_body_is_a_shape_with_its_parameters(section: dict[str, Any], body: object) -> None:
+    nominal = read(curved(nominal=section)).nominal
+    assert nominal is not None
+    assert nominal.body == body
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"nominal": {}}, "nominal.shape.*it takes radius"),
+        ({"nominal": {"radius": "-1 mm"}}, "nominal.radius.*above 0"),
+        ({"nominal": {"radius": "1 mm", "slope": 0.1}}, "nominal.slope.*no parameter of the paraboloid"),
+        ({"nominal": {"radius": "1 mm", "error": 0.5}}, "nominal.error.*at most 0.01"),
+        ({"nominal": {"shape": "tabulated"}}, "nominal.shape"),
+        ({"batch": {"realizations": 4}}, 'batch.estimator: must be "expected"'),
+        ({"batch": None, "accuracy": {"relative": 0.01, "method": "sampled"}}, 'accuracy.method: must be "expected"'),
+        ({"interaction": {"model": "mean_field"}}, "nominal: does not go with .interaction."),
+        ({"path": {"force": {"stop": "1 mN", "steps": 5}}}, "goes with path.separation, not with path.force"),
+        (
+            {"path": {"separation": {"start": "clear", "stop": {"contact_fraction": 0.01}, "steps": 5}}},
+            "path.separation.stop.contact_fraction: does not go",
+        ),
+        ({"output": {"variables": ["force", "pressure"]}}, "'pressure' is not available with .nominal."),
+        ({"adhesion": {"model": "dugdale", "work": 0.05, "strength": "1 MPa"}}, "rings remember contacts of model"),
+        (
+            {
+                "adhesion": {"model": "jkr", "work": 0.05},
+                "asperities": {**LAYER, "shape": "truncated_paraboloid", "flat_radius": "1 um"},
+            },
+            "several stable branches",
+        ),
+        ({"asperities": {**LAYER, "height": "1 um"}}, "all heights are the same"),
+    ],
+)
+def test_what_does_not_go_with_it_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(rm.SceneError, match=message):
+        read(curved(**changes))
+
+
+def test_a_run_holds_the_law_of_the_body(tmp_path: Path) -> None:
+    variables = ["force", "stiffness", "contact_area", "contact_count", "contact_radius_sum", "model_error_curve"]
+    table = curved(output={"variables": variables})
+    result = rm.run(table, tmp_path / "out.nc", workers=1)
+    assert result.status.item() == 0
+    assert 0.0 < result.numerical_error.item() < 1e-4
+    for name in (*variables, "nominal_contact_radius"):
+        assert np.isfinite(result[name]).all(), name
+    assert (np.diff(result.force[0, :5]) > 0.0).all()
+    np.testing.assert_array_equal(result.force[0, 5:], result.force[0, 4::-1])  # no memory
+    assert "nominal_area" not in result
+    assert result.attrs["nominal"] == "paraboloid"
+    assert result.pull_off_force.item() == 0.0 or np.isnan(result.pull_off_force.item())
+    again = xr.open_dataset(tmp_path / "out.nc")
+    np.testing.assert_array_equal(again.force, result.force)
+
+
+def test_a_sweep_of_radii_is_the_same_for_any_number_of_workers() -> None:
+    table = curved(
+        adhesion={"model": "jkr", "work": "1 mJ/m^2"},
+        sweep={"nominal.radius": ["1 mm", "10 mm"]},
+        output={"keep": "statistics"},
+    )
+    one, two = (rm.run(table, workers=workers) for workers in (1, 2))
+    assert one.sizes["nominal_radius"] == 2
+    np.testing.assert_array_equal(one.force_mean, two.force_mean)
+    assert (one.force_mean[1, 4] > one.force_mean[0, 4]).all()
+    assert (one.pull_off_force_mean <= 0.0).all()
+
+
+def test_accuracy_takes_the_expected_law() -> None:
+    result = rm.run(curved(batch=None, accuracy={"relative": 1e-3}))
+    assert result.accuracy_method.item() == 2
+
+
+def test_a_clear_start_is_clear_of_the_half_space_too() -> None:
+    body = {"shape": "paraboloid", "radius": "10 mm"}
+    path = {"separation": {"start": "clear", "stop": "0 sigma", "steps": 5}}
+    adhesion = {"model": "jkr", "work": "50 mJ/m^2"}
+    here, flat = (
+        make_plan(read(curved(nominal=nominal, path=path, adhesion=adhesion))).cells[0].path.separation[0]
+        for nominal in (body, None)
+    )
+    drawn_up = rm.pull_off(
+        Paraboloid(radius=0.01), effective_modulus=3e6 / (1 - 0.49**2), work=0.05, control="displacement"
+    )
+    assert here - flat == pytest.approx(-drawn_up.indentation.item(), rel=1e-6)
+
+
+def test_what_decides_its_numbers_is_in_the_key_of_its_cell() -> None:
+    bodies = [{"radius": "10 mm"}, {"radius": "11 mm"}, {"radius": "10 mm", "error": 1e-3}, None]
+    keys = {str(rm.run(curved(nominal=body)).cell_key.item()) for body in bodies}
+    assert len(keys) == 4
+
+
+def test_a_scene_without_it_says_so() -> None:
+    assert "curvature of the bodies: the scene has no [nominal]" in make_plan(read(scene())).left_out
+    assert not any("curvature" in line for line in make_plan(read(curved())).left_out)
+
+
+def test_its_paper_is_cited() -> None:
+    assert "rough spheres" in rm.cite(read(curved()))
+    assert "rough spheres" not in rm.cite(read(scene()))
