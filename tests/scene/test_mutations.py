@@ -154,6 +154,22 @@ BASES: dict[str, dict[str, Any]] = {
             "unload": True,
         },
     },
+    **{
+        f"a body: {', '.join(body)}": {
+            **{key: value for key, value in SCENE.items() if key != "adhesion"},
+            "nominal": {**body, "error": 1e-2},
+            "path": {"separation": ["1 sigma", "0.5 sigma"]},
+            "batch": {"estimator": "expected"},
+        }
+        for body in (
+            {"radius": "10 mm"},
+            {"shape": "cone", "slope": 1e-3},
+            {"shape": "capped_paraboloid", "radius": "5 mm", "cap_radius": "10 mm", "blend_radius": "0.1 mm"},
+            {"shape": "rounded_punch", "flat_radius": "0.2 mm", "edge_radius": "10 mm"},
+            {"shape": "power_law", "exponent": 3.0, "width": "1 mm", "rise": "50 um"},
+            {"shape": "power_law", "exponent": 3.0, "coefficient": 5e4},
+        )
+    },
     "relaxation": {
         **{key: value for key, value in SCENE.items() if key != "adhesion"},
         "viscoelastic": {
