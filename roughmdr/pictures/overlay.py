@@ -88,6 +88,8 @@ def _evaluate_cells(
 
 def _evaluate_curve(curve: TheoryCurve, names: list[str], cell: Cell) -> dict[str, Floats]:
     """Return those of the variables that a theory curve gives in a cell; RoughmdrError if it gives none."""
+    if cell.scene.nominal is not None:
+        raise RoughmdrError("the scene has [nominal], and theories are of a flat")
     known = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
     given = {name: (variable, per_area) for name, (variable, per_area) in known.items() if variable in curve.variables}
     if not given:
