@@ -105,6 +105,8 @@ def _scale_of(name: str) -> _Factors | None:
 
 def _checked(scene: Scene) -> Scene:
     shape = scene.asperities.shape_name
+    if scene.nominal is not None:
+        raise StoreError("normalise needs a flat that presses all asperities alike; this scene has [nominal]")
     if shape != "paraboloid":
         raise StoreError(f"normalise needs paraboloids, which have a radius; the asperities of this scene are {shape}s")
     return scene

@@ -92,6 +92,8 @@ def _evaluate_curve(curve: TheoryCurve, names: list[str], cell: Cell) -> dict[st
     """Return those of the variables that a theory curve gives in a cell; RoughmdrError if it gives none."""
     if cell.scene.viscoelastic is not None:
         raise RoughmdrError("it is elastic, and the scene is not")
+    if cell.scene.nominal is not None:
+        raise RoughmdrError("the scene has [nominal], and theories are of a flat")
     known = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
     given = {name: (variable, per_area) for name, (variable, per_area) in known.items() if variable in curve.variables}
     if not given:

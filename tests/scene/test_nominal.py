@@ -138,3 +138,11 @@ def test_a_scene_without_it_says_so() -> None:
 def test_its_paper_is_cited() -> None:
     assert "rough spheres" in rm.cite(read(curved()))
     assert "rough spheres" not in rm.cite(read(scene()))
+
+
+def test_laws_of_a_flat_are_not_taken_for_that_of_a_body(tmp_path: Path) -> None:
+    result = rm.run(curved())
+    with pytest.raises(rm.StoreError, match=r"this scene has .nominal."):
+        result.roughmdr.normalise("gw")
+    with pytest.warns(UserWarning, match="theories are of a flat"):
+        rm.plot(result, tmp_path / "law.png", with_theory=True, variables="force")
