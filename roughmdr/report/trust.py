@@ -99,7 +99,8 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        alone = {"viscoelastic", "nominal"} & parse_toml(result.attrs["scene"]).keys()
+        table = parse_toml(result.attrs.get("scene", ""))  # a law of one ensemble has none
+        alone = {"viscoelastic", "nominal"} & table.keys()
         advise = LATERAL.name not in result.coordinates and not alone
         curved = "nominal" in result.attrs
         yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, advise=advise, curved=curved)

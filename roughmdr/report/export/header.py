@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from roughmdr.report.conduction import conduction_lines
 from roughmdr.report.export.law import Quantity
 from roughmdr.report.export.table import Table
 from roughmdr.report.export.thin import RELATIVE_FROM
@@ -12,6 +13,7 @@ from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result.layout import estimator_of, realizations_of
 from roughmdr.storage.labelled import Labelled
+from roughmdr.variables import CONDUCTANCES, TIME
 
 
 def origin_lines(cell: Labelled, words: str) -> Iterator[tuple[str, str]]:
@@ -60,6 +62,10 @@ def table_lines(
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
+    if variable in CONDUCTANCES:
+        yield from conduction_lines(cell)
+    if TIME.name in cell.coordinates:
+        yield "motion", "the law of a viscoelastic body at the speed of the scene: at another speed it is another"
     for warning in table.warnings:
         yield "warning", warning
 

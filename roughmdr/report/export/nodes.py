@@ -31,8 +31,10 @@ def nodes_document(
     scene = planned.scene
     if reason := scene.reason_against("expected"):
         raise StoreError(f"quantity 'nodes' is of the expected law, which there is none of: {reason}")
-    if scene.interaction is not None:
-        raise StoreError("quantity 'nodes' is of independent asperities, and the scene has an [interaction]")
+    if others := [key for key in ("interaction", "viscoelastic", "nominal") if getattr(scene, key) is not None]:
+        raise StoreError(f"quantity 'nodes' is of independent elastic asperities under a flat; scene has [{others[0]}]")
+    if scene.path.lateral is not None:
+        raise StoreError("quantity 'nodes' is along a path of separations, and the scene has path.lateral")
     found = few_asperities(
         scene.asperities,
         planned.path,
