@@ -117,6 +117,7 @@ def quantity_pattern(dimension: str) -> str:
 
 def _any_spelling(unit: str) -> str:
     """Return a regular expression of all spellings of a unit, as ``unit_factor`` takes them for one."""
+    unit = re.sub(r"([*()])", r"\\\1", unit)
     power = r"(?:\^|\*\*)"
     square = rf"m(?:{power}2|²)"
     for spelled, pattern in (("/m^2", f"(?:/{square}| m{power}?-2)"), ("m^2", square), ("m^-2", f"m{power}-2")):
