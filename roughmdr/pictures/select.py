@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.result.layout import cell_label, controlled_values, swept_sizes
 from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.units import dimension_of
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES
@@ -105,7 +106,7 @@ def _index(key: str, value: object, coordinate: Array) -> int:
             raise StoreError(f"select: {key} = {shown} is not in the result{available}")
         return int(found[0])
     try:
-        number = Quantity(_dimension(coordinate))(value)
+        number = Quantity(dimension_of(str(coordinate.attrs.get("units", "1"))))(value)
     except RoughmdrError as error:
         raise StoreError(f"select: {key} = {shown}: {error}") from None
     nearest = int(np.argmin(np.abs(values - number)))
@@ -114,9 +115,3 @@ def _index(key: str, value: object, coordinate: Array) -> int:
         more = ", ..." if values.size > 12 else ""
         raise StoreError(f"select: {key} = {shown} is not in the result; it has {listed}{more} (in SI)")
     return nearest
-
-
-def _dimension(coordinate: Array) -> str:
-    """Return the unit of a coordinate as readers of quantities have it."""
-    unit = str(coordinate.attrs.get("units", "1"))
-    return {"J m-2": "J/m^2", "N m-1": "N/m"}.get(unit, unit)

@@ -13,7 +13,7 @@ from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.lateral import HELD
 from roughmdr.scene.separation import CLEAR, Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS
+from roughmdr.schema.units import DIMENSIONLESS, spelled_in_results
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS
@@ -90,8 +90,7 @@ class Sweep:
         """Return the swept values over their dimensions."""
         coordinates = {}
         for axis in self.axes:
-            spelled = axis.unit.replace("/m^2", " m-2").replace("/m", " m-1")
-            unit = {"units": spelled} if axis.values.dtype.kind != "U" else {}
+            unit = {"units": spelled_in_results(axis.unit)} if axis.values.dtype.kind != "U" else {}
             dimension = "cell" if self.mode == "zip" else axis.name
             coordinates[axis.name] = Array((dimension,), axis.values, {**unit, "long_name": axis.long_name})
         return coordinates

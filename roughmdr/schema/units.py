@@ -58,7 +58,15 @@ _EXAMPLES = {
     "W/K": '"3 mW/K"', "S": '"2 kS"',
 }  # fmt: skip
 _SHOWN = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-_SPELLED = {"m2": "m^2", "J m-2": "J/m^2", "N m-1": "N/m", "m-2": "/m^2", "W K-1": "W/K"}
+_SPELLED = {
+    "m2": "m^2",
+    "J m-2": "J/m^2",
+    "N m-1": "N/m",
+    "m-2": "/m^2",
+    "W K-1": "W/K",
+    "W m-1 K-1": "W/m/K",
+    "m s-1": "m/s",
+}
 """Units as results have them, in the spelling of a scene."""
 _POWERS = {"m^2": 2, "/m^2": -2}
 _DIGITS, _ERROR_DIGITS = 4, 2
@@ -103,6 +111,18 @@ def unit_factor(unit: str, dimension: str) -> Decimal:
     others = [f"{unit!r} is a unit of {other}" for other in _BASES if spelled in _table(other)]
     found = others[0] if others else f"unknown unit {short_repr(unit)}"
     raise RoughmdrError(f"{found}; expected a unit of {dimension}, like {_EXAMPLES.get(dimension, 'a plain number')}")
+
+
+def spelled_in_results(unit: str) -> str:
+    """Return a unit of a scene as results spell it: "J/m^2" as "J m-2"."""
+    above, *below = unit.split("/")
+    powers = [f"{name}-{power or 1}" for name, _, power in (part.partition("^") for part in below)]
+    return " ".join(filter(None, [above, *powers]))
+
+
+def dimension_of(unit: str) -> str:
+    """Return a unit of a result as readers of quantities have it: "J m-2" as "J/m^2"."""
+    return {spelled_in_results(base): base for base in _BASES}.get(unit, unit)
 
 
 def quantity_pattern(dimension: str) -> str:

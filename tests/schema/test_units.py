@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import adheres
-from roughmdr.schema.units import _BASES, format_quantity, quantity
+from roughmdr.schema.units import _BASES, dimension_of, format_quantity, quantity, spelled_in_results
 
 
 @pytest.mark.parametrize(
@@ -115,3 +115,11 @@ def test_a_quantity_is_shown_with_a_prefix(arguments: dict[str, float], text: st
 )
 def test_a_scene_adheres_where_it_has_a_work_in_any_cell(table: dict[str, object], expected: bool) -> None:
     assert adheres(table) is expected
+
+
+@pytest.mark.parametrize("unit", _BASES)
+def test_a_result_spells_a_unit_so_that_its_dimension_is_found_again(unit: str) -> None:
+    assert dimension_of(spelled_in_results(unit)) == unit
+    assert "/" not in spelled_in_results(unit)
+    value = quantity(format_quantity(0.25, spelled_in_results(unit)), unit)
+    assert value == pytest.approx(0.25)
