@@ -1,5 +1,6 @@
 """The conductances of a rough layer, from the conductance radius of its contacts: proportional to conductivities."""
 
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -33,11 +34,11 @@ def conductances(radius: Floats, factors: Mapping[str, float]) -> dict[str, Floa
 
     OutOfRange where one is not representable.
     """
+    conducting = radius[np.isfinite(radius) & (radius > 0.0)]
     with np.errstate(over="ignore"):  # refused below
         found = {name: factor * radius for name, factor in factors.items()}
-    for name, values in found.items():
-        if not np.isfinite(values[np.isfinite(radius)]).all():
-            raise OutOfRange(
-                f"{name} is not representable: {factors[name]:g} {CONDUCTANCES[name].units} m-1 of conductivity"
-            )
+    for name, factor in factors.items():
+        largest = factor * float(conducting.max(initial=0.0))
+        if not largest < math.inf or (conducting.size and largest == 0.0):
+            raise OutOfRange(f"{name} is not representable: {factor:g} {CONDUCTANCES[name].units} m-1 of conductivity")
     return found

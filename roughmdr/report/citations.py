@@ -127,24 +127,6 @@ LONGUET_HIGGINS = Paper(
     "321-387",
     "10.1098/rsta.1957.0002",
 )
-HOLM = Paper(
-    "Holm1967",
-    ("R. Holm",),
-    "Electric Contacts: Theory and Application",
-    "Springer",
-    1967,
-    doi="10.1007/978-3-662-06688-1",
-    kind="book",
-)
-BARBER = Paper(
-    "Barber2003",
-    ("J. R. Barber",),
-    "Bounds on the electrical resistance between contacting elastic rough bodies",
-    "Proceedings of the Royal Society of London A",
-    2003,
-    "459",
-    "53-66",
-)
 NAYAK = Paper(
     "Nayak1971",
     ("P. R. Nayak",),
@@ -154,16 +136,6 @@ NAYAK = Paper(
     "93",
     "398-407",
     "10.1115/1.3451608",
-)
-GREENWOOD_TRIPP = Paper(
-    "Greenwood1967",
-    ("J. A. Greenwood", "J. H. Tripp"),
-    "The elastic contact of rough spheres",
-    "Journal of Applied Mechanics",
-    1967,
-    "34",
-    "153-159",
-    "10.1115/1.3607616",
 )
 GREENWOOD = Paper(
     "Greenwood2006",
@@ -184,26 +156,6 @@ PERSSON = Paper(
     "17",
     "R1-R62",
     "10.1088/0953-8984/17/1/R01",
-)
-LEE_RADOK = Paper(
-    "Lee1960",
-    ("E. H. Lee", "J. R. M. Radok"),
-    "The contact problem for viscoelastic bodies",
-    "Journal of Applied Mechanics",
-    1960,
-    "27",
-    "438-444",
-    "10.1115/1.3644020",
-)
-TING = Paper(
-    "Ting1966",
-    ("T. C. T. Ting",),
-    "The contact stresses between a rigid indenter and a viscoelastic half-space",
-    "Journal of Applied Mechanics",
-    1966,
-    "33",
-    "845-854",
-    "10.1115/1.3625192",
 )
 EWALD = Paper(
     "Ewald1921",

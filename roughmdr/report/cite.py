@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.report import citations as papers
-from roughmdr.report import citations_of_slip as slip_papers
+from roughmdr.report import citations_of_layers as layer_papers
 from roughmdr.report.citations import Paper
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import done_of
@@ -152,7 +152,7 @@ def _papers(used: _Used) -> Iterator[tuple[str, Paper]]:
     yield from _of_surfaces(used)
     yield from _of_coupling(used)
     if not {"conductance_radius", *CONDUCTANCES}.isdisjoint(used.table.get("output", {}).get("variables", ())):
-        yield from (("conductance", paper) for paper in (papers.HOLM, papers.BARBER))
+        yield from (("conductance", paper) for paper in (layer_papers.HOLM, layer_papers.BARBER))
     yield from _of_slip(used)
 
 
@@ -172,7 +172,7 @@ def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
     if models and ranged:
         yield "adhesion", papers.TABOR
     if "viscoelastic" in used.table:
-        yield from (("viscoelastic", paper) for paper in (papers.LEE_RADOK, papers.TING))
+        yield from (("viscoelastic", paper) for paper in (layer_papers.LEE_RADOK, layer_papers.TING))
 
 
 def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -185,7 +185,7 @@ def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
     if used.values("asperities.hurst"):
         yield "roughness", papers.PERSSON
     if "nominal" in used.table or any(key.startswith("nominal.") for key in used.table.get("sweep", {})):
-        yield "curvature", papers.GREENWOOD_TRIPP
+        yield "curvature", layer_papers.GREENWOOD_TRIPP
 
 
 def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -204,10 +204,10 @@ def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
 
 def _of_slip(used: _Used) -> Iterator[tuple[str, Paper]]:
     if "lateral" in used.table.get("path", {}):
-        own = slip_papers.CATTANEO, slip_papers.MINDLIN, slip_papers.JAEGER, slip_papers.MASING
-        yield from (("slip", paper) for paper in (*own, slip_papers.MINDLIN_DERESIEWICZ))
+        own = layer_papers.CATTANEO, layer_papers.MINDLIN, layer_papers.JAEGER, layer_papers.MASING
+        yield from (("slip", paper) for paper in (*own, layer_papers.MINDLIN_DERESIEWICZ))
     elif "tangential_stiffness" in used.table.get("output", {}).get("variables", ()):
-        yield "slip", slip_papers.MINDLIN
+        yield "slip", layer_papers.MINDLIN
 
 
 def _line(paper: Paper) -> str:

@@ -138,5 +138,7 @@ def test_without_a_section_it_is_refused() -> None:
 def test_what_no_float_holds_is_refused() -> None:
     with pytest.raises(rm.OutOfRange, match="thermal_conductance is not representable"):
         conductances(np.array([0.0, 1e300]), {"thermal_conductance": 1e300})
+    with pytest.raises(rm.OutOfRange, match="thermal_conductance is not representable"):
+        conductances(np.array([0.0, 1e-5]), {"thermal_conductance": 1e-320})
     found = conductances(np.array([0.0, math.nan]), {"thermal_conductance": 1.0})["thermal_conductance"]
     np.testing.assert_array_equal(found, [0.0, math.nan])
