@@ -289,7 +289,7 @@ def test_a_wrong_name_of_a_section_hides_nothing_behind_it(folder: Path) -> None
         (4, "asperities.source = 'randm': not available; did you mean 'random'?"),
         (5, "asperities.shaep: unknown key; did you mean 'shape'?"),
         (6, "asperities.count = 1.5: expected a whole number"),
-        (7, "asperities.patch = '1 s': unknown unit 's'"),
+        (7, "asperities.patch = '1 s': 's' is a unit of s; expected a unit of m"),
         (8, "asperities.height.distribution = 'norml': not known; did you mean 'normal'"),
         (9, "asperities.radius.sdt = 1: lognormal has no such parameter"),
         (13, "sweep.asperities.raduis: is no number or name"),

@@ -16,8 +16,10 @@ overlap.
 """
 _FIRST_ORDER, _THIRD = 2.0, 1.5
 """What the first order adds, over this power of the contact fraction, as (a/D)^3."""
-_HILLS, _SUMMITS = 0.06, 1.5
-"""Of the hills of an isotropic map; of summits, over the root of the contact fraction."""
+_HILLS, _SUMMITS = 0.1, 2.5
+"""Of the hills of an isotropic map, two r.m.s. errors of their stiffness (``pipelines/hills.py``); of summits, over the
+root of the contact fraction.
+"""
 
 
 def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensemble: Ensemble, order: int) -> Floats:

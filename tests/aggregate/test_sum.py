@@ -240,7 +240,7 @@ def test_branches_of_a_crooked_path() -> None:
         (ensemble([1.0], radius=1.0).isel(asperity=slice(0, 0)), "no asperity"),
         (ensemble([1.0], radius=1.0, area=-1.0), "nominal_area is -1"),
         (ensemble([1.0], radius=1.0, area=None), "nominal_area is missing"),
-        (ensemble([1.0], radius=1.0).assign(height=("asperity", [1.0], {"units": "s"})), "unknown unit 's'"),
+        (ensemble([1.0], radius=1.0).assign(height=("asperity", [1.0], {"units": "kg"})), "unknown unit 'kg'"),
     ],
 )
 def test_a_wrong_ensemble_is_refused(data: xr.Dataset, says: str) -> None:
