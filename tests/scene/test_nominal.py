@@ -146,3 +146,13 @@ def test_laws_of_a_flat_are_not_taken_for_that_of_a_body(tmp_path: Path) -> None
         result.roughmdr.normalise("gw")
     with pytest.warns(UserWarning, match="theories are of a flat"):
         rm.plot(result, tmp_path / "law.png", with_theory=True, variables="force")
+
+
+def test_a_steep_body_and_one_on_few_asperities_are_warned_of() -> None:
+    with pytest.warns(rm.LimitWarning) as warned:
+        rm.run(curved(nominal={"radius": "0.1 mm"}))
+    texts = " ".join(str(each.message) for each in warned)
+    assert "asperities in contact on average" in texts
+    steep = rm.run(curved(nominal={"shape": "cone", "slope": 0.5, "error": 1e-2}))
+    gentle = rm.run(curved(nominal={"shape": "cone", "slope": 1e-3, "error": 1e-2}))
+    assert float(steep.edge_slope.max()) >= 0.5 > float(gentle.edge_slope.max())

@@ -8,6 +8,8 @@ import numpy as np
 from roughmdr import expected
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.totals import AREA, COUNT, RADIUS
+from roughmdr.asperity.validity import ValidityLimits
+from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
 from roughmdr.layer.curved.follow import Body, Place
 from roughmdr.layer.curved.local_law import LocalLaw
@@ -17,6 +19,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
 _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
+_FEW = 10  # contacts, of whose number the standard deviation is a third
 _OF_LAYER = ("model_error_curve",)
 """Variables that are those of the layer where it is pressed most."""
 
@@ -47,7 +50,8 @@ def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, vari
         numerical_error=numerical,
         model_error=local.model_error._replace(trusted_separation=float(late.max()) if late.size else math.nan),
         pull_off=pull_off_of(body, places, separation, error),
-        warnings=(*local.warnings, *_remarks(solution.error, error)),
+        extremes=_extremes(local.extremes, shape, own["nominal_contact_radius"]),
+        warnings=(*local.warnings, *_remarks(solution.error, error), *_few(own["contact_count"])),
     )
 
 
@@ -91,6 +95,25 @@ def _rule_error(solution: Solution, law: LocalLaw) -> float:
     deepest = np.array([law.closest])
     largest = abs(float(law.pressure(deepest, law.untouched(1))[0][0]))
     return solution.rule_error * max(largest / peak, 1.0) if peak > 0.0 else 0.0
+
+
+def _extremes(of_asperities: ValidityLimits, shape: Shape, radius: Floats) -> ValidityLimits:
+    """Return the extremes of contacts with those of the body itself, at its nominal contact radii [m]."""
+    widest = np.array([radius.max(initial=0.0)])
+    of_body = Ensemble.alike(shape, np.zeros(1), {}, math.inf).validity_limits(widest)
+    slope, extent = max(of_asperities.slope, of_body.slope), max(of_asperities.extent, of_body.extent)
+    return of_asperities._replace(slope=slope, extent=extent)
+
+
+def _few(contacts: Floats) -> list[str]:
+    """Return that the contacts are too few for a law of their mean."""
+    most = float(contacts.max(initial=0.0))
+    if not 0.0 < most < _FEW:
+        return []
+    return [
+        f"no more than {most:.2g} asperities in contact on average: a body on so few meets each of them, and its force "
+        f"differs from this mean from place to place (warned of below {_FEW})"
+    ]
 
 
 def _remarks(error: float, asked: float) -> list[str]:
