@@ -165,7 +165,7 @@ def test_json_holds_the_same_nodes_and_units_convert(tmp_path: Path) -> None:
     ("section", "says"),
     [
         ('[interaction]\nmodel = "pairwise"', "positions, which the expected law does not know"),
-        ('[interaction]\nmodel = "mean_field"', r"the scene has an \[interaction\]"),
+        ('[interaction]\nmodel = "mean_field"', r"scene has \[interaction\]"),
     ],
 )
 def test_asperities_that_feel_each_other_have_no_nodes(section: str, says: str, tmp_path: Path) -> None:
