@@ -79,6 +79,11 @@ class Shape(ABC):
         return math.inf
 
     @property
+    def breakpoints(self) -> Floats:
+        """The radii [m] at which the profile is not smooth, besides where it ends."""
+        return np.zeros(0)
+
+    @property
     def end(self) -> float:
         """The radius [m] where the profile, or the body it stands for, ends; inf where it never does."""
         return float(self.ends({name: np.array(value) for name, value in self.parameters.items()}))
@@ -180,6 +185,12 @@ class ProfileShape(Shape):
     @property
     def limit(self) -> float:
         return math.inf if math.isinf(self.profile.end) else self.profile.end * self.nondimensional()[0]
+
+    @property
+    def breakpoints(self) -> Floats:
+        width, _, params = self.nondimensional()
+        radii = [self.profile.breakpoint(index, params)[0] for index in range(self.profile.breakpoint_count(params))]
+        return width * np.array(radii, dtype=np.float64)
 
     @classmethod
     def branched(cls) -> bool:

@@ -22,7 +22,7 @@ from roughmdr.layer.curved.refine import Layer, solve
 from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
-from roughmdr.shapes import FlatPunch, Paraboloid, Shape, Sphere
+from roughmdr.shapes import FlatPunch, Paraboloid, Shape, Sphere, TruncatedCone, TruncatedParaboloid
 
 EVERY = ["force", "contact_area", "contact_count", "contact_radius_sum", "stiffness", "nominal_contact_radius"]
 E, R, STD, RADIUS, DENSITY = 1e9, 0.01, 1e-7, 2e-7, 1e12
@@ -103,6 +103,32 @@ def test_the_stated_error_holds(error: float) -> None:
     found, exact = law(separation, error=error), law(separation, error=1e-7)
     off = np.abs(found.variables["force"] - exact.variables["force"]).max() / exact.variables["force"].max()
     assert off <= found.numerical_error <= 2.0 * error
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.5])
+@pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("tip", [1e-9, 2e-9, 3e-9])
+def test_the_stated_error_holds_where_a_profile_has_a_kink(tip: float, slope: float, error: float) -> None:
+    """p falls as exp(-s/m) under exponential heights of mean m; so small a body leaves the half-space flat."""
+    mean, h = 1e-9, 5e-9
+    section = {
+        "source": "random", "shape": "paraboloid", "density": DENSITY, "patch": 1e-4,
+        "height": {"distribution": "exponential", "scale": mean}, "radius": 1e-7,
+    }  # fmt: skip
+    of = read(scene(asperities=section, adhesion=None, path={"separation": [0.0]})).asperities
+    pressure = DENSITY * 4.0 / 3.0 * E * math.sqrt(1e-7) * math.gamma(2.5) * mean**1.5 * math.exp(-h / mean)
+    width = mean / slope
+    cone = pressure * math.pi * (tip**2 + 2.0 * (tip + width) * width)
+    paraboloid = pressure * math.pi * (tip**2 + 2.0 * mean * 1e-8 / slope)
+    bodies = {
+        TruncatedCone(slope=slope, flat_radius=tip): cone,
+        TruncatedParaboloid(radius=1e-8 / slope, flat_radius=tip): paraboloid,
+    }
+    for shape, exact in bodies.items():
+        found = law(np.array([3.0 * h, h]), shape=shape, error=error, of=of)
+        off = abs(float(found.variables["force"][-1]) / exact - 1.0)
+        assert off <= found.numerical_error + 5e-6
+        assert found.numerical_error <= 2.0 * error
 
 
 def test_a_smooth_layer_is_hertz_to_the_first_order_of_its_roughness() -> None:

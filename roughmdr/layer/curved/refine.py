@@ -21,6 +21,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
 _FIRST_ELEMENTS, _GRADING = 16, 1.5  # equal steps of radius^(1/grading): a light contact is small
+_AT_AN_END = 1e-6  # of the last ring: a kink so close to the axis or to the last ring is of no account
 _MAX_ELEMENTS = 256  # with more of them a step takes a second
 _MAX_PASSES = 16
 _RULE_STEPS = 32  # of a path over all separations, for which the rule over the shape parameters is chosen
@@ -44,7 +45,8 @@ class Solution(NamedTuple):
     body: Body
     places: list[Place]
     error: float
-    """Change of the force by the last refinement of the rings, over the largest force."""
+    """Change of the force by the last refinement of the rings, or the doubt about elements that this left as they were
+    where it is larger, over the largest force."""
     rule_error: float
     """Error of the rule over the shape parameters, over the pressure at the closest separation of the tables."""
 
@@ -96,8 +98,8 @@ def _refined(
     law: LocalLaw, shape: Shape, effective_modulus: float, separation: Floats, last: float, error: float
 ) -> tuple[Body, list[Place], float]:
     """Return the solution on rings up to the radius ``last`` [m], which are halved where the pressure asks for it."""
-    rings = Rings.between(last * (np.arange(_FIRST_ELEMENTS + 1) / _FIRST_ELEMENTS) ** _GRADING)
-    before, change = np.zeros(0), math.inf
+    rings = Rings.between(_first_ends(shape, last))
+    before, change, doubt_left = np.zeros(0), math.inf, 0.0
     for _ in range(_MAX_PASSES):
         body = Body(rings, shape.f(rings.radius), Half(displacement_matrix(rings, effective_modulus), law))
         places = body.along(separation)
@@ -108,12 +110,23 @@ def _refined(
         if change <= error:
             break
         before, elements = force, rings.ends.size - 1
-        chosen = elements * rings.doubt(pressure).max(axis=0) > error * largest
+        doubt = rings.doubt(pressure)
+        chosen = elements * doubt.max(axis=0) > error * largest
         chosen |= not chosen.any()
         if elements + int(chosen.sum()) > _MAX_ELEMENTS:
             break
+        doubt_left = 0.0 if chosen.all() else float(doubt[:, ~chosen].sum(axis=1).max()) / largest
         rings = rings.halved(chosen)
-    return body, places, change
+    return body, places, max(change, doubt_left)
+
+
+def _first_ends(shape: Shape, last: float) -> Floats:
+    """Return the ends [m] of the first elements, kinks of the profile among them: there the pressure has kinks too."""
+    ends = np.asarray(last * (np.arange(_FIRST_ELEMENTS + 1) / _FIRST_ELEMENTS) ** _GRADING)
+    for radius in shape.breakpoints.tolist():
+        if _AT_AN_END * last < radius < (1.0 - _AT_AN_END) * last:
+            ends[1 + int(np.abs(ends[1:-1] - radius).argmin())] = radius
+    return ends
 
 
 def _radius_at(shape: Shape, height: float) -> float:
