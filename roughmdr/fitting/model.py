@@ -30,8 +30,10 @@ class Model:
     def __init__(self, scene: Scene, curve: MeasuredCurve, free: list[str]) -> None:
         if reason := scene.reason_against("expected"):
             raise SceneError(f"scene: cannot be fitted, for it has no expected law: {reason}")
-        if curve.quantity == "pressure" and scene.asperities.nominal_area is None:
-            raise SceneError(f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch")
+        if curve.quantity == "pressure" and scene.nominal_area is None:
+            raise SceneError(
+                f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch, and no [nominal]"
+            )
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
@@ -55,7 +57,7 @@ class Model:
         """Return the law with these parameters; RoughmdrError where there is none."""
         self.evaluations += 1
         scene, steps, quantity = self.scene(x), self._steps(x), self.curve.quantity
-        names = [quantity] if scene.asperities.nominal_area is None else [quantity, "model_error_curve"]
+        names = [quantity] if scene.nominal_area is None else [quantity, "model_error_curve"]
         path: LoadingPath | MachinePath
         if self.curve.control == "remote" and self.exact:
             path = machine_path(scene, steps)
@@ -118,7 +120,7 @@ class Model:
 
     def _stretch(self, scene: Scene) -> Floats:
         """Return by how much the measured force stretches the spring of the machine [m]."""
-        area = scene.asperities.nominal_area if self.curve.quantity == "pressure" else None
+        area = scene.nominal_area if self.curve.quantity == "pressure" else None
         return self.curve.load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
 
     def _steps(self, x: Floats) -> Floats:
@@ -148,6 +150,8 @@ def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str
         table["path"] = steps
         for section in ("batch", "accuracy"):
             table.pop(section, None)
+        if "nominal" in table:  # which has no other law than the expected one
+            table["batch"] = {"estimator": "expected"}
         for key, entries in sweep.items() if isinstance(sweep, dict) else ():
             if key in free:
                 _set_first(table, key, entries)

@@ -59,6 +59,8 @@ def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]
     places: dict[str, NDArray[np.bool_]] = {}
     for key, value in chosen.items():
         name = key.replace(".", "_")
+        if not swept:
+            raise StoreError(f"select: {key!r} is not swept: the result has no sweep")
         if name not in swept:
             raise StoreError(f"select: {key!r} is not swept{suggestion(name, [*swept])}")
         (dimension,) = swept[name].dims

@@ -40,7 +40,8 @@ def describe_pull_off(result: Labelled, not_known: str) -> Iterator[tuple[str, s
         share = f" in {few.size} of {len(cells)} cells" if len(cells) > 1 else ""
         verb = "carries" if few.max() == few.min() == 1.0 else "carry"
         noun = "contact" if verb == "carries" else "contacts"
-        yield "", f"{counted} {noun} {verb} it{share}: a patch this small does not show the pull-off of a surface"
+        small = "a patch this small" if "nominal" not in result.attrs else "a body on so few"
+        yield "", f"{counted} {noun} {verb} it{share}: {small} does not show the pull-off of a surface"
     yield "", f"({_definition(result)})"
 
 

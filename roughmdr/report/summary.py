@@ -34,7 +34,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
         *_required_accuracy(plan),
-        ("output", f"{', '.join(output.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
+        ("output", f"{', '.join(plan.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
         ("memory", _memory(estimate)),

@@ -210,7 +210,7 @@ def test_a_tangential_stiffness_goes_with_the_friction_of_the_scene(files: Path)
     assert list(table)[:2] == ["pressure [MPa]", "tangential_stiffness [MPa/mm]"]
     with xr.open_dataset(file) as data:
         made = data.load()
-    made.attrs["scene"] += "\n[tangential]\nfriction = 0.3\n"
+    made.attrs["scene"] += "\n[tangential]\nfriction = '30 %'\n"
     p, k = table.iloc[-1, 0], table.iloc[-1, 1]
     rm.export(made, files / "slip.inp", to="abaqus", error=5e-3, **asked)
     lines = (files / "slip.inp").read_text().splitlines()[-2:]

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from scenes import ASPERITIES, scene
@@ -156,3 +157,17 @@ def test_a_steep_body_and_one_on_few_asperities_are_warned_of() -> None:
     steep = rm.run(curved(nominal={"shape": "cone", "slope": 0.5, "error": 1e-2}))
     gentle = rm.run(curved(nominal={"shape": "cone", "slope": 1e-3, "error": 1e-2}))
     assert float(steep.edge_slope.max()) >= 0.5 > float(gentle.edge_slope.max())
+
+
+def test_a_fit_finds_the_radius_of_the_asperities() -> None:
+    made = rm.run(curved(nominal={"radius": "10 mm", "error": 1e-3}))
+    loading = made.isel(realization=0).where(made.branch == "loading", drop=True)
+    measured = pd.DataFrame({"separation": loading.separation.to_numpy(), "force": loading.force.to_numpy()})
+    start = curved(nominal={"radius": "10 mm", "error": 1e-3}, asperities={**LAYER, "radius": "40 um"})
+    fit = rm.fit(measured, start, "asperities.radius")
+    assert float(fit.asperities_radius) == pytest.approx(50e-6, rel=1e-3)
+
+
+def test_a_result_without_an_area_is_no_table(tmp_path: Path) -> None:
+    with pytest.raises(rm.StoreError, match=r"per nominal area, and the result has none under"):
+        rm.export(rm.run(curved()), tmp_path / "layer.csv", to="csv")

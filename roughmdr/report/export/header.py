@@ -66,8 +66,8 @@ def table_lines(
         yield from conduction_lines(cell)
     if TIME.name in cell.coordinates:
         yield "motion", "the law of a viscoelastic body at the speed of the scene: at another speed it is another"
-    for warning in table.warnings:
-        yield "warning", warning
+    if table.warnings:
+        yield "warning", "; ".join(table.warnings)
 
 
 def model_lines(cell: Labelled) -> Iterator[tuple[str, str]]:

@@ -108,7 +108,8 @@ def _mean(cell: Labelled, quantity: Quantity, steps: Ints) -> tuple[Floats, Floa
     area = 1.0
     if source.per_area:
         if "nominal_area" not in cell.variables:
-            raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has no nominal_area")
+            under = " under [nominal]" if "nominal" in cell.attrs else ""
+            raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has none{under}")
         area = float(cell.variables["nominal_area"].values.item())
         if not 0.0 < area < np.inf:
             raise StoreError(f"nominal_area is {area:g} m2; per area there is nothing")

@@ -19,6 +19,8 @@ from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import swept_sizes, swept_values
 from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.units import DIMENSIONLESS
+from roughmdr.schema.units import quantity as number_in_si
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 from roughmdr.storage.labelled import Labelled
@@ -148,7 +150,7 @@ def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Doc
     argument, other = (pressure, overclosure) if quantity.over_pressure else (overclosure, pressure)
     columns = (argument, value, separation, *([] if value is pressure else [other]), error)
     _check_fit(table, quantity, units, asked)
-    header = dict(origin_lines(cell, words)) | _joined(table_lines(cell, table, quantity, law.source.variable, units))
+    header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source.variable, units))
     if note := asked.format.quantities[asked.quantity]:
         header["use"] = note
     friction = _friction(result, asked) if quantity.name == "tangential" else None
@@ -161,17 +163,8 @@ def _friction(result: Labelled, asked: Export) -> float | None:
     swept = swept_values(result.coordinates, list(swept_sizes(result)), cell_of(result, asked.select))
     if "tangential_friction" in swept:
         return float(swept["tangential_friction"].values)
-    section = parse_toml(result.attrs["scene"]).get("tangential")
-    friction = section.get("friction") if isinstance(section, dict) else None
-    return float(friction) if isinstance(friction, int | float) else None
-
-
-def _joined(lines: Any) -> dict[str, str]:
-    """Return lines by their names, those of the same name as one."""
-    texts: dict[str, str] = {}
-    for name, text in lines:
-        texts[name] = f"{texts[name]}; {text}" if name in texts else text
-    return texts
+    friction = parse_toml(result.attrs["scene"]).get("tangential", {}).get("friction")
+    return None if friction is None else number_in_si(friction, DIMENSIONLESS)
 
 
 def _check_fit(table: Table, quantity: Quantity, units: UnitSystem, asked: Export) -> None:
