@@ -60,6 +60,7 @@ class SumKernels(Kernels):
     lowest_in_contact: Callable[..., float]
     update_contact: Callable[..., None]
     evaluate: Callable[..., None]
+    place: Callable[..., None]
     solve_contacts: Callable[..., None]
     radius_at: Callable[[Floats, Any, int], float]
     """(contacts, params, i) -> a of one contact over its natural scale; the next two alike P and k."""

@@ -58,20 +58,9 @@ def solve_iterative(
 
     With several branches, ``block.in_contact`` holds the number of the branch at the step before, and then the new one.
     """
-    z, params, in_contact, last_step = block.z, block.params, block.in_contact, block.scratch
-    depth, per_depth, state = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH], block.contacts[STATE]
+    params, in_contact, last_step, state = block.params, block.in_contact, block.scratch, block.contacts[STATE]
+    law.place(count, block, h, adhesion_range, memory, begin, end)
     x = block.contacts[RADIUS]  # until a is found
-    lift = 1.0 if law.adhesive else 0.0
-    for i in range(count):
-        x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
-    if law.branched:
-        for i in range(count):
-            in_contact[i] = law.branch(x[i], in_contact[i], z[i] >= h - adhesion_range, law.params_of(params, i))
-    elif law.adhesive:
-        law.update_contact(count, block, memory, begin, end)
-    if law.adhesive:
-        for i in range(count):
-            x[i] = x[i] if in_contact[i] > 0.0 else 1.0
     for i in range(count):
         state[i] = law.initial_guess(x[i], law.params_of(params, i))
     for _ in range(law.newton_steps):
@@ -83,6 +72,40 @@ def solve_iterative(
             t, step, _ = law.newton_step(state[i], x[i], own)
             state[i] = t if law.converged(t, step, x[i], branch, own) else law.state_on_branch(x[i], branch, own)
     law.evaluate(count, block)
+
+
+def solve_each(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
+) -> None:
+    """Do as ``solve_closed`` for contacts that are solved one by one."""
+    params, in_contact, contacts = block.params, block.in_contact, block.contacts
+    law.place(count, block, h, adhesion_range, memory, begin, end)
+    state, x, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
+    for i in range(count):
+        if in_contact[i] > 0.0:
+            state[i], x[i], force[i], stiffness[i] = law.contact_at(x[i], in_contact[i], law.params_of(params, i))
+        else:
+            state[i], x[i], force[i], stiffness[i] = 0.0, 0.0, 0.0, 0.0
+
+
+def place(count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int) -> None:
+    """Put x of the first ``count`` asperities in the place of their radius, and find which of them are in contact.
+
+    Those out of contact have the x of first touch.
+    """
+    z, params, in_contact, x = block.z, block.params, block.in_contact, block.contacts[RADIUS]
+    depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]
+    lift = 1.0 if law.adhesive else 0.0
+    for i in range(count):
+        x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
+    if law.branched:
+        for i in range(count):
+            in_contact[i] = law.branch(x[i], in_contact[i], z[i] >= h - adhesion_range, law.params_of(params, i))
+    elif law.adhesive:
+        law.update_contact(count, block, memory, begin, end)
+    if law.adhesive:
+        for i in range(count):
+            x[i] = x[i] if in_contact[i] > 0.0 else 1.0
 
 
 def radius_of_state(contacts: Floats, params: Any, i: int) -> float:

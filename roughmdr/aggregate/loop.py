@@ -18,9 +18,11 @@ from roughmdr.aggregate.contacts import (
     found_force,
     found_radius,
     found_stiffness,
+    place,
     radius_of_state,
     skip,
     solve_closed,
+    solve_each,
     solve_iterative,
     stiffness_of_state,
     update_contact,
@@ -145,13 +147,15 @@ def _loop(
 def compiled_sum(kernels: Kernels) -> SumKernels:
     """Return the kernels with the parts of the sum, compiled with them."""
     whole, together = SumKernels(kernels.name), kernels.found_together
+    solve = solve_each if kernels.one_by_one else solve_iterative if kernels.iterative else solve_closed
     vars(whole).update({"term_sizes": no_terms, **vars(kernels)})
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,
         "update_contact": update_contact,
         "evaluate": evaluate if together else skip,
-        "solve_contacts": solve_iterative if kernels.iterative else solve_closed,
+        "place": place,
+        "solve_contacts": solve,
         "radius_at": found_radius if together else radius_of_state,
         "force_at": found_force if together else force_of_state,
         "stiffness_at": found_stiffness if together else stiffness_of_state,

@@ -53,6 +53,8 @@ class Kernels(ModuleType):
     """Whether adhesion has a range."""
     hardening = False
     """Whether it is certain that k grows with the indentation along a branch."""
+    one_by_one = False
+    """Whether contacts are solved one at a time, not all of a block step by step."""
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
 
@@ -89,6 +91,9 @@ class Kernels(ModuleType):
     """(state, params) -> all three."""
     energy: Kernel
     """(state, params) -> elastic and surface energy over natural force times natural depth."""
+    contact_at: Callable[..., tuple[float, float, float, float]]
+    """(x, branch, params) -> the state on that branch, and what ``radius_force_stiffness`` returns; where
+    ``one_by_one``."""
     cohesive_radius: Kernel
     """(state, params) -> c over natural radius, where ``cohesive``."""
     relative_errors: Callable[..., tuple[float, float]]

@@ -8,6 +8,7 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, sqrt
+from roughmdr.shapes import zone_integrals
 from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radius
 
@@ -50,7 +51,11 @@ class RoundedCone(ProfileShape):
     name = "rounded_cone"
     units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
     profile = _BluntTip(
-        _cone_mdr_profile, _cone_reduced_load, _cone_f_and_slope, softening_interval=_cone_softening_interval
+        _cone_mdr_profile,
+        _cone_reduced_load,
+        _cone_f_and_slope,
+        softening_interval=_cone_softening_interval,
+        zone_integrals=zone_integrals.rounded_cone,
     )
 
     @classmethod
@@ -142,6 +147,7 @@ class CappedParaboloid(ProfileShape):
         _t_of_radius,
         softening_interval=_paraboloid_softening_interval,
         mdr_integral=_paraboloid_mdr_integral,
+        zone_integrals=zone_integrals.capped_paraboloid,
         corner=True,
         t_of_q=_t_of_q,
     )

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import atan, atan_minus_cubic, q_minus_atan, sqrt
+from roughmdr.shapes import zone_integrals
 from roughmdr.shapes.base import ProfileShape, Shape, check_radii
 from roughmdr.shapes.profile import Params, Profile, one, q_of_radius, t_is_q
 
@@ -93,6 +94,7 @@ class TruncatedCone(ProfileShape):
         _cone_f_and_slope,
         softening_interval=_cone_softening_interval,
         mdr_integral=_cone_mdr_integral,
+        zone_integrals=zone_integrals.truncated_cone,
     )
 
     @classmethod
@@ -140,6 +142,7 @@ class TruncatedParaboloid(ProfileShape):
         _paraboloid_f_and_slope,
         softening_interval=_paraboloid_softening_interval,
         mdr_integral=_paraboloid_mdr_integral,
+        zone_integrals=zone_integrals.truncated_paraboloid,
     )
 
     @classmethod
@@ -187,6 +190,7 @@ class RoundedPunch(ProfileShape):
         _punch_reduced_load,
         _punch_f_and_slope,
         mdr_integral=_punch_mdr_integral,
+        zone_integrals=zone_integrals.rounded_punch,
         roundings=_punch_roundings,
     )
 

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from roughmdr.shapes import Shape
+from roughmdr.shapes import Shape, zone_integrals
 from roughmdr.shapes.base import ProfileShape
 from roughmdr.shapes.kappa import kappa
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
@@ -82,12 +82,19 @@ _POWERS: dict[type[Shape], Profile] = {
         _paraboloid_f_and_slope,
         elastic_integral=_paraboloid_elastic_integral,
     ),
-    Cone: Profile(_cone_mdr_profile, _cone_reduced_load, _cone_f_and_slope, elastic_integral=_cone_elastic_integral),
+    Cone: Profile(
+        _cone_mdr_profile,
+        _cone_reduced_load,
+        _cone_f_and_slope,
+        elastic_integral=_cone_elastic_integral,
+        zone_integrals=zone_integrals.cone,
+    ),
     PowerLaw: Profile(
         _power_mdr_profile,
         _power_reduced_load,
         _power_f_and_slope,
         elastic_integral=_power_elastic_integral,
+        zone_integrals=zone_integrals.power_law,
         roundings=_power_roundings,
         precompute=_power_precompute,
     ),

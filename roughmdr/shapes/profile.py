@@ -85,6 +85,8 @@ class Profile(NamedTuple):
     it."""
     elastic_integral: Callable[..., Any] | None = None
     """(t, params) -> 2 ∫ g' ∫ x g' dx dx to a; None where that is left to quadrature."""
+    zone_integrals: Callable[..., tuple[Any, Any]] | None = None
+    """(t, a, m, theta, params) -> I and K of ``shapes.zone_integrals``; None where they are left to quadrature."""
     corner: bool = False  # whether g' jumps to infinity, at the edge of a flat or of a blunter tip
     flat: bool = False  # whether the profile is flat to one width, where g and t begin
     end: float = math.inf  # the radius where the profile ends

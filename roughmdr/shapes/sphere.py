@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.vector_math import expm1, t_minus_tanh, tanh
+from roughmdr.shapes import zone_integrals
 from roughmdr.shapes.base import ProfileShape, check_radii
 from roughmdr.shapes.profile import Params, Profile
 
@@ -50,7 +51,15 @@ class Sphere(ProfileShape):
     name = "sphere"
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     body_radius = ("radius",)
-    profile = Profile(_mdr_profile, _reduced_load, _f_and_slope, _t_of_radius, end=1.0, roundings=_roundings)
+    profile = Profile(
+        _mdr_profile,
+        _reduced_load,
+        _f_and_slope,
+        _t_of_radius,
+        end=1.0,
+        roundings=_roundings,
+        zone_integrals=zone_integrals.sphere,
+    )
 
     # Next to the equator r/R has too few digits for f and f'.
     def f(self, r: ArrayLike) -> Floats:

@@ -7,7 +7,7 @@ may be stable there only; its sign changes between them are solved for. Notation
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOLD, MAX_BRANCHES, ONSET, RANGE, UNIT
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, JUNCTION, MAX_BRANCHES, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
 _FIRST = 2.0**-24  # the first state looked at; contact begins at 1
@@ -15,7 +15,7 @@ _FIRST_STEP = 2.0**-8  # beyond it
 _STEP_ON_FLAT = 1.0 / 16.0
 _THIN_ZONE = 0.1  # m/a: with a thinner zone a contact is as in JKR, and has no further branch
 _LARGEST = 1e140  # its square is a float
-_RTOL = 4e-16
+_RTOL = 1e-13  # of the indentation at a fold it takes the square
 _MAX_ITERATIONS = 200
 _NEAR_END = 1.0 - 1e-9  # of the end of the profile: beyond, c and a are the same float
 
@@ -77,15 +77,20 @@ def find_branches(params: Floats) -> None:
             if stable:
                 break
             return
-        stable = law.control_at(s, params)[1] > 0.0
+        a, m = 0.0, s * params[JUNCTION]
+        if s > 1.0:
+            edges = law.zone_edge(s, params)
+            a, m = edges[1], edges[2]
+            _, _, rise, _, growth = law.state_between(edges, params)
+            stable = (rise if params[CONTROL] == 0.0 else growth) > 0.0
+        else:
+            stable = law.control_at(s, params)[1] > 0.0
         if stable and not was:
             foot = law.slope_root(before, s, params)
         elif was and not stable:
             count = law.note_branch(count, foot, law.slope_root(before, s, params), params)
-        if s > 1.0:
-            _, a, m, _, _, _, _ = law.zone_edge(s, params)
-            if stable and m < _THIN_ZONE * a and a > beyond:
-                break
+        if stable and m < _THIN_ZONE * a and a > beyond:
+            break
         if not s < _LARGEST or count >= MAX_BRANCHES:
             return
     law.measure_branches(law.note_branch(count, foot, math.inf, params), params)

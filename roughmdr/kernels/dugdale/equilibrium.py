@@ -37,8 +37,14 @@ def state_along(s: float, params: Floats) -> tuple[float, float, float, float, f
         delta = f - 2.0 / math.pi * beta * c - params[RANGE]
         rise = size * (slope - 2.0 / math.pi * beta)
         return 0.0, delta, rise, -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * size
-    t, a, m, theta, g, da, dg = law.zone_edge(s, params)
-    _, k, _ = law.zone_integrals(a, g, m, theta, params)
+    return law.state_between(law.zone_edge(s, params), params)
+
+
+def state_between(edges: tuple[float, ...], params: Floats) -> tuple[float, float, float, float, float]:
+    """As ``state_along`` from both edges, s > 1, as ``zone_edge`` returns them."""
+    beta = params[STRENGTH]
+    t, a, m, theta, g, da, dg = edges
+    _, k = law.gap_integrals(t, a, g, m, theta, params)
     square = a * a + m * m
     firm = k - beta * m * m / (math.sqrt(square) + a)  # B
     rise = (dg * m + beta * a * da) / (firm * m + beta * square * theta)
@@ -130,7 +136,7 @@ def energy(s: float, params: Floats) -> float:
     square = a * a + m * m
     c = math.sqrt(square)
     bent, push = (law.elastic_integral(t, params), law.reduced_load(t, params)) if s > 1.0 else (0.0, 0.0)
-    _, _, l = law.zone_integrals(a, g, m, theta, params)
+    l = law.energy_integral(a, g, m, theta, params)
     short = m * m / (c + a)
     elastic = bent - 2.0 * stretch * push + stretch * stretch * a
     cohesive = 2.0 * l + stretch * (square * theta - a * m) - beta * short * short * (2.0 * c + a) / 3.0

@@ -37,12 +37,16 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
     return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
 
 
-def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
-    """J, K and L of ``zone``."""
-    square = a * a + m * m
+def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
+    """J and K of ``zone``."""
     beyond = _q_minus_atan(m / a) if a > 0.0 else 0.0
-    l = 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
-    return m * m * theta + a * a * beyond, 2.0 * (square * theta + a * m), l
+    return m * m * theta + a * a * beyond, 2.0 * ((a * a + m * m) * theta + a * m)
+
+
+def energy_integral(a: float, g: float, m: float, theta: float, params: Floats) -> float:
+    """L of ``zone``."""
+    square = a * a + m * m
+    return 0.25 * (square * square * theta - a * m * (2.0 * a * a - square)) - a * a * (square * theta - a * m)
 
 
 def state_of_radius(radius: float, width: float, params: Floats) -> float:
@@ -50,4 +54,4 @@ def state_of_radius(radius: float, width: float, params: Floats) -> float:
     if params[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / law.zone_width(a, 2.0 * a * a, 4.0 * a, params)
+    return 1.0 + a / law.zone_width(a, a, 2.0 * a * a, 4.0 * a, params)

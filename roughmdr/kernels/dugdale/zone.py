@@ -1,4 +1,4 @@
-"""The cohesive zone of any profile, a < x < c, by quadrature.
+"""The cohesive zone of any profile, a < x < c: in closed form where the profile has one, else by quadrature.
 
 Its integrals, in units of the shape's width and rise:
 
@@ -75,8 +75,8 @@ def rise_begins(low: float, c: float, params: Floats) -> float:
     return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
 
 
-def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float, float]:
-    """J, K and L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
+def zone_quadrature(a: float, g: float, m: float, params: Floats) -> tuple[float, float, float]:
+    """J, K and L for the contact radius a, g = g(a) and m = sqrt(c^2 - a^2)."""
     c, thin = math.sqrt(a * a + m * m), m < _THIN * a
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m
@@ -104,3 +104,24 @@ def zone_integrals(a: float, g: float, m: float, theta: float, params: Floats) -
             low, beside = begin, math.sqrt((c - begin) * (c + begin))
         base = after
     return j, k if m < law.widest_zone(a) else _UNBOUNDED, l
+
+
+def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
+    """J and K for the contact radius a at t, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
+    j, k, _ = law.zone_quadrature(a, g, m, params)
+    return j, k
+
+
+def gap_integrals_closed(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
+    """J and K where the profile has closed forms: J = I - g(a) theta.
+
+    Where the zone is thin that difference has few digits, but there J has next to no share in the force.
+    """
+    i, k = law.zone_integrals(t, a, m, theta, params)
+    return i - g * theta, k if m < law.widest_zone(a) else _UNBOUNDED
+
+
+def energy_integral(a: float, g: float, m: float, theta: float, params: Floats) -> float:
+    """L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
+    _, _, l = law.zone_quadrature(a, g, m, params)
+    return l

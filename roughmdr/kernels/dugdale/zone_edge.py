@@ -5,12 +5,10 @@ import math
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import compiled
-from roughmdr.numerics.vector_math import atan
-
-_atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
+_WIDE = 0.5 * math.pi - 1.0
+_NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
 _ROUNDING = 1e-15
 _MAX_ITERATIONS = 100
 _LARGEST = 1e150  # its square, and that of its inverse, is a float
@@ -40,57 +38,82 @@ def find_junction(params: Floats) -> bool:
     return 1.0 / _LARGEST < c < _LARGEST and 0.0 < t < math.inf
 
 
-def gap_at(a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
+def gap_at(t: float, a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
     """pi/2 times the gap at c, and its derivative by m^2/2."""
-    c, theta = math.sqrt(a * a + m * m), _atan(m / a)
-    j, k, _ = law.zone_integrals(a, g, m, theta, params)
+    c, theta = math.sqrt(a * a + m * m), math.atan2(m, a)
+    j, k = law.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (c + a)
     return j + params[STRENGTH] * (m * theta - short), (k / c + params[STRENGTH] * (c * theta / m - short / c)) / c
 
 
-def zone_width(a: float, g: float, slope: float, params: Floats) -> float:
-    """m = sqrt(c^2 - a^2) at the contact radius a, with g and g' there: by Newton's method on logarithms.
+def zone_guess(a: float, slope: float, params: Floats) -> float:
+    """About m at the contact radius a with g' there, mostly within a tenth.
+
+    By powers of m that hold where the zone is thin or wide: m theta - c + a is m^2/(2 a) or (pi/2 - 1) m, and J is
+    g' m^3/(3 a^2). Next to the axis, and on a flat, J is about as where contact begins.
+    """
+    c0, wanted = params[JUNCTION], 0.5 * math.pi * params[RANGE]
+    wide = wanted / params[STRENGTH] / _WIDE
+    flat = wide * math.sqrt(0.5 + 0.5 * math.hypot(1.0, 4.0 * _WIDE * a / wide))
+    if a < _NEXT_TO_AXIS * c0 or slope == 0.0:
+        return min(c0, flat)
+    risen = (3.0 * wanted * a * (a / slope)) ** (1.0 / 3.0)
+    return flat / math.hypot(1.0, flat / risen) if flat < risen else risen / math.hypot(1.0, risen / flat)
+
+
+def zone_width(t: float, a: float, g: float, slope: float, params: Floats) -> float:
+    """m = sqrt(c^2 - a^2) at the contact radius a at t, with g and g' there: by Newton's method on logarithms, then by
+    the cubic through the last two points of the inverse function with its slopes.
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
-    beta, wanted, c0 = params[STRENGTH], 0.5 * math.pi * params[RANGE], params[JUNCTION]
+    wanted = 0.5 * math.pi * params[RANGE]
     low, high = 0.0, law.widest_zone(a)
-    if high < math.inf and not law.gap_at(a, g, high, params)[0] > wanted:
+    if high < math.inf and not law.gap_at(t, a, g, high, params)[0] > wanted:
         return high
-    lone = wanted / beta
-    most = 0.875 * lone + math.sqrt(0.765 * lone * lone + 2.0 * a * lone)  # about where the gap would be without J
-    near = (6.0 * lone * beta * a * (a / slope)) ** (1.0 / 3.0) if slope > 0.0 else math.inf
-    m = min(most, max(c0, near))
+    m = law.zone_guess(a, slope, params)
     if not m < high:
         m = 0.5 * high
+    m_before, off_before, rate_before, step = 0.0, 0.0, 0.0, 1.0
     for _ in range(_MAX_ITERATIONS):
-        value, growth = law.gap_at(a, g, m, params)
+        value, growth = law.gap_at(t, a, g, m, params)
         if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
             low, high = (m, high) if value <= 0.0 else (low, m)
-            m = 0.5 * (low + high)
+            m, m_before = 0.5 * (low + high), 0.0
             continue
         low, high = (m, high) if value < wanted else (low, m)
-        change = math.log(wanted / value) * value / (m * m * growth)
-        better = m * math.exp(min(max(change, -5.0), 5.0))
-        if abs(change) <= _RTOL_STEP or not low < high:
-            return better
+        off, rate = math.log(wanted / value), value / (m * m * growth)
+        way = off * rate
+        if m_before > 0.0 and off != off_before:
+            step, across = math.log(m_before / m), off - off_before
+            mean = step / across
+            bend, turn = (3.0 * mean - 2.0 * rate - rate_before) / across, (rate + rate_before - 2.0 * mean) / across
+            way += off * off * (bend + off * turn / across)
+        if abs(way * step) <= _RTOL_STEP or not low < high:
+            return m * math.exp(way)
+        m_before, off_before, rate_before = m, off, rate
+        better = m * math.exp(min(max(way, -5.0), 5.0))
         m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
     return m
 
 
-def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
-    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds. On a flat tip, s <= 2, t is 0.
+def contact_edge(s: float, params: Floats) -> tuple[float, float, float, float, float]:
+    """For s > 1: t, a, g, da/ds and dg/ds. On a flat tip, s <= 2, t is 0.
 
     At its edge, s = 2, they are those from within: beyond, a and g may begin with a slope of 0.
     """
     if law.flat and s <= 2.0:
-        a = s - 1.0
-        m = law.zone_width(a, 0.0, 0.0, params)
-        return 0.0, a, m, _atan(m / a), 0.0, 1.0, 0.0
+        return 0.0, s - 1.0, 0.0, 1.0, 0.0
     t = (s - (2.0 if law.flat else 1.0)) * params[UNIT]
     a, da, g, dg = law.mdr_profile(t, params)
-    m = law.zone_width(a, g, dg / da if da > 0.0 else math.inf, params)
-    return t, a, m, _atan(m / a), g, da * params[UNIT], dg * params[UNIT]
+    return t, a, g, da * params[UNIT], dg * params[UNIT]
+
+
+def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
+    """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds."""
+    t, a, g, da, dg = law.contact_edge(s, params)
+    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, params)
+    return t, a, m, math.atan2(m, a), g, da, dg
 
 
 def state_of_radius(radius: float, width: float, params: Floats) -> float:

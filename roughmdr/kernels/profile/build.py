@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from roughmdr.kernels.dugdale import both_edges, paraboloid, zone, zone_edge
 from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
-from roughmdr.kernels.dugdale import paraboloid, zone, zone_edge
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile import branches, equilibrium, folds, initial_guess, newton
 from roughmdr.kernels.profile.interface import ProfileKernels, law
@@ -99,12 +99,14 @@ def _no_t_of_q(q: float, params: Floats) -> float:
     return math.nan
 
 
+_SPLIT_OF_PAIRS = 0
 _SPLIT = 5  # times an octave of the initial guess is halved where all asperities share one row
 _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts have converged
 _VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
     equilibrium.radius_force_stiffness,
     initial_guess.y_of_x,
+    initial_guess.cubic,
     initial_guess.initial_guess,
     initial_guess.x_of_y,
     initial_guess.extrapolate_node,
@@ -113,8 +115,9 @@ _VECTOR_CODE: set[Callable[..., Any]] = {
 }
 _VECTOR_CODE_OF_PARABOLOID: set[Callable[..., Any]] = {
     paraboloid.zone_edge,
-    paraboloid.zone_integrals,
+    paraboloid.gap_integrals,
     dugdale_equilibrium.state_along,
+    dugdale_equilibrium.state_between,
     dugdale_equilibrium.indentation_at,
     dugdale_equilibrium.radius_force_stiffness,
 }
@@ -136,17 +139,24 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     profile, shared, tabled = profile_of(shape), shape.shared, issubclass(shape, TabledShape)
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
-        of_paraboloid = (paraboloid,) if shape is Paraboloid else ()
-        parts |= _functions(zone, zone_edge, dugdale_equilibrium, dugdale_branches, *of_paraboloid)
+        last = paraboloid if shape is Paraboloid else both_edges
+        parts["state_by_search"] = parts["state_on_branch"]
+        parts |= _functions(zone, zone_edge, dugdale_equilibrium, dugdale_branches, last)
+        closed = parts.pop("gap_integrals_closed")
+        if profile.zone_integrals is not None:
+            parts["gap_integrals"] = closed
     plain: dict[str, Any] = profile._asdict()
+    pairs = cohesive and shape is not Paraboloid
+    split = _SPLIT if shared else _SPLIT_OF_PAIRS if pairs else 0
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
         "has_t_of_q": profile.t_of_q is not None,
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape is Paraboloid else math.sqrt(2.0),
-        "split": _SPLIT if shared else 0,
-        "first_node": first_node(_SPLIT if shared else 0),
+        "split": split,
+        "first_node": first_node(split, 4 if pairs else 2),
         "newton_steps": _NEWTON_STEPS_OF_SPLIT if shared else _NEWTON_STEPS,
+        "one_by_one": pairs,
         "adhesive": cohesive,
         "branched": cohesive,
         "cohesive": cohesive,

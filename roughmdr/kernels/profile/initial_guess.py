@@ -30,15 +30,19 @@ def y_of_x(x: float, params: Floats) -> float:
     return side * side if params[TENSION] > 0.0 else x * _LOWEST
 
 
+def cubic(u: float, first: float, slope: float, last: float, last_slope: float) -> float:
+    """The cubic from u = 0 to 1 with these values and slopes at the ends."""
+    rise = last - first
+    return first + u * (slope + u * ((3.0 * rise - 2.0 * slope - last_slope) + u * (slope + last_slope - 2.0 * rise)))
+
+
 def initial_guess(x: float, params: Floats) -> float:
     """t within the octaves; meaningless outside."""
     node, u = _octave(law.y_of_x(x, params), law.split)
     node = min(max(node, 0), (OCTAVES << law.split) - 1)
     at = law.first_node + 2 * node
     parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
-    t, rise = params[at], params[at + 2] - params[at]
-    first, last = params[at + 1] / float(parts), params[at + 3] / float(parts + 1)
-    return float(t + u * (first + u * ((3.0 * rise - 2.0 * first - last) + u * (first + last - 2.0 * rise))))
+    return law.cubic(u, params[at], params[at + 1] / float(parts), params[at + 2], params[at + 3] / float(parts + 1))
 
 
 def guess_anywhere(x: float, params: Floats) -> float:

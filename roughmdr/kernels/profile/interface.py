@@ -28,6 +28,7 @@ class ProfileKernels(Kernels):
     precompute: Callable[[Floats], None]
     roundings: Kernel
     elastic_integral: Kernel
+    zone_integrals: Callable[..., tuple[float, float]]
     corner: bool
     flat: bool
     end: float
@@ -52,6 +53,7 @@ class ProfileKernels(Kernels):
     first_node: int
     """The place in a row of the first node of the initial guess."""
     y_of_x: Kernel
+    cubic: Kernel
     guess_anywhere: Kernel
     x_of_y: Callable[..., tuple[float, float]]
     extrapolate_node: Kernel
@@ -66,12 +68,24 @@ class ProfileKernels(Kernels):
     t_along: Kernel
     zone_panel: Callable[..., tuple[float, float, float]]
     rise_begins: Kernel
-    zone_integrals: Callable[..., tuple[float, float, float]]
+    zone_quadrature: Callable[..., tuple[float, float, float]]
+    gap_integrals: Callable[..., tuple[float, float]]
+    energy_integral: Kernel
     find_junction: Callable[[Floats], bool]
     gap_at: Callable[..., tuple[float, float]]
+    zone_guess: Kernel
     zone_width: Kernel
     zone_edge: Callable[..., tuple[float, float, float, float, float, float, float]]
+    contact_edge: Callable[..., tuple[float, float, float, float, float]]
     state_along: Callable[..., tuple[float, float, float, float, float]]
+    state_between: Callable[..., tuple[float, float, float, float, float]]
+    newton_of_both: Callable[..., tuple[float, float, float, float]]
+    both_edges: Callable[..., tuple[bool, float, float, float, float]]
+    guess_both: Callable[..., tuple[float, float]]
+    edges_at: Callable[..., tuple[bool, float, float]]
+    state_by_search: Kernel
+    fill_nodes_of: Callable[[Floats], None]
+    zone_at: Callable[..., tuple[float, float]]
     next_trial: Kernel
     slope_root: Kernel
 
