@@ -14,6 +14,7 @@ import math
 
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import (
+    CANCELLED,
     CONTROL,
     COUNT,
     DEPTH,
@@ -69,8 +70,8 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
         if not (abs(ds) < math.inf and abs(dm) < math.inf):
             break
         if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * m:
-            found = s + ds > foot + params[NEAR] * s
-            return found, s + ds, m + dm, s_slope * params[DEPTH], m_slope * params[DEPTH]
+            far = s + ds > foot + params[NEAR] * s and (foot > 0.0 or x > params[LAST_X] + CANCELLED)
+            return far, s + ds, m + dm, s_slope * params[DEPTH], m_slope * params[DEPTH]
         s = max(s + ds, foot + _MIN_SHARE * beyond)
         m = min(max(m + dm, _MIN_SHARE * m), _MOST_GROWTH * m)
     return False, s, m, 0.0, 0.0

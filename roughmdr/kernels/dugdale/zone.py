@@ -27,6 +27,8 @@ _STEEP = 6.0  # _STEEP/sqrt(n) is the psi at which (x/c)^n is below rounding
 _NEAREST = 1e-8  # distance to the end of the profile, over it; its square is below rounding
 _BEFORE = 1.0 - 2.0**-53  # of the end of the profile: up to there g is finite
 _UNBOUNDED = 1e100  # stands for infinity
+_FEW_NODES, _FEW_WEIGHTS = unit_gauss(8)
+_FEW_DIGITS = 1e-3  # of g(a) theta: of a smaller difference to it three digits are lost
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 
 
@@ -113,12 +115,31 @@ def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: 
 
 
 def gap_integrals_closed(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
-    """J and K where the profile has closed forms: J = I - g(a) theta.
-
-    Where the zone is thin that difference has few digits, but there J has next to no share in the force.
-    """
+    """J and K where the profile has closed forms: J = I - g(a) theta unless this cancels, as the zone is thin."""
     i, k = law.zone_integrals(t, a, m, theta, params)
-    return i - g * theta, k if m < law.widest_zone(a) else _UNBOUNDED
+    j = i - g * theta
+    if j < _FEW_DIGITS * g * theta:
+        j = law.thin_integral(a, g, m, params)
+    return j, k if m < law.widest_zone(a) else _UNBOUNDED
+
+
+def thin_integral(a: float, g: float, m: float, params: Floats) -> float:
+    """J of a thin zone by parts, by a rule of few nodes unless there is a breakpoint within."""
+    base, c = 0.0, math.sqrt(a * a + m * m)
+    for i in range(law.breakpoint_count(params)):
+        begin, after = law.breakpoint(i, params)
+        if a < begin < c:
+            return law.zone_quadrature(a, g, m, params)[0]
+        base = after if begin <= a else base
+    reach, total = math.sqrt((c - base) * (c + base)), 0.0
+    widest = math.atan2(m, math.sqrt((a - base) * (a + base)))
+    for i in range(_FEW_NODES.size):
+        psi = widest * _FEW_NODES[i]
+        q, below = reach * math.cos(psi), reach * math.sin(psi)
+        x = math.sqrt(base * base + q * q)
+        _, da, _, dg = law.mdr_profile(law.t_along(q, base, params), params)
+        total += _FEW_WEIGHTS[i] * dg / da * math.atan2(below, x) * q * below / x
+    return widest * total
 
 
 def energy_integral(a: float, g: float, m: float, theta: float, params: Floats) -> float:

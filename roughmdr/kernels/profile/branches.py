@@ -17,7 +17,7 @@ def state_on_branch(x: float, branch: float, params: Floats) -> float:
         start = law.guess_anywhere(x, params)
         return law.solve_on_branch(
             x * params[DEPTH],
-            start if start > foot else foot + 1e-9 * params[law.first_node + 2],
+            start if start > foot else foot + 1e-9 * params[law.first_node + law.node_size],
             foot,
             math.inf,
             j,

@@ -99,7 +99,6 @@ def _no_t_of_q(q: float, params: Floats) -> float:
     return math.nan
 
 
-_SPLIT_OF_PAIRS = 0
 _SPLIT = 5  # times an octave of the initial guess is halved where all asperities share one row
 _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts have converged
 _VECTOR_CODE: set[Callable[..., Any]] = {
@@ -147,14 +146,15 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
             parts["gap_integrals"] = closed
     plain: dict[str, Any] = profile._asdict()
     pairs = cohesive and shape is not Paraboloid
-    split = _SPLIT if shared else _SPLIT_OF_PAIRS if pairs else 0
+    split, node_size = _SPLIT if shared else 0, 4 if pairs else 2
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
         "has_t_of_q": profile.t_of_q is not None,
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape is Paraboloid else math.sqrt(2.0),
         "split": split,
-        "first_node": first_node(split, 4 if pairs else 2),
+        "first_node": first_node(split, node_size),
+        "node_size": node_size,
         "newton_steps": _NEWTON_STEPS_OF_SPLIT if shared else _NEWTON_STEPS,
         "one_by_one": pairs,
         "adhesive": cohesive,

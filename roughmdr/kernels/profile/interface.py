@@ -52,6 +52,8 @@ class ProfileKernels(Kernels):
     """Times an octave of the initial guess is halved."""
     first_node: int
     """The place in a row of the first node of the initial guess."""
+    node_size: int
+    """How many numbers a node has."""
     y_of_x: Kernel
     cubic: Kernel
     guess_anywhere: Kernel
@@ -69,6 +71,7 @@ class ProfileKernels(Kernels):
     zone_panel: Callable[..., tuple[float, float, float]]
     rise_begins: Kernel
     zone_quadrature: Callable[..., tuple[float, float, float]]
+    thin_integral: Kernel
     gap_integrals: Callable[..., tuple[float, float]]
     energy_integral: Kernel
     find_junction: Callable[[Floats], bool]

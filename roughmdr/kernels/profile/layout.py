@@ -7,6 +7,7 @@ Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of
 
 MAX_BRANCHES = 8
 OCTAVES = 24
+CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
 
 # Indices from the end of a row: the parameters of the shape stand at its beginning.
 TENSION = -1

@@ -3,10 +3,9 @@
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
+from roughmdr.kernels.profile.layout import CANCELLED, COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 from roughmdr.numerics.arguments import Floats
 
-_CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
 # Gauss's rule of five nodes, exact for a slope of ninth degree: from the middle over the length, and weights.
 _INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for sign in (1.0, -1.0))
 _MIDDLE = 64.0 / 225.0
@@ -24,7 +23,7 @@ def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
     if params[TENSION] == 0.0:
         return value, slope
     lifted = value + params[DEPTH]
-    far = step > params[NEAR] * t and (foot > 0.0 or lifted > _CANCELLED * params[DEPTH])
+    far = step > params[NEAR] * t and (foot > 0.0 or lifted > CANCELLED * params[DEPTH])
     if far or law.kink(foot, t, params):
         return lifted, slope
     middle = foot + 0.5 * step
