@@ -22,15 +22,14 @@ from roughmdr.kernels.profile.layout import (
     LAST,
     LAST_X,
     NEAR,
-    OCTAVES,
     RANGE,
     STRENGTH,
 )
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.numerics.vector_math import binade_cell
+from roughmdr.numerics.vector_math import atan, binade_cell
 
-_cell = compiled(binade_cell, small=True)
+_atan, _cell = compiled(atan, small=True), compiled(binade_cell, small=True)
 
 _RTOL_STEP = 3e-8  # of the distance to the foot and of m: the next error, its square, is below rounding
 _MAX_STEPS = 12
@@ -50,7 +49,7 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
     t, a, g, da, dg = law.contact_edge(s, params)
     if law.end < math.inf and not m < law.widest_zone(a):
         return math.nan, math.nan, math.nan, math.nan
-    theta, square = math.atan2(m, a), a * a + m * m
+    theta, square = _atan(m / a), a * a + m * m
     j, k = law.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (math.sqrt(square) + a)  # c - a
     firm = (k - beta * short) / square  # B/c^2
@@ -78,9 +77,16 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
 
 
 def guess_both(x: float, params: Floats) -> tuple[float, float]:
-    """s and m within the octaves."""
-    node, u = _cell(law.y_of_x(x, params), law.split)
-    node = min(max(node, 0), (OCTAVES << law.split) - 1)
+    """s and m: within the octaves by cubics, beyond by power laws."""
+    y, last = law.y_of_x(x, params), law.octaves << law.split
+    node, u = _cell(y, law.split)
+    if node >= last:
+        at, beyond = law.first_node + 4 * last, math.log(y) - law.octaves * math.log(2.0)
+        return (
+            params[at] * math.exp(beyond * params[at + 1] / params[at]),
+            params[at + 2] * math.exp(beyond * params[at + 3] / params[at + 2]),
+        )
+    node = max(node, 0)
     at = law.first_node + 4 * node
     parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
     share, next_share = 1.0 / float(parts), 1.0 / float(parts + 1)
@@ -104,7 +110,7 @@ def fill_nodes_of(params: Floats) -> None:
     m, slope = law.zone_at(foot, params)
     params[at + 2], params[at + 3] = m, slope * params[at + 1]
     y = 1.0
-    for node in range(1, (OCTAVES << law.split) + 1):
+    for node in range(1, (law.octaves << law.split) + 1):
         before, last = y, law.first_node + 4 * (node - 1)
         y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
         x, dx = law.x_of_y(y, params)
@@ -134,12 +140,9 @@ def zone_at(s: float, params: Floats) -> tuple[float, float]:
 
 
 def guess_anywhere(x: float, params: Floats) -> float:
-    """s within and outside the octaves."""
-    y = law.y_of_x(x, params)
-    if 1.0 <= y < 2.0**OCTAVES:
-        return law.guess_both(x, params)[0]
-    end = law.first_node if y < 1.0 else law.first_node + 4 * (OCTAVES << law.split)
-    return float(params[end] * math.pow(y if y < 1.0 else y / 2.0**OCTAVES, params[end + 1] / params[end]))
+    """s at x >= that of the foot."""
+    s, _ = law.guess_both(x, params)
+    return s
 
 
 def edges_at(x: float, branch: float, params: Floats) -> tuple[bool, float, float]:
@@ -165,5 +168,5 @@ def contact_at(x: float, branch: float, params: Floats) -> tuple[float, float, f
         a, push, k = law.radius_force_stiffness(s, params)
         return s, a, push, k
     t, a, g, da, dg = law.contact_edge(s, params)
-    a, _, rise, push, growth = law.state_between((t, a, m, math.atan2(m, a), g, da, dg), params)
+    a, _, rise, push, growth = law.state_between((t, a, m, _atan(m / a), g, da, dg), params)
     return s, a, push, growth / rise

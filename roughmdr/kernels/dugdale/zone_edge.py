@@ -5,6 +5,10 @@ import math
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
+from roughmdr.numerics.vector_math import atan
+
+_atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
 _WIDE = 0.5 * math.pi - 1.0
@@ -40,7 +44,7 @@ def find_junction(params: Floats) -> bool:
 
 def gap_at(t: float, a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
     """pi/2 times the gap at c, and its derivative by m^2/2."""
-    c, theta = math.sqrt(a * a + m * m), math.atan2(m, a)
+    c, theta = math.sqrt(a * a + m * m), _atan(m / a)
     j, k = law.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (c + a)
     return j + params[STRENGTH] * (m * theta - short), (k / c + params[STRENGTH] * (c * theta / m - short / c)) / c
@@ -67,18 +71,13 @@ def zone_width(t: float, a: float, g: float, slope: float, params: Floats) -> fl
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
-    wanted = 0.5 * math.pi * params[RANGE]
-    low, high = 0.0, law.widest_zone(a)
-    if high < math.inf and not law.gap_at(t, a, g, high, params)[0] > wanted:
-        return high
-    m = law.zone_guess(a, slope, params)
-    if not m < high:
-        m = 0.5 * high
+    wanted, widest = 0.5 * math.pi * params[RANGE], law.widest_zone(a)
+    low, high, m = 0.0, math.inf, min(law.zone_guess(a, slope, params), 0.5 * widest)
     m_before, off_before, rate_before, step = 0.0, 0.0, 0.0, 1.0
     for _ in range(_MAX_ITERATIONS):
         value, growth = law.gap_at(t, a, g, m, params)
         if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
-            low, high = (m, high) if value <= 0.0 else (low, m)
+            low, high = (m, min(high, widest)) if value <= 0.0 else (low, m)
             m, m_before = 0.5 * (low + high), 0.0
             continue
         low, high = (m, high) if value < wanted else (low, m)
@@ -89,10 +88,14 @@ def zone_width(t: float, a: float, g: float, slope: float, params: Floats) -> fl
             mean = step / across
             bend, turn = (3.0 * mean - 2.0 * rate - rate_before) / across, (rate + rate_before - 2.0 * mean) / across
             way += off * off * (bend + off * turn / across)
-        if abs(way * step) <= _RTOL_STEP or not low < high:
-            return m * math.exp(way)
-        m_before, off_before, rate_before = m, off, rate
         better = m * math.exp(min(max(way, -5.0), 5.0))
+        if law.end < math.inf and better >= widest and high == math.inf:
+            if not law.gap_at(t, a, g, widest, params)[0] > wanted:
+                return widest
+            high = widest
+        if abs(way * step) <= _RTOL_STEP or not low < high:
+            return better
+        m_before, off_before, rate_before = m, off, rate
         m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
     return m
 
@@ -113,7 +116,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds."""
     t, a, g, da, dg = law.contact_edge(s, params)
     m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, params)
-    return t, a, m, math.atan2(m, a), g, da, dg
+    return t, a, m, _atan(m / a), g, da, dg
 
 
 def state_of_radius(radius: float, width: float, params: Floats) -> float:

@@ -15,7 +15,7 @@ from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile import branches, equilibrium, folds, initial_guess, newton
 from roughmdr.kernels.profile.interface import ProfileKernels, law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, OCTAVES, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
@@ -99,6 +99,7 @@ def _no_t_of_q(q: float, params: Floats) -> float:
     return math.nan
 
 
+_OCTAVES_OF_PAIRS = 14  # a node costs as much as two visits
 _SPLIT = 5  # times an octave of the initial guess is halved where all asperities share one row
 _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts have converged
 _VECTOR_CODE: set[Callable[..., Any]] = {
@@ -146,14 +147,15 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
             parts["gap_integrals"] = closed
     plain: dict[str, Any] = profile._asdict()
     pairs = cohesive and shape is not Paraboloid
-    split, node_size = _SPLIT if shared else 0, 4 if pairs else 2
+    octaves, split, node_size = _OCTAVES_OF_PAIRS if pairs else OCTAVES, _SPLIT if shared else 0, 4 if pairs else 2
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
         "has_t_of_q": profile.t_of_q is not None,
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape is Paraboloid else math.sqrt(2.0),
+        "octaves": octaves,
         "split": split,
-        "first_node": first_node(split, node_size),
+        "first_node": first_node(octaves, split, node_size),
         "node_size": node_size,
         "newton_steps": _NEWTON_STEPS_OF_SPLIT if shared else _NEWTON_STEPS,
         "one_by_one": pairs,

@@ -48,6 +48,8 @@ class ProfileKernels(Kernels):
     find_branches: Callable[[Floats], None]
     control_above_fold: Callable[..., tuple[float, float]]
     solve_on_branch: Kernel
+    octaves: int
+    """Of the initial guess."""
     split: int
     """Times an octave of the initial guess is halved."""
     first_node: int

@@ -26,6 +26,6 @@ FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
 FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first
 
 
-def first_node(split: int, numbers: int) -> int:
+def first_node(octaves: int, split: int, numbers: int) -> int:
     """Return the index of the nodes of the initial guess, octaves in 2^split parts: as many numbers of each."""
-    return TOP_X - numbers * ((OCTAVES << split) + 1)
+    return TOP_X - numbers * ((octaves << split) + 1)
