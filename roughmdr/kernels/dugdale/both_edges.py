@@ -38,9 +38,7 @@ _MOST_GROWTH = 10.0  # of m in a step
 
 
 def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
-    """The steps of s and m, and their derivatives by the indentation along the equilibria; NaN where the zone comes to
-    the end of the profile.
-    """
+    """The steps of s and m, and their derivatives by the indentation along the equilibria."""
     beta, size = params[STRENGTH], params[JUNCTION]
     if s <= 1.0:
         value, slope = law.indentation_at(s, params)
@@ -48,7 +46,7 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
         return step, size * (s + step) - m, 1.0 / slope, size / slope
     t, a, g, da, dg = law.contact_edge(s, params)
     if law.end < math.inf and not m < law.widest_zone(a):
-        return math.nan, math.nan, math.nan, math.nan
+        return law.newton_at_end(s, wanted, params)
     theta, square = _atan(m / a), a * a + m * m
     j, k = law.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (math.sqrt(square) + a)  # c - a
@@ -58,6 +56,18 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
     by_s, by_m = da * a * firm - dg * theta, m * firm + beta * theta
     both = firm * (dg * m + beta * a * da)
     return -(off * by_m + beta * open_) / both, (off * by_s - dg * open_) / both, by_m / both, -by_s / both
+
+
+def newton_at_end(s: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
+    """As ``newton_of_both`` where the zone stays at the end of the profile; NaN where it does not."""
+    t, a, g, da, dg = law.contact_edge(s, params)
+    m = law.widest_zone(a)
+    if law.gap_at(t, a, g, m, params)[0] > 0.5 * math.pi * params[RANGE]:
+        return math.nan, math.nan, math.nan, math.nan
+    m_by_s = -a * da / m
+    slope = dg - params[STRENGTH] * m_by_s
+    step = (wanted - g + params[STRENGTH] * m) / slope
+    return step, step * m_by_s, 1.0 / slope, m_by_s / slope
 
 
 def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, float, float, float, float]:

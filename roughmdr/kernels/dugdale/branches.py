@@ -38,22 +38,24 @@ def next_trial(s: float, params: Floats) -> float:
 def slope_root(low: float, high: float, params: Floats) -> float:
     """Where the slope changes its sign between low and high, on the side where it is positive.
 
-    By secants (the Illinois method) and halves, since the slope may jump.
+    By secants (the Illinois method) and halves, since the slope may jump, at a corner where the search has halted.
     """
     at_low, at_high = law.control_at(low, params)[1], law.control_at(high, params)[1]
-    rising = at_high > 0.0
+    rising, side, beside = at_high > 0.0, 0, low * (1.0 + _RTOL)
+    if (law.control_at(beside, params)[1] > 0.0) == rising:
+        return beside if rising else low
     for i in range(_MAX_ITERATIONS):
         if high - low <= _RTOL * high:
             break
         middle = 0.5 * (low + high)
-        if i % 3 != 2 and abs(at_low) < math.inf and abs(at_high) < math.inf:
+        if i % 4 != 3 and abs(at_low) < math.inf and abs(at_high) < math.inf:
             middle = low - at_low * (high - low) / (at_high - at_low)
-            middle = min(max(middle, low + _RTOL * high), high - _RTOL * high)
+            middle = min(max(middle, low + 0.5 * _RTOL * high), high - 0.5 * _RTOL * high)
         slope = law.control_at(middle, params)[1]
         if (slope > 0.0) == rising:
-            high, at_high, at_low = middle, slope, 0.5 * at_low
+            high, at_high, at_low, side = middle, slope, at_low * (0.5 if side > 0 else 1.0), 1
         else:
-            low, at_low, at_high = middle, slope, 0.5 * at_high
+            low, at_low, at_high, side = middle, slope, at_high * (0.5 if side < 0 else 1.0), -1
     return high if rising else low
 
 

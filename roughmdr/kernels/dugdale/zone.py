@@ -28,7 +28,7 @@ _NEAREST = 1e-8  # distance to the end of the profile, over it; its square is be
 _BEFORE = 1.0 - 2.0**-53  # of the end of the profile: up to there g is finite
 _UNBOUNDED = 1e100  # stands for infinity
 _FEW_NODES, _FEW_WEIGHTS = unit_gauss(8)
-_FEW_DIGITS = 1e-3  # of g(a) theta: of a smaller difference to it three digits are lost
+_FEW_DIGITS = 1e-6  # of g(a) theta: a smaller difference to it has no ten digits
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 
 
