@@ -38,12 +38,10 @@ def next_trial(s: float, params: Floats) -> float:
 def slope_root(low: float, high: float, params: Floats) -> float:
     """Where the slope changes its sign between low and high, on the side where it is positive.
 
-    By secants (the Illinois method) and halves, since the slope may jump, at a corner where the search has halted.
+    By secants (the Illinois method) and halves, since the slope may jump.
     """
     at_low, at_high = law.control_at(low, params)[1], law.control_at(high, params)[1]
-    rising, side, beside = at_high > 0.0, 0, low * (1.0 + _RTOL)
-    if (law.control_at(beside, params)[1] > 0.0) == rising:
-        return beside if rising else low
+    rising, side = at_high > 0.0, 0
     for i in range(_MAX_ITERATIONS):
         if high - low <= _RTOL * high:
             break

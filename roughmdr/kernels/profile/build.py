@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.kernels.dugdale import both_edges, paraboloid, zone, zone_edge
+from roughmdr.kernels.dugdale import both_edges, edges_table, paraboloid, zone, zone_edge
 from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
 from roughmdr.kernels.interface import Columns, Material
@@ -139,9 +139,9 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
     profile, shared, tabled = profile_of(shape), shape.shared, issubclass(shape, TabledShape)
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
-        last = paraboloid if shape is Paraboloid else both_edges
+        last = (paraboloid,) if shape is Paraboloid else (both_edges, edges_table)
         parts["state_by_search"] = parts["state_on_branch"]
-        parts |= _functions(zone, zone_edge, dugdale_equilibrium, dugdale_branches, last)
+        parts |= _functions(zone, zone_edge, dugdale_equilibrium, dugdale_branches, *last)
         closed = parts.pop("gap_integrals_closed")
         if profile.zone_integrals is not None:
             parts["gap_integrals"] = closed

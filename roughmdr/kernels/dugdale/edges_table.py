@@ -1,0 +1,102 @@
+"""The initial guess for Newton's method on both edges: a table of both, as that of ``profile.initial_guess`` of one.
+
+Each node has s, y ds/dy, m and y dm/dy. Notation of ``both_edges``.
+"""
+
+import math
+
+import numpy as np
+
+from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.layout import COUNT, DEPTH, JUNCTION, LAST
+from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import compiled
+from roughmdr.numerics.vector_math import binade_cell
+
+_cell = compiled(binade_cell, small=True)
+
+
+def guess_both(x: float, params: Floats) -> tuple[float, float]:
+    """s and m: within the octaves by cubics, beyond by power laws."""
+    y, last = law.y_of_x(x, params), law.octaves << law.split
+    node, u = _cell(y, law.split)
+    if node >= last:
+        at, beyond = law.first_node + 4 * last, math.log(y) - law.octaves * math.log(2.0)
+        return (
+            params[at] * math.exp(beyond * params[at + 1] / params[at]),
+            params[at + 2] * math.exp(beyond * params[at + 3] / params[at + 2]),
+        )
+    node = max(node, 0)
+    at = law.first_node + 4 * node
+    parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
+    share, next_share = 1.0 / float(parts), 1.0 / float(parts + 1)
+    return (
+        law.cubic(u, params[at], params[at + 1] * share, params[at + 4], params[at + 5] * next_share),
+        law.cubic(u, params[at + 2], params[at + 3] * share, params[at + 6], params[at + 7] * next_share),
+    )
+
+
+def fill_nodes(rows: Floats) -> None:
+    """Fill in the nodes of all rows."""
+    for i in range(rows.shape[0]):
+        if rows[i, COUNT] > 0.0:
+            law.fill_nodes_of(rows[i])
+
+
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+    """Return a row for each of the asperities from start to stop; those like the one before are not computed again."""
+    rows = np.zeros((stop - start, 2 - law.first_node))
+    width, rise, params = columns
+    for i in range(start, stop):
+        row = rows[i - start]
+        if i > start and width[i] == width[i - 1] and rise[i] == rise[i - 1] and params[i] == params[i - 1]:
+            row[:] = rows[i - start - 1]
+            continue
+        row[0] = params[i]
+        law.fill_params(material, width[i], rise[i], control, row)
+        if row[COUNT] > 0.0:
+            law.fill_nodes_of(row)
+    return rows
+
+
+def fill_nodes_of(params: Floats) -> None:
+    """Fill in the nodes of one row, each from the one before."""
+    law.fill_first_node(params)
+    foot, at = params[LAST], law.first_node
+    m, slope = law.zone_at(foot, params)
+    params[at + 2], params[at + 3] = m, slope * params[at + 1]
+    y = 1.0
+    for node in range(1, (law.octaves << law.split) + 1):
+        before, last = y, law.first_node + 4 * (node - 1)
+        y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
+        x, dx = law.x_of_y(y, params)
+        interval = math.log(y / before)
+        way, step = params[last] - foot, params[last + 1] * interval
+        power = step / way if way > 0.0 else 0.0
+        s = params[last] + step * (1.0 + power * (0.5 + power / 6.0))
+        grown = params[last + 3] / params[last + 2] * interval
+        found, s, m, s_slope, m_slope = law.both_edges(x, s, params[last + 2] * math.exp(grown), params)
+        if not found:
+            start = 2.0 * params[last] - foot if params[last] > foot else max(2.0 * foot, 1e-3)
+            s = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
+            m, per_s = law.zone_at(s, params)
+            s_slope = params[DEPTH] / law.control_at(s, params)[1]
+            m_slope = per_s * s_slope
+        at = law.first_node + 4 * node
+        params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * dx, m, m_slope * dx
+
+
+def zone_at(s: float, params: Floats) -> tuple[float, float]:
+    """m at s, and its derivative by s along the equilibria."""
+    if s <= 1.0:
+        return s * params[JUNCTION], params[JUNCTION]
+    m = law.zone_edge(s, params)[2]
+    _, _, s_slope, m_slope = law.newton_of_both(s, m, 0.0, params)
+    return m, m_slope / s_slope
+
+
+def guess_anywhere(x: float, params: Floats) -> float:
+    """s at x >= that of the foot."""
+    s, _ = law.guess_both(x, params)
+    return s
