@@ -32,6 +32,11 @@ class Problem(NamedTuple):
     """Of these, rows whose error does not count: the model error alone needs them."""
 
     @property
+    def judged(self) -> tuple[int, ...]:
+        """The first rows, whose errors count: not the stiffness, which is infinite at detachment."""
+        return tuple(row for row in self.rows if row not in (STIFFNESS, *self.unjudged))
+
+    @property
     def law(self) -> Kernels:
         """Kernels of one asperity."""
         return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].law

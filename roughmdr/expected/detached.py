@@ -1,0 +1,237 @@
+"""Gauss's rule over the shape parameters at steps at which the lowest summits have detached for some of them only.
+
+The flat has risen from ``bottom`` to ``top``. Summits of a node are in contact from the higher of bottom and
+top - depth on, which has a kink over the parameters where depth = top - bottom. Sums from top - depth on are smooth.
+From these is taken what lies below bottom,
+
+    ∫_0^1 2 s ds  E[q(s) depth phi(top - (1 - s^2) depth);  (1 - s^2) depth > top - bottom],
+
+q a quantity of a contact and s^2 its distance to detachment over the depth, phi the density of heights. At fixed s the
+expectation E is that of a smooth function over a part of all parameters: along one axis of the scores the weights are
+those of integrals up to where the depth has the limit, with the nodes that all steps share.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate.totals import DISSIPATED, ERROR, STIFFNESS
+from roughmdr.ensemble.nodes import Rule, hermite
+from roughmdr.expected.curve import Curve, scales_of
+from roughmdr.expected.heights import HeightTable
+from roughmdr.expected.intervals import Intervals, jump_energies
+from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, totals_of
+from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.numerics.chebyshev import find_piece, series_at
+from roughmdr.numerics.gauss import last_coefficients, unit_gauss
+from roughmdr.numerics.jit import njit
+
+_ORDER = 32  # of the rule over s
+_NODES, _WEIGHTS = unit_gauss(_ORDER)
+_LAST = last_coefficients(_ORDER)
+_NEAR_END, _NO_HEIGHTS = 0.01, 1e-12  # of the range of heights, and of all heights: with more there they have an end
+_STEPS_OF_NEWTON = 8
+
+
+class PartialRule(NamedTuple):
+    """A rule for smooth functions, with the weights of parts of it at the steps that need them."""
+
+    problem: Problem
+    rule: Rule
+    nodes: list[QuadratureNode]
+    lines: Ints
+    """Numbers of the nodes: [line, score]."""
+    steps: Ints
+    """Those that need it."""
+
+    @classmethod
+    def of(cls, problem: Problem, rule: Rule, nodes: list[QuadratureNode]) -> "PartialRule | None":
+        """Return None where no step needs it, or where it does not hold.
+
+        It holds while the flat has turned once only, for heights without an end, and where the depth is monotone along
+        an axis of the scores.
+        """
+        memory = problem.path.memory
+        if not problem.hysteretic or nodes[0].contact.law.branched or memory.top.size != problem.path.separation.size:
+            return None
+        depths = np.array([node.contact.depth[0] for node in nodes])
+        rise = memory.top - memory.bottom
+        steps = np.flatnonzero((rise > depths.min()) & (rise < depths.max()))
+        if not steps.size or any(_have_end(node.heights) for node in nodes):
+            return None
+        lines = _lines(problem.source.node_axes, rule, np.log(depths))
+        return None if lines is None else cls(problem, rule, nodes, lines, steps)
+
+    def totals(self) -> tuple[Floats, int]:
+        """Return the totals of one asperity [row, step], but for the energy lost in jumps, and how often tables were
+        multiplied.
+        """
+        separation, rows = self.problem.path.separation, self.problem.rows
+        nodes, on_lines = list(self.nodes), np.unique(self.lines)
+        for number in on_lines.tolist():
+            node = nodes[number]
+            begin = node.in_contact.begin.copy()
+            begin[self.steps] = separation[self.steps] - node.heights.origin - node.contact.depth[0]
+            nodes[number] = node._replace(in_contact=node.in_contact._replace(begin=begin))
+        total, products = totals_of(nodes, separation, rows, list(range(separation.size)))
+        below, error = self._below_bottom()
+        total[np.array(rows)[:, None], self.steps] -= below
+        total[ERROR, self.steps] += error
+        return total, products
+
+    def _below_bottom(self) -> tuple[Floats, Floats]:
+        """Return what the summits below bottom would bear, [row, step], and the error bound of the force."""
+        memory, rows = self.problem.path.memory, self.problem.rows
+        bottom, top = memory.bottom[self.steps], memory.top[self.steps]
+        deepest = max(node.contact.depth[0] for node in self.nodes)
+        farthest = np.sqrt(1.0 - (top - bottom) / deepest)
+        s = farthest[:, None] * _NODES
+        limit = ((top - bottom)[:, None] / ((1.0 - s) * (1.0 + s))).ravel()
+        values = np.zeros((len(rows), s.size))
+        stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
+        for line in self.lines:
+            for number, weights in zip(line.tolist(), self._weights_above(line, limit).T, strict=True):
+                node = self.nodes[number]
+                y = (top - node.heights.origin)[:, None] - (1.0 - s) * (1.0 + s) * node.contact.depth[0]
+                scales = scales_of(node.contact, rows) * node.contact.depth[0]
+                _add_values(node.curve, node.heights, (s.ravel(), y.ravel(), weights), scales, stiffness_row, values)
+        values = values.reshape(len(rows), *s.shape) * farthest[:, None]
+        error = np.abs(np.einsum("sm,cm->cs", values[0], _LAST)).max(axis=0)
+        return np.einsum("rsm,m->rs", values, _WEIGHTS), error
+
+    def dissipated(self) -> Floats:
+        """Return the energy [J] that an asperity has lost in jumps up to each step."""
+        memory, separation = self.problem.path.memory, self.problem.path.separation
+        bottom, top = memory.bottom[self.steps], memory.top[self.steps]
+        off = np.zeros((2, separation.size))  # as if all made contact or lost it
+        for line in self.lines:
+            above = self._weights_above(line, top - bottom).T
+            for number, weights in zip(line.tolist(), above, strict=True):
+                node = self.nodes[number]
+                contact, heights = node.contact, node.heights
+                low, high = bottom - heights.origin, top - heights.origin - contact.depth[0]
+                lost = (node.fraction - weights) * heights.between(low, high)
+                lost -= node.fraction * heights.between(low, np.maximum(low, high))
+                energies = contact.force * contact.depth[0] * jump_energies(contact, _MADE_AND_LOST)
+                off[:, self.steps] += energies[:, None] * lost
+        made, lost = np.diff(off, axis=1, prepend=0.0)
+        rises = np.diff(separation, prepend=math.inf) > 0.0
+        return dissipated_of(self.nodes, separation.size) + np.cumsum(np.where(rises, lost, -made))
+
+    def _weights_above(self, line: Ints, limit: Floats) -> Floats:
+        """Return the weights of the nodes of a line for integrals over depths above each limit [m]: [limit, score]."""
+        depths = np.array([self.nodes[number].contact.depth[0] for number in line.tolist()])
+        middle = self.nodes[line[line.size // 2]].fraction / self.rule.weights[line.size // 2]
+        below = self.rule.weights_below(_crossings(self.rule, np.log(depths), np.log(limit)))
+        return middle * (self.rule.weights - below if depths[0] < depths[-1] else below)
+
+
+def sums_of(
+    problem: Problem, smooth: Rule | None, nodes: list[QuadratureNode], steps: list[int], *, dissipating: bool
+) -> tuple[Floats, int]:
+    """Return the totals of one asperity [row, step] at some steps, and how often tables were multiplied.
+
+    Nodes are those of the rule ``smooth``; None where they are of a rule that is not for smooth functions.
+    """
+    partial = None if smooth is None else PartialRule.of(problem, smooth, nodes)
+    if partial is None:
+        total, products = totals_of(nodes, problem.path.separation, problem.rows, steps)
+    else:
+        total, products = partial.totals()
+    if dissipating:
+        count = problem.path.separation.size
+        total[DISSIPATED] = dissipated_of(nodes, count) if partial is None else partial.dissipated()
+    return total, products
+
+
+_MADE_AND_LOST = Intervals.of([(0, 0, 1, 0.0, 0.0), (0, 1, 0, 0.0, 0.0)])
+
+
+def _have_end(heights: HeightTable) -> bool:
+    """Return whether heights do not fade out towards the lowest and the highest."""
+    low, high = heights.low[0], heights.high[-1]
+    near = _NEAR_END * (high - low)
+    return bool(heights.between(np.array([low, high - near]), np.array([low + near, high])).max() > _NO_HEIGHTS)
+
+
+def _lines(axes: tuple[int, ...], rule: Rule, values: Floats) -> Ints | None:
+    """Return the numbers of the nodes along that axis of each population on which the values depend most.
+
+    None where they are not monotone on a line.
+    """
+    order, first = rule.scores.size, 0
+    lines = []
+    for count in axes:
+        numbers = first + np.arange(order**count).reshape((order,) * count)
+        first += order**count
+        if count == 0:
+            continue
+        slopes = [abs(float(_mean(rule, values[numbers] * _along(rule.scores, axis, count)))) for axis in range(count)]
+        lines.append(np.moveaxis(numbers, int(np.argmax(slopes)), -1).reshape(-1, order))
+    steps = np.diff(values[np.concatenate(lines)], axis=1)
+    monotone = (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
+    return np.concatenate(lines) if monotone.all() else None
+
+
+def _along(scores: Floats, axis: int, count: int) -> Floats:
+    """Return scores as an array that varies along one of so many axes."""
+    return scores.reshape([-1 if each == axis else 1 for each in range(count)])
+
+
+def _mean(rule: Rule, values: Floats) -> Floats:
+    """Return the mean of values over all their axes, each one of scores."""
+    for _ in range(values.ndim):
+        values = (values * rule.weights).sum(axis=-1)
+    return values
+
+
+def _crossings(rule: Rule, values: Floats, levels: Floats) -> Floats:
+    """Return the scores at which the polynomial through monotone values at the scores has each level; infinite beyond
+    the last scores.
+    """
+    order = rule.scores.size
+    rising = values if values[0] < values[-1] else -values
+    levels = levels if values[0] < values[-1] else -levels
+    series = (rule.weights * rising * hermite(rule.scores, order)).sum(axis=1)
+    slopes = series[1:] * np.sqrt(np.arange(1.0, order))
+    after = np.clip(np.searchsorted(rising, levels), 1, order - 1)
+    low, high = rule.scores[after - 1], rule.scores[after]
+    x = np.interp(levels, rising, rule.scores)
+    for _ in range(_STEPS_OF_NEWTON):
+        basis = hermite(x, order)
+        value, slope = np.einsum("m,mx->x", series, basis), np.einsum("m,mx->x", slopes, basis[:-1])
+        low, high = np.where(value < levels, x, low), np.where(value < levels, high, x)
+        newton = x - (value - levels) / slope
+        x = np.where((low <= newton) & (newton <= high), newton, 0.5 * (low + high))
+    return np.where(levels <= rising[0], -math.inf, np.where(levels >= rising[-1], math.inf, x))
+
+
+@njit
+def _add_values(
+    curve: Curve,
+    heights: HeightTable,
+    points: tuple[Floats, Floats, Floats],
+    scales: Floats,
+    stiffness_row: int,
+    values: Floats,
+) -> None:
+    """Add to values[row, point] the quantities of a contact times the density of heights, over s.
+
+    Points are s, y [m] as differences to the origin of ``heights``, and weights. Row ``stiffness_row`` (-1 for none) of
+    the curve is times 2 s.
+    """
+    s, y, weights = points
+    z_low, z_high, densities = heights.low, heights.high, heights.coefficients
+    table = curve.table
+    s_low, s_high, coefficients = table.low, table.high[: curve.first[1]], table.coefficients
+    for i in range(s.size):
+        if weights[i] == 0.0 or not z_low[0] < y[i] < z_high[-1]:
+            continue
+        j, k = find_piece(z_high, y[i]), min(find_piece(s_high, s[i]), s_high.size - 1)
+        density = series_at(densities[j, 0], ((y[i] - z_low[j]) - (z_high[j] - y[i])) / (z_high[j] - z_low[j]))
+        u = (2.0 * s[i] - s_low[k] - s_high[k]) / (s_high[k] - s_low[k])
+        for row in range(scales.size):
+            measure = 1.0 if row == stiffness_row else 2.0 * s[i]
+            value = series_at(coefficients[k, row], u)
+            values[row, i] += weights[i] * scales[row] * measure * density * value
