@@ -19,7 +19,7 @@ from roughmdr.expected.detached import PartialRule, sums_of
 from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import Problem, QuadratureNode, set_up
 from roughmdr.expected.panels import RTOL_PANEL, halve_panels
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 
 FIRST_ORDER = 8
 WARNED_ERROR = 1e-3
@@ -36,7 +36,7 @@ _SLOWEST = 0.9  # a difference is taken to be at most so much of the one before
 _EXPONENTS = (0.5, 1.0)  # forces are about proportional to such powers of a parameter
 _PANEL_ENDS, _PANEL_ORDER = np.arange(-8.0, 8.5, 0.5).tolist(), 12  # normal scores
 _MEAN_ROUNDING = 1e-10  # relative: means that differ by less do so by roundings and by what is left out
-_PROBES = 5  # steps that are compared where no contact is hysteretic
+_PROBES = 5  # steps of each kind that are compared where nothing has a kink
 
 
 _CurvesOfRule = Callable[[list[QuadratureNode], Rule | None], Floats]
@@ -64,14 +64,38 @@ class Converged(NamedTuple):
 
 def converge_at_kinks(problem: Problem, *, dissipating: bool) -> tuple[Converged, KinkSplit | None]:
     """Return the rule for all rows, and where it is split at some steps; arguments and errors as ``converge``."""
-    if problem.hysteretic and problem.source.one_parameter:
+    if problem.hysteretic:
         with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
-            smooth = _converge_order(problem, _curves(problem, range(problem.path.separation.size), dissipating))
-            holds = PartialRule.of(problem, smooth.rule, smooth.nodes) is not None
-            if holds and max(smooth.error, smooth.error_of_others, _mean_errors(problem, smooth.rule)) <= _MAX_PARTIAL:
+            smooth = _converge_parts(problem, dissipating)
+            if smooth is not None and (max(smooth.error, smooth.error_of_others) <= _MAX_PARTIAL):
                 return smooth, None
     split = KinkSplit.of(problem)
     return converge(problem, split, dissipating=dissipating), split
+
+
+def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
+    """Return the rule for smooth functions with the weights of its parts; None where these do not hold.
+
+    Nothing has a kink then, and a few steps are compared.
+    """
+    rule = Rule.smooth(FIRST_ORDER)
+    found = PartialRule.of(problem, rule, set_up(problem, rule))
+    if found is None:
+        return None
+    separation = problem.path.separation
+    falls = np.append(True, np.diff(separation) < 0.0)
+    kinds = np.flatnonzero(falls), np.flatnonzero(~falls), found.steps
+    steps = np.unique(np.concatenate([[int(np.argmin(separation))], *(_spread(kind) for kind in kinds)]))
+    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating))
+    if PartialRule.of(problem, smooth.rule, smooth.nodes) is None:
+        return None
+    of_means = _mean_errors(problem, smooth.rule)
+    return smooth._replace(error=max(smooth.error, of_means), error_of_others=max(smooth.error_of_others, of_means))
+
+
+def _spread(steps: Ints) -> Ints:
+    """Return a few of some steps."""
+    return np.asarray(steps[np.unique(np.linspace(0, steps.size - 1, _PROBES).astype(int))])
 
 
 def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) -> Converged:
@@ -83,7 +107,7 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
     steps = [step for step in range(separation.size) if split is None or step not in split.cuts]
     if not problem.hysteretic:
         steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
-        steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
+        steps = _spread(np.array(steps)).tolist()
     curves = _curves(problem, steps, dissipating)
     if not problem.source.one_parameter:
         product = _converge_order(problem, curves)

@@ -27,10 +27,11 @@ from roughmdr.numerics.chebyshev import find_piece, series_at
 from roughmdr.numerics.gauss import last_coefficients, unit_gauss
 from roughmdr.numerics.jit import njit
 
-_ORDER = 32  # of the rule over s
+_ORDER = 32  # of the rule over s on each of two panels, which part where the median depth has the limit
 _NODES, _WEIGHTS = unit_gauss(_ORDER)
 _LAST = last_coefficients(_ORDER)
 _NEAR_END, _NO_HEIGHTS = 0.01, 1e-12  # of the range of heights, and of all heights: with more there they have an end
+_NEGLIGIBLE = 1e-14  # of all asperities
 _STEPS_OF_NEWTON = 8
 
 
@@ -53,19 +54,21 @@ class PartialRule(NamedTuple):
         an axis of the scores.
         """
         memory = problem.path.memory
-        if not problem.hysteretic or nodes[0].contact.law.branched or memory.top.size != problem.path.separation.size:
+        one_branch = all(node.curve.first.size == 2 for node in nodes) and not problem.adhesion.cohesive
+        if not problem.hysteretic or not one_branch or memory.top.size != problem.path.separation.size:
             return None
-        depths = np.array([node.contact.depth[0] for node in nodes])
         rise = memory.top - memory.bottom
-        steps = np.flatnonzero((rise > depths.min()) & (rise < depths.max()))
-        if not steps.size or any(_have_end(node.heights) for node in nodes):
+        shallowest, _, deepest = _range(nodes)
+        steps = np.flatnonzero((rise > shallowest) & (rise < deepest))
+        if not steps.size or any(_have_end(heights) for heights in {id(n.heights): n.heights for n in nodes}.values()):
             return None
-        lines = _lines(problem.source.node_axes, rule, np.log(depths))
+        lines = _lines(problem.source.node_axes, rule, np.log([node.contact.depth[0] for node in nodes]))
         return None if lines is None else cls(problem, rule, nodes, lines, steps)
 
-    def totals(self) -> tuple[Floats, int]:
-        """Return the totals of one asperity [row, step], but for the energy lost in jumps, and how often tables were
-        multiplied.
+    def totals(self, steps: list[int]) -> tuple[Floats, int]:
+        """Return the totals of one asperity [row, step], 0 but at some steps, and how often tables were multiplied.
+
+        The energy lost in jumps is not among them.
         """
         separation, rows = self.problem.path.separation, self.problem.rows
         nodes, on_lines = list(self.nodes), np.unique(self.lines)
@@ -74,19 +77,22 @@ class PartialRule(NamedTuple):
             begin = node.in_contact.begin.copy()
             begin[self.steps] = separation[self.steps] - node.heights.origin - node.contact.depth[0]
             nodes[number] = node._replace(in_contact=node.in_contact._replace(begin=begin))
-        total, products = totals_of(nodes, separation, rows, list(range(separation.size)))
-        below, error = self._below_bottom()
-        total[np.array(rows)[:, None], self.steps] -= below
-        total[ERROR, self.steps] += error
+        total, products = totals_of(nodes, separation, rows, steps)
+        kinked = np.intersect1d(self.steps, steps)
+        below, error = self._replace(steps=kinked)._below_bottom()
+        total[np.array(rows)[:, None], kinked] -= below
+        total[ERROR, kinked] += error
         return total, products
 
     def _below_bottom(self) -> tuple[Floats, Floats]:
         """Return what the summits below bottom would bear, [row, step], and the error bound of the force."""
         memory, rows = self.problem.path.memory, self.problem.rows
         bottom, top = memory.bottom[self.steps], memory.top[self.steps]
-        deepest = max(node.contact.depth[0] for node in self.nodes)
+        _, middle, deepest = _range(self.nodes)
         farthest = np.sqrt(1.0 - (top - bottom) / deepest)
-        s = farthest[:, None] * _NODES
+        turn = np.sqrt(np.maximum(1.0 - (top - bottom) / middle, 0.25 * farthest * farthest))
+        begin, width = np.column_stack([0.0 * turn, turn]), np.column_stack([turn, farthest - turn])
+        s = (begin[:, :, None] + width[:, :, None] * _NODES).reshape(turn.size, -1)
         limit = ((top - bottom)[:, None] / ((1.0 - s) * (1.0 + s))).ravel()
         values = np.zeros((len(rows), s.size))
         stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
@@ -96,9 +102,9 @@ class PartialRule(NamedTuple):
                 y = (top - node.heights.origin)[:, None] - (1.0 - s) * (1.0 + s) * node.contact.depth[0]
                 scales = scales_of(node.contact, rows) * node.contact.depth[0]
                 _add_values(node.curve, node.heights, (s.ravel(), y.ravel(), weights), scales, stiffness_row, values)
-        values = values.reshape(len(rows), *s.shape) * farthest[:, None]
-        error = np.abs(np.einsum("sm,cm->cs", values[0], _LAST)).max(axis=0)
-        return np.einsum("rsm,m->rs", values, _WEIGHTS), error
+        values = values.reshape(len(rows), *width.shape, _ORDER) * width[:, :, None]
+        error = np.abs(np.einsum("spm,cm->cps", values[0], _LAST)).max(axis=0).sum(axis=0)
+        return np.asarray(np.einsum("rspm,m->rs", values, _WEIGHTS)), error
 
     def dissipated(self) -> Floats:
         """Return the energy [J] that an asperity has lost in jumps up to each step."""
@@ -124,7 +130,7 @@ class PartialRule(NamedTuple):
         depths = np.array([self.nodes[number].contact.depth[0] for number in line.tolist()])
         middle = self.nodes[line[line.size // 2]].fraction / self.rule.weights[line.size // 2]
         below = self.rule.weights_below(_crossings(self.rule, np.log(depths), np.log(limit)))
-        return middle * (self.rule.weights - below if depths[0] < depths[-1] else below)
+        return np.asarray(middle * (self.rule.weights - below if depths[0] < depths[-1] else below))
 
 
 def sums_of(
@@ -138,7 +144,7 @@ def sums_of(
     if partial is None:
         total, products = totals_of(nodes, problem.path.separation, problem.rows, steps)
     else:
-        total, products = partial.totals()
+        total, products = partial.totals(steps)
     if dissipating:
         count = problem.path.separation.size
         total[DISSIPATED] = dissipated_of(nodes, count) if partial is None else partial.dissipated()
@@ -146,6 +152,16 @@ def sums_of(
 
 
 _MADE_AND_LOST = Intervals.of([(0, 0, 1, 0.0, 0.0), (0, 1, 0, 0.0, 0.0)])
+
+
+def _range(nodes: list[QuadratureNode]) -> tuple[float, float, float]:
+    """Return the depths [m] below and above which only a negligible fraction detaches, and the median between them."""
+    depths = np.array([node.contact.depth[0] for node in nodes])
+    order = np.argsort(depths)
+    below = np.cumsum(np.array([node.fraction for node in nodes])[order])
+    at = np.searchsorted(below, [_NEGLIGIBLE, 0.5, 1.0 - _NEGLIGIBLE]).clip(max=order.size - 1)
+    low, middle, high = depths[order[at]].tolist()
+    return low, middle, high
 
 
 def _have_end(heights: HeightTable) -> bool:

@@ -27,10 +27,10 @@ def pull_off_of(problem: Problem, split: KinkSplit | None, chosen: Converged, fo
     if not problem.law.adhesive:
         return WITHOUT_TENSION
 
-    def totals(along: LoadingPath) -> Floats:
-        return count * chosen.sums(problem._replace(path=along), moved(nodes, along), dissipating=False)[0]
+    def totals(along: LoadingPath, rows: tuple[int, ...]) -> Floats:
+        return count * chosen.sums(problem._replace(path=along, rows=rows), moved(nodes, along), dissipating=False)[0]
 
-    found = locate(rises, lambda along: totals(along)[FORCE])
+    found = locate(rises, lambda along: totals(along, problem.rows[:1])[FORCE])
     if found is None:
         return WITHOUT_TENSION
     last = found.path.separation.size - 1
@@ -38,7 +38,7 @@ def pull_off_of(problem: Problem, split: KinkSplit | None, chosen: Converged, fo
     if exact is not None and last in exact.cuts:
         there = count * exact.total(last, dissipating=False)
     else:
-        there = totals(found.path)[:, last]
+        there = totals(found.path, problem.rows)[:, last]
     return PullOff(*map(float, (there[FORCE], found.path.separation[last], there[COUNT], there[AREA])))
 
 
