@@ -86,9 +86,7 @@ def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
     falls = np.append(True, np.diff(separation) < 0.0)
     kinds = np.flatnonzero(falls), np.flatnonzero(~falls), found.steps
     steps = np.unique(np.concatenate([[int(np.argmin(separation))], *(_spread(kind) for kind in kinds)]))
-    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating))
-    if PartialRule.of(problem, smooth.rule, smooth.nodes) is None:
-        return None
+    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating), in_parts=True)
     of_means = _mean_errors(problem, smooth.rule)
     return smooth._replace(error=max(smooth.error, of_means), error_of_others=max(smooth.error_of_others, of_means))
 
@@ -141,8 +139,11 @@ def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _Curve
     return curves
 
 
-def _converge_order(problem: Problem, curves: _CurvesOfRule) -> Converged:
-    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help."""
+def _converge_order(problem: Problem, curves: _CurvesOfRule, *, in_parts: bool = False) -> Converged:
+    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help.
+
+    Rules that have to be taken ``in_parts`` but do not have them are not tried.
+    """
     rule = Rule.smooth(FIRST_ORDER)
     nodes = set_up(problem, rule)
     found = curves(nodes, rule)
@@ -155,6 +156,8 @@ def _converge_order(problem: Problem, curves: _CurvesOfRule) -> Converged:
         if count > _MAX_NODES:
             break
         finer_nodes = set_up(problem, finer_rule)
+        if in_parts and PartialRule.of(problem, finer_rule, finer_nodes) is None:
+            break
         finer = curves(finer_nodes, finer_rule)
         largest, change = (np.abs(values).max(axis=1, initial=0.0) for values in (finer, finer - found))
         last, changes = changes, change / np.where(largest > 0.0, largest, 1.0)

@@ -54,16 +54,21 @@ class PartialRule(NamedTuple):
         an axis of the scores.
         """
         memory = problem.path.memory
-        one_branch = all(node.curve.first.size == 2 for node in nodes) and not problem.adhesion.cohesive
-        if not problem.hysteretic or not one_branch or memory.top.size != problem.path.separation.size:
+        if not problem.hysteretic or problem.adhesion.cohesive or memory.top.size != problem.path.separation.size:
             return None
         rise = memory.top - memory.bottom
         shallowest, _, deepest = _range(nodes)
         steps = np.flatnonzero((rise > shallowest) & (rise < deepest))
         if not steps.size or any(_have_end(heights) for heights in {id(n.heights): n.heights for n in nodes}.values()):
             return None
-        lines = _lines(problem.source.node_axes, rule, np.log([node.contact.depth[0] for node in nodes]))
-        return None if lines is None else cls(problem, rule, nodes, lines, steps)
+        log_depths = np.log([node.contact.depth[0] for node in nodes])
+        lines = _lines(problem.source.node_axes, rule, log_depths)
+        lines = lines[np.array([node.fraction for node in nodes])[lines].sum(axis=1) > _NEGLIGIBLE]
+        rises = np.diff(log_depths[lines], axis=1) > 0.0
+        falls = np.diff(log_depths[lines], axis=1) < 0.0
+        monotone = (rises.all(axis=1) | falls.all(axis=1)).all()
+        one_branch = all(nodes[number].curve.first.size == 2 for number in lines.ravel())
+        return cls(problem, rule, nodes, lines, steps) if lines.size and monotone and one_branch else None
 
     def totals(self, steps: list[int]) -> tuple[Floats, int]:
         """Return the totals of one asperity [row, step], 0 but at some steps, and how often tables were multiplied.
@@ -79,6 +84,8 @@ class PartialRule(NamedTuple):
             nodes[number] = node._replace(in_contact=node.in_contact._replace(begin=begin))
         total, products = totals_of(nodes, separation, rows, steps)
         kinked = np.intersect1d(self.steps, steps)
+        if not kinked.size:
+            return total, products
         below, error = self._replace(steps=kinked)._below_bottom()
         total[np.array(rows)[:, None], kinked] -= below
         total[ERROR, kinked] += error
@@ -123,7 +130,7 @@ class PartialRule(NamedTuple):
                 off[:, self.steps] += energies[:, None] * lost
         made, lost = np.diff(off, axis=1, prepend=0.0)
         rises = np.diff(separation, prepend=math.inf) > 0.0
-        return dissipated_of(self.nodes, separation.size) + np.cumsum(np.where(rises, lost, -made))
+        return np.asarray(dissipated_of(self.nodes, separation.size) + np.cumsum(np.where(rises, lost, -made)))
 
     def _weights_above(self, line: Ints, limit: Floats) -> Floats:
         """Return the weights of the nodes of a line for integrals over depths above each limit [m]: [limit, score]."""
@@ -171,23 +178,20 @@ def _have_end(heights: HeightTable) -> bool:
     return bool(heights.between(np.array([low, high - near]), np.array([low + near, high])).max() > _NO_HEIGHTS)
 
 
-def _lines(axes: tuple[int, ...], rule: Rule, values: Floats) -> Ints | None:
+def _lines(axes: tuple[int, ...], rule: Rule, values: Floats) -> Ints:
     """Return the numbers of the nodes along that axis of each population on which the values depend most.
 
-    None where they are not monotone on a line.
+    They are [line, score]. Populations without an axis have none.
     """
     order, first = rule.scores.size, 0
-    lines = []
+    lines = [np.zeros((0, order), dtype=np.int64)]
     for count in axes:
         numbers = first + np.arange(order**count).reshape((order,) * count)
         first += order**count
-        if count == 0:
-            continue
-        slopes = [abs(float(_mean(rule, values[numbers] * _along(rule.scores, axis, count)))) for axis in range(count)]
-        lines.append(np.moveaxis(numbers, int(np.argmax(slopes)), -1).reshape(-1, order))
-    steps = np.diff(values[np.concatenate(lines)], axis=1)
-    monotone = (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
-    return np.concatenate(lines) if monotone.all() else None
+        slopes = [abs(_mean(rule, values[numbers] * _along(rule.scores, axis, count))) for axis in range(count)]
+        if slopes:
+            lines.append(np.moveaxis(numbers, int(np.argmax(slopes)), -1).reshape(-1, order))
+    return np.concatenate(lines)
 
 
 def _along(scores: Floats, axis: int, count: int) -> Floats:
@@ -195,11 +199,11 @@ def _along(scores: Floats, axis: int, count: int) -> Floats:
     return scores.reshape([-1 if each == axis else 1 for each in range(count)])
 
 
-def _mean(rule: Rule, values: Floats) -> Floats:
+def _mean(rule: Rule, values: Floats) -> float:
     """Return the mean of values over all their axes, each one of scores."""
     for _ in range(values.ndim):
         values = (values * rule.weights).sum(axis=-1)
-    return values
+    return float(values)
 
 
 def _crossings(rule: Rule, values: Floats, levels: Floats) -> Floats:
