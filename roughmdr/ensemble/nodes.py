@@ -91,7 +91,8 @@ class Rule(NamedTuple):
         ends = np.clip(ends, -_FAR, _FAR)
         density = np.exp(-0.5 * ends**2) / math.sqrt(2.0 * math.pi)
         integrals = -hermite(ends, order - 1) * density / np.sqrt(np.arange(1.0, order))[:, None]
-        return self.weights * (ndtr(ends)[:, None] + np.einsum("me,ms->es", integrals, hermite(self.scores, order)[1:]))
+        sums = ndtr(ends)[:, None] + np.einsum("me,ms->es", integrals, hermite(self.scores, order)[1:])
+        return np.asarray(self.weights * sums)
 
     @classmethod
     def between(cls, cuts: list[float], order: int) -> "Rule":

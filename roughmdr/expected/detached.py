@@ -17,11 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, STIFFNESS
-from roughmdr.ensemble.nodes import Rule, hermite
+from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.curve import Curve, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.intervals import Intervals, jump_energies
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, totals_of
+from roughmdr.expected.score_lines import crossings, lines_along
+from roughmdr.expected.table import ORDER
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.numerics.chebyshev import find_piece, series_at
 from roughmdr.numerics.gauss import last_coefficients, unit_gauss
@@ -31,8 +33,8 @@ _ORDER = 32  # of the rule over s on each of two panels, which part where the me
 _NODES, _WEIGHTS = unit_gauss(_ORDER)
 _LAST = last_coefficients(_ORDER)
 _NEAR_END, _NO_HEIGHTS = 0.01, 1e-12  # of the range of heights, and of all heights: with more there they have an end
+_KINK = 1e-6  # of the largest slope of the density: it jumps by no more where it is smooth
 _NEGLIGIBLE = 1e-14  # of all asperities
-_STEPS_OF_NEWTON = 8
 
 
 class PartialRule(NamedTuple):
@@ -50,8 +52,8 @@ class PartialRule(NamedTuple):
     def of(cls, problem: Problem, rule: Rule, nodes: list[QuadratureNode]) -> "PartialRule | None":
         """Return None where no step needs it, or where it does not hold.
 
-        It holds while the flat has turned once only, for heights without an end, and where the depth is monotone along
-        an axis of the scores.
+        It holds while the flat has turned once only, for heights whose density is smooth and contacts of one branch,
+        and where the depth is monotone along an axis of the scores.
         """
         memory = problem.path.memory
         if not problem.hysteretic or problem.adhesion.cohesive or memory.top.size != problem.path.separation.size:
@@ -59,10 +61,10 @@ class PartialRule(NamedTuple):
         rise = memory.top - memory.bottom
         shallowest, _, deepest = _range(nodes)
         steps = np.flatnonzero((rise > shallowest) & (rise < deepest))
-        if not steps.size or any(_have_end(heights) for heights in {id(n.heights): n.heights for n in nodes}.values()):
+        if not steps.size or not all(map(_are_smooth, {id(node.heights): node.heights for node in nodes}.values())):
             return None
         log_depths = np.log([node.contact.depth[0] for node in nodes])
-        lines = _lines(problem.source.node_axes, rule, log_depths)
+        lines = lines_along(problem.source.node_axes, rule, log_depths)
         lines = lines[np.array([node.fraction for node in nodes])[lines].sum(axis=1) > _NEGLIGIBLE]
         rises = np.diff(log_depths[lines], axis=1) > 0.0
         falls = np.diff(log_depths[lines], axis=1) < 0.0
@@ -136,7 +138,7 @@ class PartialRule(NamedTuple):
         """Return the weights of the nodes of a line for integrals over depths above each limit [m]: [limit, score]."""
         depths = np.array([self.nodes[number].contact.depth[0] for number in line.tolist()])
         middle = self.nodes[line[line.size // 2]].fraction / self.rule.weights[line.size // 2]
-        below = self.rule.weights_below(_crossings(self.rule, np.log(depths), np.log(limit)))
+        below = self.rule.weights_below(crossings(self.rule, np.log(depths), np.log(limit)))
         return np.asarray(middle * (self.rule.weights - below if depths[0] < depths[-1] else below))
 
 
@@ -171,60 +173,16 @@ def _range(nodes: list[QuadratureNode]) -> tuple[float, float, float]:
     return low, middle, high
 
 
-def _have_end(heights: HeightTable) -> bool:
-    """Return whether heights do not fade out towards the lowest and the highest."""
+def _are_smooth(heights: HeightTable) -> bool:
+    """Return whether heights fade out towards the lowest and the highest, and their density has no kink between."""
     low, high = heights.low[0], heights.high[-1]
     near = _NEAR_END * (high - low)
-    return bool(heights.between(np.array([low, high - near]), np.array([low + near, high])).max() > _NO_HEIGHTS)
-
-
-def _lines(axes: tuple[int, ...], rule: Rule, values: Floats) -> Ints:
-    """Return the numbers of the nodes along that axis of each population on which the values depend most.
-
-    They are [line, score]. Populations without an axis have none.
-    """
-    order, first = rule.scores.size, 0
-    lines = [np.zeros((0, order), dtype=np.int64)]
-    for count in axes:
-        numbers = first + np.arange(order**count).reshape((order,) * count)
-        first += order**count
-        slopes = [abs(_mean(rule, values[numbers] * _along(rule.scores, axis, count))) for axis in range(count)]
-        if slopes:
-            lines.append(np.moveaxis(numbers, int(np.argmax(slopes)), -1).reshape(-1, order))
-    return np.concatenate(lines)
-
-
-def _along(scores: Floats, axis: int, count: int) -> Floats:
-    """Return scores as an array that varies along one of so many axes."""
-    return scores.reshape([-1 if each == axis else 1 for each in range(count)])
-
-
-def _mean(rule: Rule, values: Floats) -> float:
-    """Return the mean of values over all their axes, each one of scores."""
-    for _ in range(values.ndim):
-        values = (values * rule.weights).sum(axis=-1)
-    return float(values)
-
-
-def _crossings(rule: Rule, values: Floats, levels: Floats) -> Floats:
-    """Return the scores at which the polynomial through monotone values at the scores has each level; infinite beyond
-    the last scores.
-    """
-    order = rule.scores.size
-    rising = values if values[0] < values[-1] else -values
-    levels = levels if values[0] < values[-1] else -levels
-    series = (rule.weights * rising * hermite(rule.scores, order)).sum(axis=1)
-    slopes = series[1:] * np.sqrt(np.arange(1.0, order))
-    after = np.clip(np.searchsorted(rising, levels), 1, order - 1)
-    low, high = rule.scores[after - 1], rule.scores[after]
-    x = np.interp(levels, rising, rule.scores)
-    for _ in range(_STEPS_OF_NEWTON):
-        basis = hermite(x, order)
-        value, slope = np.einsum("m,mx->x", series, basis), np.einsum("m,mx->x", slopes, basis[:-1])
-        low, high = np.where(value < levels, x, low), np.where(value < levels, high, x)
-        newton = x - (value - levels) / slope
-        x = np.where((low <= newton) & (newton <= high), newton, 0.5 * (low + high))
-    return np.where(levels <= rising[0], -math.inf, np.where(levels >= rising[-1], math.inf, x))
+    if heights.between(np.array([low, high - near]), np.array([low + near, high])).max() > _NO_HEIGHTS:
+        return False
+    n = np.arange(ORDER)
+    terms = 2.0 / (heights.high - heights.low)[:, None] * heights.coefficients[:, 0] * n * n  # T_n' is n^2 at the end
+    end, begin = terms.sum(axis=1), (terms * np.where(n % 2 == 1, 1.0, -1.0)).sum(axis=1)
+    return bool(np.abs(begin[1:] - end[:-1]).max(initial=0.0) <= _KINK * np.abs(end).max())
 
 
 @njit

@@ -338,7 +338,7 @@ def test_heights_are_integrated_once_for_loading_and_unloading() -> None:
 
 
 def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
-    """For heights with an end, after a second turn, and where no step has a kink."""
+    """For heights with an end or a kink, after a second turn, and where no step has a kink."""
     down = np.array([3.0, -0.2, 0.1]) * UM
     rule = Rule.smooth(12)
 
@@ -348,5 +348,6 @@ def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
 
     assert holds(CASES[0], down)
     assert not holds({**CASES[0], "height": {"distribution": "exponential", "scale": "1 um"}}, down)
+    assert not holds({**CASES[0], "height": {"distribution": "laplace", "scale": "1 um"}}, down)
     assert not holds(CASES[0], np.append(down, [0.0, 0.05 * UM]))
     assert not holds(CASES[0], np.array([3.0, -0.2, 2.9]) * UM)
