@@ -13,6 +13,8 @@ from roughmdr.numerics.gauss import unit_gauss
 HEIGHT_END = 10.0  # normal score beyond which heights with light tails are left out: a fraction of 1e-23
 PARAMETER_END = 8.5  # normal score beyond which a rule with cuts leaves parameters out: a fraction of 1e-17
 
+_FAR = 40.0  # normal score beyond which no float holds the density
+
 
 class UpperTail(NamedTuple):
     """The heights above the last edge, which are left out."""
@@ -77,6 +79,21 @@ class Rule(NamedTuple):
         scores, weights = np.polynomial.hermite_e.hermegauss(order)
         return cls(scores, weights / weights.sum())
 
+    def weights_below(self, ends: Floats) -> Floats:
+        """Return the weights of integrals up to each of ``ends`` [end], for a rule of ``smooth``: [end, score].
+
+        They are those of the polynomial through the values at the scores, whose series is in the normalised Hermite
+        polynomials h_m: the integral of h_m times the normal density up to x is -h_(m-1)(x) density/sqrt(m).
+        """
+        from scipy.special import ndtr
+
+        order = self.scores.size
+        ends = np.clip(ends, -_FAR, _FAR)
+        density = np.exp(-0.5 * ends**2) / math.sqrt(2.0 * math.pi)
+        integrals = -hermite(ends, order - 1) * density / np.sqrt(np.arange(1.0, order))[:, None]
+        sums = ndtr(ends)[:, None] + np.einsum("me,ms->es", integrals, hermite(self.scores, order)[1:])
+        return np.asarray(self.weights * sums)
+
     @classmethod
     def between(cls, cuts: list[float], order: int) -> "Rule":
         """Return Gauss's rule of ``order`` scores between neighbouring ``cuts``, for functions smooth in the square
@@ -97,6 +114,14 @@ class Rule(NamedTuple):
             parts.append((low + (high - low) * x, (high - low) * slope * weights))
         scores, lengths = map(np.concatenate, zip(*parts, strict=True))
         return cls(scores, lengths * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi))
+
+
+def hermite(x: Floats, count: int) -> Floats:
+    """Return the first ``count`` Hermite polynomials, orthonormal over the normal density: [polynomial, x]."""
+    values = np.ones((max(count, 1), x.size))
+    for m in range(1, count):
+        values[m] = (x * values[m - 1] - (math.sqrt(m - 1.0) * values[m - 2] if m > 1 else 0.0)) / math.sqrt(m)
+    return values[:count]
 
 
 class Nodes(NamedTuple):

@@ -134,6 +134,11 @@ class Source(Section):
         """Each random shape parameter of each population as a function: normal scores -> values [SI]."""
         return []
 
+    @property
+    def node_axes(self) -> tuple[int, ...]:
+        """For each population the number of scores that vary over its ``nodes``: the last one varies fastest."""
+        return ()
+
     def node_count(self, order: int) -> int:
         """Return the number of ``nodes`` of a rule with so many scores."""
         raise NotImplementedError

@@ -27,9 +27,8 @@ from roughmdr.aggregate.totals import (
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
-from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge
-from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, moved, set_up, totals_of, undecided_of
+from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge, converge_at_kinks
+from roughmdr.expected.node import Problem, QuadratureNode, moved, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.interaction.mean_field import Shift, coupling_of, shift
 from roughmdr.interaction.settings import Interaction
@@ -71,11 +70,9 @@ def compute(
         along = LoadingPath(found.separation, no_memory(found.separation))
         problem = problem._replace(path=along, rows=rows)
     separation = problem.path.separation
-    split = KinkSplit.of(problem)
-    rule, nodes, error, error_of_others = converge(problem, split, dissipating=dissipating)
-    total, products = totals_of(nodes, separation, rows, list(range(steps)))
-    if dissipating:
-        total[DISSIPATED] = dissipated_of(nodes, steps)
+    chosen, split = converge_at_kinks(problem, dissipating=dissipating)
+    nodes, error_of_others = chosen.nodes, chosen.error_of_others
+    total, products = chosen.sums(problem, nodes, dissipating=dissipating)
     if split is not None:
         for step in split.cuts:
             total[:, step] = split.total(step, dissipating=dissipating)
@@ -88,7 +85,7 @@ def compute(
         couple(total, found)
     largest = float(np.abs(total[FORCE]).max())
     closest = float(separation.min())
-    total[ERROR] += (error + _KERNEL_ERROR) * largest + count * _tail_force(nodes, closest)
+    total[ERROR] += (chosen.error + _KERNEL_ERROR) * largest + count * _tail_force(nodes, closest)
     if total[ERROR].max() == math.inf:
         raise OutOfRange(
             f"the mean force of these {source.shape_name}s is not known to have a bound: too many of them "
@@ -100,7 +97,7 @@ def compute(
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
     radii, area = _largest_radii(nodes, closest, count), source.nominal_area
-    limits = as_ensemble(source, source.nodes(rule)).validity_limits(radii)
+    limits = as_ensemble(source, source.nodes(chosen.rule)).validity_limits(radii)
     model = problem.adhesion.model
     nominal_area = math.nan if area is None else area
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
@@ -113,7 +110,7 @@ def compute(
     )
     warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
-    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, nodes, total[FORCE]))
+    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
 
 
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
@@ -160,6 +157,7 @@ def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """
     rows = (RADIUS if TOTAL_INDEX[name] == CONDUCTANCE else TOTAL_INDEX[name] for name in variables)
     asked = [FORCE, *(row for row in rows if row not in (DISSIPATED, MACHINE))]
+    asked.sort(key=lambda row: row == STIFFNESS)  # which is not judged: rows that are come first
     needed = (AREA, COUNT)
     return tuple(dict.fromkeys([*asked, *needed])), tuple(row for row in needed if row not in asked)
 

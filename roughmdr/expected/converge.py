@@ -5,20 +5,21 @@ panels.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate.totals import STIFFNESS
+from roughmdr.aggregate.totals import DISSIPATED
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
+from roughmdr.expected.detached import PartialRule, sums_of
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, set_up, totals_of
-from roughmdr.expected.panels import RTOL_PANEL, Curves, halve_panels
-from roughmdr.numerics.arguments import Floats
+from roughmdr.expected.node import Problem, QuadratureNode, set_up
+from roughmdr.expected.panels import RTOL_PANEL, halve_panels
+from roughmdr.numerics.arguments import Floats, Ints
 
 FIRST_ORDER = 8
 WARNED_ERROR = 1e-3
@@ -27,6 +28,7 @@ _ORDERS = (12, 18, 27, 40, 60, 90, 135)
 _MAX_NODES = 6_000
 _RTOL_ORDER = 1e-11  # of the largest force: orders whose forces differ by less are both right
 _MAX_ERROR = 1e-6  # of the largest: one parameter with a larger error is integrated over panels
+_MAX_PARTIAL = 1e-9  # of the largest: with a larger error the rule is split, or integrated over panels
 _RTOL_KINKED = 1e-7  # of the largest values: tolerance of panels with kinks, where a smaller one costs too much
 _KINK_FACTOR = 10.0  # safety factor on the change by halving panels, since nodes may miss kinks between them
 _SLOW = 0.3  # a higher order that leaves more of the difference does not help
@@ -34,7 +36,10 @@ _SLOWEST = 0.9  # a difference is taken to be at most so much of the one before
 _EXPONENTS = (0.5, 1.0)  # forces are about proportional to such powers of a parameter
 _PANEL_ENDS, _PANEL_ORDER = np.arange(-8.0, 8.5, 0.5).tolist(), 12  # normal scores
 _MEAN_ROUNDING = 1e-10  # relative: means that differ by less do so by roundings and by what is left out
-_PROBES = 5  # steps that are compared where no contact is hysteretic
+_PROBES = 5  # steps of each kind that are compared where nothing has a kink
+
+
+_CurvesOfRule = Callable[[list[QuadratureNode], Rule | None], Floats]
 
 
 class Converged(NamedTuple):
@@ -46,6 +51,49 @@ class Converged(NamedTuple):
     """Error bound of the force over its largest value; inf where there is none."""
     error_of_others: float
     """Likewise of the other rows, except for the stiffness, which is infinite at detachment."""
+    smooth: bool
+    """Whether the rule is that for smooth functions."""
+
+    def sums(self, problem: Problem, nodes: list[QuadratureNode], *, dissipating: bool) -> tuple[Floats, int]:
+        """Return the totals of one asperity [row, step], and how often tables were multiplied; ``nodes`` may have been
+        moved to the path of the problem.
+        """
+        steps = list(range(problem.path.separation.size))
+        return sums_of(problem, self.rule if self.smooth else None, nodes, steps, dissipating=dissipating)
+
+
+def converge_at_kinks(problem: Problem, *, dissipating: bool) -> tuple[Converged, KinkSplit | None]:
+    """Return the rule for all rows, and where it is split at some steps; arguments and errors as ``converge``."""
+    if problem.hysteretic:
+        with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
+            smooth = _converge_parts(problem, dissipating)
+            if smooth is not None and (max(smooth.error, smooth.error_of_others) <= _MAX_PARTIAL):
+                return smooth, None
+    split = KinkSplit.of(problem)
+    return converge(problem, split, dissipating=dissipating), split
+
+
+def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
+    """Return the rule for smooth functions with the weights of its parts; None where these do not hold.
+
+    Nothing has a kink then, and a few steps are compared.
+    """
+    rule = Rule.smooth(FIRST_ORDER)
+    found = PartialRule.of(problem, rule, set_up(problem, rule))
+    if found is None:
+        return None
+    separation = problem.path.separation
+    falls = np.append(True, np.diff(separation) < 0.0)
+    kinds = np.flatnonzero(falls), np.flatnonzero(~falls), found.steps
+    steps = np.unique(np.concatenate([[int(np.argmin(separation))], *(_spread(kind) for kind in kinds)]))
+    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating), in_parts=True)
+    of_means = _mean_errors(problem, smooth.rule)
+    return smooth._replace(error=max(smooth.error, of_means), error_of_others=max(smooth.error_of_others, of_means))
+
+
+def _spread(steps: Ints) -> Ints:
+    """Return a few of some steps."""
+    return np.asarray(steps[np.unique(np.linspace(0, steps.size - 1, _PROBES).astype(int))])
 
 
 def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) -> Converged:
@@ -57,21 +105,12 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
     steps = [step for step in range(separation.size) if split is None or step not in split.cuts]
     if not problem.hysteretic:
         steps.sort(key=lambda step: float(separation[step]))  # the closest, where the force is largest, is one of them
-        steps = [steps[i] for i in np.unique(np.linspace(0, len(steps) - 1, _PROBES).astype(int))]
-    rows = tuple(row for row in problem.rows if row not in (STIFFNESS, *problem.unjudged))
-
-    def curves(nodes: list[QuadratureNode]) -> Floats:
-        """Return the force and all others: [curve, step]."""
-        totals = totals_of(nodes, separation, rows, steps)[0][np.ix_(rows, steps)]
-        return np.vstack([totals, dissipated_of(nodes, separation.size)[steps]]) if dissipating else totals
-
-    def mean_error(rule: Rule) -> float:
-        return sum(_mean_error(parameter, rule) for parameter in problem.source.drawn_parameters)
-
+        steps = _spread(np.array(steps)).tolist()
+    curves = _curves(problem, steps, dissipating)
     if not problem.source.one_parameter:
         product = _converge_order(problem, curves)
-        of_means = mean_error(product.rule)
-        others = max(product.error_of_others, of_means if len(rows) > 1 or dissipating else 0.0)
+        of_means = _mean_errors(problem, product.rule)
+        others = max(product.error_of_others, of_means if len(problem.judged) > 1 or dissipating else 0.0)
         return product._replace(error=max(product.error, of_means), error_of_others=others)
     # A contact that detaches makes a kink over the parameter, at each step another one.
     limit, rtol, factor = (
@@ -80,30 +119,46 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
     smooth: Converged | None = None
     with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
         smooth = _converge_order(problem, curves)
-    if smooth is not None and max(smooth.error, smooth.error_of_others, mean_error(smooth.rule)) <= limit:
+    if smooth is not None and max(smooth.error, smooth.error_of_others, _mean_errors(problem, smooth.rule)) <= limit:
         return smooth
-    rule, nodes, errors = halve_panels(partial(set_up, problem), curves, rtol)
+    rule, nodes, errors = halve_panels(partial(set_up, problem), lambda nodes: curves(nodes, None), rtol)
     errors *= factor
     if smooth is not None and max(smooth.error, smooth.error_of_others) <= errors.max():
         return smooth
-    return Converged(rule, nodes, float(errors[0]), float(errors[1:].max(initial=0.0)))
+    return Converged(rule, nodes, float(errors[0]), float(errors[1:].max(initial=0.0)), smooth=False)
 
 
-def _converge_order(problem: Problem, curves: Curves) -> Converged:
-    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help."""
+def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _CurvesOfRule:
+    """Return the function that has the force and all other rows which are judged: [curve, step]."""
+    judged = problem._replace(rows=problem.judged)
+    rows = (*judged.rows, DISSIPATED) if dissipating else judged.rows
+
+    def curves(nodes: list[QuadratureNode], smooth: Rule | None) -> Floats:
+        return sums_of(judged, smooth, nodes, list(steps), dissipating=dissipating)[0][np.ix_(rows, steps)]
+
+    return curves
+
+
+def _converge_order(problem: Problem, curves: _CurvesOfRule, *, in_parts: bool = False) -> Converged:
+    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help.
+
+    Rules that have to be taken ``in_parts`` but do not have them are not tried.
+    """
     rule = Rule.smooth(FIRST_ORDER)
     nodes = set_up(problem, rule)
-    found = curves(nodes)
+    found = curves(nodes, rule)
     last = changes = np.full(len(found), math.inf)
     for order in _ORDERS:
         finer_rule = Rule.smooth(order)
-        count = problem.source.nodes(finer_rule).weights.size
+        count = problem.source.node_count(order)
         if count == len(nodes):  # no parameter is drawn
-            return Converged(rule, nodes, 0.0, 0.0)
+            return Converged(rule, nodes, 0.0, 0.0, smooth=True)
         if count > _MAX_NODES:
             break
         finer_nodes = set_up(problem, finer_rule)
-        finer = curves(finer_nodes)
+        if in_parts and PartialRule.of(problem, finer_rule, finer_nodes) is None:
+            break
+        finer = curves(finer_nodes, finer_rule)
         largest, change = (np.abs(values).max(axis=1, initial=0.0) for values in (finer, finer - found))
         last, changes = changes, change / np.where(largest > 0.0, largest, 1.0)
         too_large = changes > _RTOL_ORDER
@@ -113,8 +168,14 @@ def _converge_order(problem: Problem, curves: Curves) -> Converged:
         if (changes > _SLOW * last)[too_large].all():
             break
     pairs = zip(changes.tolist(), last.tolist(), strict=True)
-    errors = [_changes_to_come(change, before, problem.hysteretic) for change, before in pairs]
-    return Converged(rule, nodes, errors[0], max(errors[1:], default=0.0))
+    kinked = problem.hysteretic and PartialRule.of(problem, rule, nodes) is None
+    errors = [_changes_to_come(change, before, kinked) for change, before in pairs]
+    return Converged(rule, nodes, errors[0], max(errors[1:], default=0.0), smooth=True)
+
+
+def _mean_errors(problem: Problem, rule: Rule) -> float:
+    """Return the sum of the errors of a rule in the means of all parameters."""
+    return sum(_mean_error(parameter, rule) for parameter in problem.source.drawn_parameters)
 
 
 def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
@@ -132,13 +193,13 @@ def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:
     return worst if worst > _MEAN_ROUNDING else 0.0
 
 
-def _changes_to_come(change: float, before: float, hysteretic: bool) -> float:
+def _changes_to_come(change: float, before: float, kinked: bool) -> float:
     """Return the sum of all later changes, which decrease as the last two did or more slowly."""
     ratio = min(change / before, _SLOWEST) if before > 0.0 else _SLOWEST
     if (
         change <= _RTOL_ORDER or before == math.inf
     ):  # the coarser of two rules that agree is used; one change alone shows no rate
         return 2.0 * change
-    if hysteretic or change > _SLOW * before:  # between kinks two orders may agree by chance
+    if kinked or change > _SLOW * before:  # between kinks two orders may agree by chance
         change = max(change, before)
     return change * max(ratio / (1.0 - ratio), 1.0)

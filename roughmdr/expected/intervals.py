@@ -11,7 +11,7 @@ from roughmdr.aggregate import LoadingPath
 from roughmdr.asperity.contact import Contact
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.profile.layout import ONSET
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 
 
 class Intervals(NamedTuple):
@@ -36,10 +36,25 @@ class Intervals(NamedTuple):
         step, before, branch, begin, end = self
         return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
 
+    def disjoint(self, separation: Floats) -> "tuple[Intervals, Ints, Ints]":
+        """Return intervals that end where others at the same separation [m] and on the same branch begin.
+
+        They are numbered instead of the steps, which are returned with how many intervals each has to be added to.
+        """
+        order = np.lexsort((-self.begin, self.end, self.branch, separation[self.step]))
+        step, before, branch = self.step[order], self.branch_before[order], self.branch[order]
+        begin, end = self.begin[order], self.end[order]
+        same = np.zeros(step.size, dtype=bool)
+        same[1:] = (separation[step[1:]] == separation[step[:-1]]) & (branch[1:] == branch[:-1]) & (end[1:] == end[:-1])
+        number = np.arange(step.size)
+        rank = np.asarray(number - np.maximum.accumulate(np.where(same, 0, number)), dtype=np.int64)
+        end[1:] = np.where(same[1:], begin[:-1], end[1:])
+        return Intervals(number, before, branch, begin, end), step, rank
+
 
 def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
     """Return the summits in contact at each step, and those that jumped since the step before."""
-    if contact.law.branched:
+    if contact.law.branched and (contact.adhesion.cohesive or len(branch_ends(contact)[0]) > 1):
         return _with_branches(contact, path.separation)
     return _without_branches(contact, path)
 

@@ -32,6 +32,11 @@ class Problem(NamedTuple):
     """Of these, rows whose error does not count: the model error alone needs them."""
 
     @property
+    def judged(self) -> tuple[int, ...]:
+        """The first rows, whose errors count: not the stiffness, which is infinite at detachment."""
+        return tuple(row for row in self.rows if row not in (STIFFNESS, *self.unjudged))
+
+    @property
     def law(self) -> Kernels:
         """Kernels of one asperity."""
         return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].law
@@ -99,12 +104,17 @@ def totals_of(
     selected = np.isin(np.arange(separation.size), steps)
     stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
     for fraction, contact, curve, heights, in_contact, _ in nodes:
-        found = np.zeros((len(rows) + 1, separation.size))
-        intervals = in_contact.at_steps(selected)
-        relative = separation - heights.origin
+        intervals, order, rank = in_contact.at_steps(selected).disjoint(separation)
+        found = np.zeros((len(rows) + 1, order.size))
+        relative = separation[order] - heights.origin
         products += integrate(intervals, relative, contact.depth[0], curve, heights, stiffness_row, found)
+        for number in range(1, rank.max(initial=0) + 1):
+            within = np.flatnonzero(rank == number)
+            found[:, within] += found[:, within - 1]
         scales = fraction * scales_of(contact, rows)
-        total[[*rows, ERROR]] += np.append(scales, scales[0])[:, None] * found
+        found *= np.append(scales, scales[0])[:, None]
+        for row, values in zip((*rows, ERROR), found, strict=True):
+            total[row] += np.bincount(order, values, separation.size)
     return total, products
 
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
-from roughmdr.expected.intervals import contact_intervals
+from roughmdr.expected.converge import Converged
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, totals_of
+from roughmdr.expected.node import Problem, QuadratureNode, moved
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, Unloading, locate, unloadings
 from roughmdr.numerics.arguments import Floats
 
@@ -15,26 +15,22 @@ _FEW, _FEW_OF_MOST = 0.5, 0.01
 of those at closest approach. Heights without an end never all detach."""
 
 
-def pull_off_of(problem: Problem, split: KinkSplit | None, nodes: list[QuadratureNode], force: Floats) -> PullOff:
-    """Return the pull-off, given the nodes of the expected law and the force of all asperities [N] at each step.
+def pull_off_of(problem: Problem, split: KinkSplit | None, chosen: Converged, force: Floats) -> PullOff:
+    """Return the pull-off, given the rule of the expected law and the force of all asperities [N] at each step.
 
     NaN where no unloading ends out of contact.
     """
-    path, count = problem.path, problem.source.expected_count
+    path, count, nodes = problem.path, problem.source.expected_count, chosen.nodes
     rises = unloadings(path.separation, force)
     if not ends_apart(rises, count * _fraction_in_contact(nodes, path.separation.size)):
         return PullOff()
     if not problem.law.adhesive:
         return WITHOUT_TENSION
 
-    def totals(along: LoadingPath) -> Floats:
-        moved = [
-            node._replace(in_contact=contact_intervals(node.contact, along.relative_to(node.heights.origin))[0])
-            for node in nodes
-        ]
-        return count * totals_of(moved, along.separation, problem.rows, list(range(along.separation.size)))[0]
+    def totals(along: LoadingPath, rows: tuple[int, ...]) -> Floats:
+        return count * chosen.sums(problem._replace(path=along, rows=rows), moved(nodes, along), dissipating=False)[0]
 
-    found = locate(rises, lambda along: totals(along)[FORCE])
+    found = locate(rises, lambda along: totals(along, problem.rows[:1])[FORCE])
     if found is None:
         return WITHOUT_TENSION
     last = found.path.separation.size - 1
@@ -42,7 +38,7 @@ def pull_off_of(problem: Problem, split: KinkSplit | None, nodes: list[Quadratur
     if exact is not None and last in exact.cuts:
         there = count * exact.total(last, dissipating=False)
     else:
-        there = totals(found.path)[:, last]
+        there = totals(found.path, problem.rows)[:, last]
     return PullOff(*map(float, (there[FORCE], found.path.separation[last], there[COUNT], there[AREA])))
 
 

@@ -51,6 +51,15 @@ def evaluate_series(coefficients: Floats, u: Floats, out: Floats, before: Floats
         out[i] = u[i] * before[i] - earlier[i] + coefficients[0]
 
 
+@njit
+def series_at(coefficients: Floats, u: float) -> float:
+    """Return a series at one u."""
+    before, earlier = 0.0, 0.0
+    for n in range(coefficients.size - 1, 0, -1):
+        before, earlier = 2.0 * u * before - earlier + coefficients[n], before
+    return float(u * before - earlier + coefficients[0])
+
+
 class PiecewiseChebyshev(NamedTuple):
     """A smooth function between the first and the last of ``edges``, as a series on each piece; constant outside."""
 

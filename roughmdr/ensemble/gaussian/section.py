@@ -142,6 +142,10 @@ class NayakAsperities(PatchSource):
     def one_parameter(self) -> bool:
         return True  # the product of the curvatures
 
+    @property
+    def node_axes(self) -> tuple[int, ...]:
+        return (1,)
+
     def node_count(self, order: int) -> int:
         return order
 

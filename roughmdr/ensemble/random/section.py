@@ -189,8 +189,12 @@ class RandomAsperities(PatchSource):
         members = self.populations.members
         return [each.parameters[name].from_scores for each in members for name in each.random_parameters]
 
+    @property
+    def node_axes(self) -> tuple[int, ...]:
+        return tuple(len(population.random_parameters) for population in self.populations.members)
+
     def node_count(self, order: int) -> int:
-        return sum(order ** len(population.random_parameters) for population in self.populations.members)
+        return sum(order**axes for axes in self.node_axes)
 
     def nodes(self, rule: Rule) -> Nodes:
         return nodes_of(self.populations, rule)
