@@ -72,7 +72,7 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     ``inline`` puts its source into every caller: for parts of a loop that are called too often. ``small`` puts its
     machine code there: for parts of loops that become vector code.
     """
-    options = {"inline": "always" if inline else "never", "forceinline": small}
+    options = {"inline": "always" if inline else "never", "forceinline": small, "no_cfunc_wrapper": not os.environ.get("CW")}
     return cast(_Function, _kept_on_disk(partial(numba.njit, nogil=True, **options), function))
 
 
