@@ -89,9 +89,9 @@ def _loop(
 ) -> int:
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
-    At the step ``turn`` the flat is closest. Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. The caller has lowered
-    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``compiled_sum`` says which
-    functions the names of ``law`` stand for.
+    At the step ``turn`` the flat is closest. Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not
+    representable. The caller has lowered ``memory.bottom`` by the adhesion range, from which on the surfaces attract
+    each other. ``compiled_sum`` says which functions the names of ``law`` stand for.
     """
     visits = 0
     closest = separation[turn] - adhesion_range

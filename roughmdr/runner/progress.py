@@ -22,6 +22,9 @@ class Progress:
     def update(self) -> None:
         """Show the counts, if it is time for it."""
 
+    def compiling(self) -> None:
+        """Tell that something has to be compiled first."""
+
 
 @contextmanager
 def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
@@ -37,6 +40,10 @@ def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
         lines.print()
 
 
+def _compiling(title: str) -> str:
+    return f"{title}: compiling the kernels (once) ..."
+
+
 class _Lines(Progress):
     def __init__(self, title: str) -> None:
         super().__init__(title)
@@ -46,11 +53,17 @@ class _Lines(Progress):
         if self.done and time.monotonic() - self._printed >= _SECONDS_BETWEEN_LINES:
             self.print()
 
+    def compiling(self) -> None:
+        self._tell(_compiling(self.title))
+
     def print(self) -> None:
         more = f", {self.reused} used again" if self.reused else ""
         self._printed = time.monotonic()
+        self._tell(f"{self.title}: {self.done} of {self.total} runs{more}")
+
+    def _tell(self, line: str) -> None:
         with suppress(OSError):  # nobody reads it
-            print(f"{self.title}: {self.done} of {self.total} runs{more}", file=sys.stderr, flush=True)
+            print(line, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -67,5 +80,8 @@ def _bar(title: str) -> Iterator[Progress]:
             def update(self) -> None:
                 more = f" ({self.reused} used again)" if self.reused else ""
                 bar.update(task, total=self.total, completed=self.done, description=f"{title}{more}")
+
+            def compiling(self) -> None:
+                bar.console.print(_compiling(title), markup=False)
 
         yield Display(title)

@@ -20,6 +20,7 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
+from roughmdr.numerics.jit import compiling
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
@@ -190,7 +191,7 @@ class _Batch:
     def run(self, old: Labelled | None, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
-            with progress(self._plan.scene.title, quiet=quiet) as display:
+            with progress(self._plan.scene.title, quiet=quiet) as display, compiling(display.compiling):
                 ranges = self._rounds.begin()
                 while ranges:
                     self._round(ranges, display, stop)
