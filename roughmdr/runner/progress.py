@@ -22,8 +22,16 @@ class Progress:
     def update(self) -> None:
         """Show the counts, if it is time for it."""
 
-    def compiling(self) -> None:
-        """Tell that something has to be compiled first."""
+
+def tell_compiling(title: str, *, quiet: bool) -> None:
+    """Say on the standard error stream that kernels are compiled, which takes seconds, but only once."""
+    if not quiet and sys.stderr is not None:
+        _tell(f"{title}: compiling the kernels (once) ...")
+
+
+def _tell(line: str) -> None:
+    with suppress(OSError):  # nobody reads it
+        print(line, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -40,10 +48,6 @@ def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
         lines.print()
 
 
-def _compiling(title: str) -> str:
-    return f"{title}: compiling the kernels (once) ..."
-
-
 class _Lines(Progress):
     def __init__(self, title: str) -> None:
         super().__init__(title)
@@ -53,17 +57,10 @@ class _Lines(Progress):
         if self.done and time.monotonic() - self._printed >= _SECONDS_BETWEEN_LINES:
             self.print()
 
-    def compiling(self) -> None:
-        self._tell(_compiling(self.title))
-
     def print(self) -> None:
         more = f", {self.reused} used again" if self.reused else ""
         self._printed = time.monotonic()
-        self._tell(f"{self.title}: {self.done} of {self.total} runs{more}")
-
-    def _tell(self, line: str) -> None:
-        with suppress(OSError):  # nobody reads it
-            print(line, file=sys.stderr, flush=True)
+        _tell(f"{self.title}: {self.done} of {self.total} runs{more}")
 
 
 @contextmanager
@@ -80,8 +77,5 @@ def _bar(title: str) -> Iterator[Progress]:
             def update(self) -> None:
                 more = f" ({self.reused} used again)" if self.reused else ""
                 bar.update(task, total=self.total, completed=self.done, description=f"{title}{more}")
-
-            def compiling(self) -> None:
-                bar.console.print(_compiling(title), markup=False)
 
         yield Display(title)

@@ -25,7 +25,7 @@ from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Threads
-from roughmdr.runner.progress import Progress, progress
+from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
@@ -141,6 +141,7 @@ def execute(
                     writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
             reuse(target, old, writer.store, plan, reusable)
+        stack.enter_context(compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)))
         check_foreseen(plan)
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
         remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
@@ -191,7 +192,7 @@ class _Batch:
     def run(self, old: Labelled | None, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
-            with progress(self._plan.scene.title, quiet=quiet) as display, compiling(display.compiling):
+            with progress(self._plan.scene.title, quiet=quiet) as display:
                 ranges = self._rounds.begin()
                 while ranges:
                     self._round(ranges, display, stop)
