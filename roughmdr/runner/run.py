@@ -20,7 +20,7 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
-from roughmdr.numerics.jit import compiling
+from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
