@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 import tomli_w
 import xarray as xr
@@ -30,7 +31,7 @@ def test_run_and_plot(small: Path) -> None:
     assert done.returncode == 0, done.stderr
     for text in ("A small scene: 3 realisations x 80 steps", "pull-off     -", "± ", "run time", "out.nc"):
         assert text in done.stdout
-    assert done.stderr.strip() == "A small scene: 3 of 3 runs"
+    assert done.stderr.splitlines()[-1] == "A small scene: 3 of 3 runs"
     with xr.open_dataset(small / "out.nc") as result:
         assert result.sizes["realization"] == 3
         assert "--set batch.realizations=3" in result.attrs["history"]
@@ -44,6 +45,24 @@ def test_run_and_plot(small: Path) -> None:
 def test_quiet_says_nothing(small: Path) -> None:
     done = roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", "--workers", 1, cwd=small)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_run_says_that_it_compiles_and_only_then(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
+    run = "run", "small.toml", "--set", "batch.realizations=1", "--set", "adhesion.work=0", "-o"
+    says = [roughmdr(*run, name, cwd=small).stderr for name in ("first.nc", "second.nc")]
+    assert says[0].splitlines()[0] == "A small scene: compiling the kernels (once) ..."
+    assert says[0].count("compiling") == 1
+    assert says[1] == "A small scene: 1 of 1 runs\n"
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_quiet_run_compiles_in_silence(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
+    done = roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", "--set", "adhesion.work=0", cwd=small)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert list((small / "cache").rglob("*.nbi"))
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,8 @@ class Totals(NamedTuple):
 class SumKernels(Kernels):
     """Kernels of a shape under an adhesion model, with the parts of the sum that are compiled with them."""
 
+    energetic: bool
+    """Whether energies can be asked for: else none of their kernels is compiled."""
     natural_scales: Callable[..., bool]
     lowest_in_contact: Callable[..., float]
     update_contact: Callable[..., None]

@@ -120,8 +120,17 @@ def _overlap(ensemble: Ensemble, radius: Floats) -> float:
     return poisson_overlap(contact_radius, ensemble.nominal_area)
 
 
-def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = None) -> None:
-    """Compile the sum for a shape, an adhesion model and an interaction, before several threads or a clock need it."""
+def prepare(
+    shape: str,
+    adhesion: Adhesion,
+    interaction: Interaction | None = None,
+    variables: Iterable[str] = (),
+    *,
+    unload: bool = True,
+) -> None:
+    """Compile the sum for a shape, an adhesion model, an interaction and variables, on paths that ``unload`` or not,
+    before several threads or a clock need it.
+    """
     if interaction is not None and interaction.model == "pairwise":
         from roughmdr.interaction.solve import prepare as prepare_coupled
 
@@ -135,11 +144,12 @@ def prepare(shape: str, adhesion: Adhesion, interaction: Interaction | None = No
     example = kind(**kind.example())
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in example.nondimensional())
     columns = Columns(width, rise, params)
+    rows = {totals.TOTAL_INDEX[name] for name in variables}
     for model in adhesion.candidates if interaction is None or interaction.model != "pairwise" else ():
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
         law = choose(shape, one, params)
-        loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), set())
-        if law.adhesive:
+        loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), rows)
+        if law.adhesive and unload:
             detachment_depths(law, columns, 1.0, one)
             prepare_pull_off()
     if adhesion.work > 0.0:

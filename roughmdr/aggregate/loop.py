@@ -49,6 +49,7 @@ from roughmdr.numerics.jit import njit, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 
 _NOT_REPRESENTABLE = -1
+_ENERGIES = {ENERGY, DISSIPATED}
 
 
 @njit
@@ -84,34 +85,33 @@ def _loop(
     material: Material,
     adhesion_range: float,
     separation: Floats,
+    turn: int,
     memory: Staircase,
     totals: Totals,
 ) -> int:
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
-    Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. The caller has lowered
-    ``memory.bottom`` by the adhesion range, from which on the surfaces attract each other. ``compiled_sum`` says which
-    functions the names of ``law`` stand for.
+    At the step ``turn`` the flat is closest. Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not
+    representable. The caller has lowered ``memory.bottom`` by the adhesion range, from which on the surfaces attract
+    each other. ``compiled_sum`` says which functions the names of ``law`` stand for.
     """
     visits = 0
-    turn = np.argmin(separation)
     closest = separation[turn] - adhesion_range
     scales, max_scales = np.empty((SCALES, BLOCK)), np.empty(SCALES)
     in_contact, before, contacts = np.empty(BLOCK), np.empty(BLOCK), np.empty((CONTACT_ROWS, BLOCK))
     scratch = np.empty(BLOCK)
     total, compensation, wanted = totals.total, totals.compensation, totals.wanted
-    energetic = wanted[ENERGY] or wanted[DISSIPATED]
     for start in range(0, height.size, BLOCK):
         z = height[start : min(start + BLOCK, height.size)]
         if count_above(z, closest) == 0:
             break
         params = law.prepare(material, columns, start, start + z.size, 0.0)
         block = Block(z, params, scales, max_scales, in_contact, before, contacts, scratch)
-        if not law.natural_scales(block, columns, start, material, energetic):
+        if not law.natural_scales(block, columns, start, material, law.energetic):
             return _NOT_REPRESENTABLE
         count_before = 0
-        in_contact[:] = 0.0
-        before[:] = 0.0
+        for i in range(BLOCK):  # one by one, here and below: slices take long to compile
+            in_contact[i] = before[i] = 0.0
         for step in range(separation.size):
             h = separation[step]
             begin, end = memory.first[step], memory.first[step + 1]
@@ -124,8 +124,9 @@ def _loop(
                     error = law.error_bound(count, block, h, retracted)
                     accumulate(total[ERROR], compensation[ERROR], step, error)
             if law.adhesive:
-                in_contact[count:count_before] = 0.0  # too low
-                if wanted[DISSIPATED]:
+                for i in range(count, count_before):
+                    in_contact[i] = 0.0  # too low
+                if law.energetic and wanted[DISSIPATED]:
                     dissipated = law.jumps(max(count, count_before), block)
                     accumulate(total[DISSIPATED], compensation[DISSIPATED], step, dissipated)
                 count_before = count
@@ -138,17 +139,18 @@ def _loop(
     for row in range(ROWS):
         for step in range(separation.size):
             total[row, step] += compensation[row, step]
-    if wanted[DISSIPATED]:
+    if law.energetic and wanted[DISSIPATED]:
         cumulative_sum(total[DISSIPATED])
     return visits
 
 
 @cache
-def compiled_sum(kernels: Kernels) -> SumKernels:
-    """Return the kernels with the parts of the sum, compiled with them."""
-    whole, together = SumKernels(kernels.name), kernels.found_together
+def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
+    """Return the kernels with the parts of the sum, compiled with them; without energies where not ``energetic``."""
+    name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together
+    whole = SumKernels(name)
     solve = solve_each if kernels.one_by_one else solve_iterative if kernels.iterative else solve_closed
-    vars(whole).update({"term_sizes": no_terms, **vars(kernels)})
+    vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name, "energetic": energetic})
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,
@@ -193,7 +195,9 @@ def sum_over_asperities(
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     lowered = memory._replace(bottom=memory.bottom - adhesion.range)
-    visits = compiled_sum(kernels).loop(height, columns, material, adhesion.range, separation, lowered, totals)
+    energetic, turn = not _ENERGIES.isdisjoint(rows), int(np.argmin(separation))
+    compiled = compiled_sum(kernels, energetic=energetic)
+    visits = compiled.loop(height, columns, material, adhesion.range, separation, turn, lowered, totals)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(totals.total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {kernels.name} with "

@@ -56,7 +56,7 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
                 rigidity[i] * law.stiffness_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
             )
         accumulate(total[STIFFNESS], compensation[STIFFNESS], step, block_sum(terms, count))
-    if wanted[ENERGY]:
+    if law.energetic and wanted[ENERGY]:
         for i in range(count):
             energy = law.energy(contacts[STATE, i], law.params_of(params, i))
             terms[i] = worth[i] * energy if not law.adhesive or in_contact[i] > 0.0 else 0.0

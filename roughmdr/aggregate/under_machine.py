@@ -25,7 +25,8 @@ _NONE = np.zeros(0)
 def _compiled(kernels: Kernels) -> SumKernels:
     """Return the kernels with the parts of the response, compiled with them."""
     whole = SumKernels(kernels.name)
-    vars(whole).update({**vars(compiled_sum(kernels)), "__name__": kernels.name, "hardening": kernels.hardening})
+    of_sum = vars(compiled_sum(kernels, energetic=False))
+    vars(whole).update({**of_sum, "__name__": kernels.name, "hardening": kernels.hardening})
     for part in (response.block_at, response.add_response):
         vars(whole)[part.__name__] = specialise(part, whole)
     return whole

@@ -88,6 +88,7 @@ def split_into_tasks(
 def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     """Compile what these runs of a plan need, before several threads or a clock need it, and nothing else."""
     prepared: set[tuple[object, ...]] = set()
+    variables = normal_variables(of_contacts(plan.scene.output.variables))
     for cell, estimator in ((runs.cell, runs.estimator) for runs in ranges):
         scene, path = cell.scene, cell.path
         adhesion, asperities = scene.adhesion_model, scene.asperities
@@ -97,12 +98,12 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
             continue
         prepared.add(kind)
         if draws:
-            prepare(shape, adhesion, scene.interaction_model)
+            prepare(shape, adhesion, scene.interaction_model, variables, unload=plan.unloads)
             continue
         from roughmdr import expected
 
         one = LoadingPath.along(path.separation[:1], unload=False, adhesive=scene.work > 0.0)
-        modulus, variables = scene.effective_modulus, normal_variables(of_contacts(plan.scene.output.variables))
+        modulus = scene.effective_modulus
         with suppress(RoughmdrError):  # the run itself will report it
             expected.prepare(asperities, one, effective_modulus=modulus, adhesion=adhesion, variables=variables)
 

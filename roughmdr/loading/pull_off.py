@@ -83,8 +83,7 @@ def _turns(separation: Floats) -> Floats:
 
 def prepare() -> None:
     """Compile what is needed to locate a pull-off."""
-    one = np.zeros(1)
-    merged(one, one, next_separations(np.arange(3.0), np.zeros(3), one, 0.0, 0.0), one[:0])
+    next_separations(np.arange(3.0), np.zeros(3), np.zeros(1), 0.0, 0.0)
 
 
 def locate(rises: list[Unloading], force_along: ForceAlong, detachments: Floats = _NONE) -> LargestTension | None:

@@ -49,17 +49,6 @@ def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
 
 
 @njit
-def _counts(h: Floats, detachments: Floats) -> NDArray[np.int64]:
-    """Return how many detachments lie below each separation."""
-    counts, passed = np.empty(h.size, dtype=np.int64), 0
-    for k in range(h.size):
-        while passed < detachments.size and detachments[passed] < h[k]:
-            passed += 1
-        counts[k] = passed
-    return counts
-
-
-@njit
 def _lowest_intervals(bounds: Floats, limit: float) -> NDArray[np.int64]:
     """Return the intervals, at most ``_INTERVALS`` and ascending, whose bounds are the lowest, and below a limit."""
     chosen, size = np.empty(_INTERVALS, dtype=np.int64), 0
@@ -80,13 +69,20 @@ def _lowest_intervals(bounds: Floats, limit: float) -> NDArray[np.int64]:
     return chosen[:size]
 
 
-@njit
 def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: float, beside: float) -> Floats:
     """Return more separations [m], ascending, where the force may be below ``lowest`` [N]; none where it cannot be.
 
     h [m] ascends with the force there [N], and so do the ``detachments``, which are met ``beside`` [m] them.
     """
-    count, smooth, bounds, largest = _counts(h, detachments), np.empty(h.size - 1), np.empty(h.size - 1), 0.0
+    return _next(h, force, np.searchsorted(detachments, h), detachments, lowest, beside)
+
+
+@njit
+def _next(
+    h: Floats, force: Floats, count: NDArray[np.int64], detachments: Floats, lowest: float, beside: float
+) -> Floats:
+    """Do so; ``count`` says how many detachments lie below each separation."""
+    smooth, bounds, largest = np.empty(h.size - 1), np.empty(h.size - 1), 0.0
     for k in range(h.size - 1):  # a slope across a few roundings is none
         smooth[k] = 1.0 if count[k] == count[k + 1] and h[k + 1] - h[k] > _NARROW * beside else 0.0
     for k in range(h.size):
@@ -117,17 +113,8 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
     return found[:filled]
 
 
-@njit
 def merged(h: Floats, force: Floats, more: Floats, more_force: Floats) -> tuple[Floats, Floats]:
     """Return two tables of the force [N] over ascending separations [m] as one."""
-    size = h.size + more.size
-    all_h, all_force = np.empty(size), np.empty(size)
-    i, j = 0, 0
-    for k in range(size):
-        if j == more.size or (i < h.size and h[i] <= more[j]):
-            all_h[k], all_force[k] = h[i], force[i]
-            i += 1
-        else:
-            all_h[k], all_force[k] = more[j], more_force[j]
-            j += 1
-    return all_h, all_force
+    both = np.concatenate([h, more])
+    order = np.argsort(both, kind="stable")
+    return both[order], np.concatenate([force, more_force])[order]

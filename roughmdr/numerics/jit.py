@@ -20,6 +20,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from roughmdr.numerics.compiling import let_collector_rest
 from roughmdr.numerics.fingerprint import COMPILED, fingerprint
 from roughmdr.numerics.rebind import rebuilt
 
@@ -70,9 +71,10 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     """Compile ``function``: IEEE arithmetic as written (0/0 is NaN, nothing reordered), no GIL, cached on disk.
 
     ``inline`` puts its source into every caller: for parts of a loop that are called too often. ``small`` puts its
-    machine code there: for parts of loops that become vector code.
+    machine code there: for parts of loops that become vector code. A form to be called from C is left out, which would
+    take a tenth of the time to compile: ``as_argument`` makes it where it is needed.
     """
-    options = {"inline": "always" if inline else "never", "forceinline": small}
+    options = {"inline": "always" if inline else "never", "forceinline": small, "no_cfunc_wrapper": True}
     return cast(_Function, _kept_on_disk(partial(numba.njit, nogil=True, **options), function))
 
 
@@ -95,6 +97,9 @@ def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[.
     copy = rebuilt(function, {}, partial(compiled, small=small))
     copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
     return njit(copy, small=small)
+
+
+let_collector_rest()
 
 
 class _Literals(ast.NodeTransformer):

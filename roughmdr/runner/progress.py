@@ -23,6 +23,17 @@ class Progress:
         """Show the counts, if it is time for it."""
 
 
+def tell_compiling(title: str, *, quiet: bool) -> None:
+    """Say on the standard error stream that kernels are compiled, which takes seconds, but only once."""
+    if not quiet and sys.stderr is not None:
+        _tell(f"{title}: compiling the kernels (once) ...")
+
+
+def _tell(line: str) -> None:
+    with suppress(OSError):  # nobody reads it
+        print(line, file=sys.stderr, flush=True)
+
+
 @contextmanager
 def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
     """Open a display on the standard error stream."""
@@ -49,8 +60,7 @@ class _Lines(Progress):
     def print(self) -> None:
         more = f", {self.reused} used again" if self.reused else ""
         self._printed = time.monotonic()
-        with suppress(OSError):  # nobody reads it
-            print(f"{self.title}: {self.done} of {self.total} runs{more}", file=sys.stderr, flush=True)
+        _tell(f"{self.title}: {self.done} of {self.total} runs{more}")
 
 
 @contextmanager

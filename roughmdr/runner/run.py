@@ -20,11 +20,12 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
+from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Threads
-from roughmdr.runner.progress import Progress, progress
+from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
@@ -140,6 +141,7 @@ def execute(
                     writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
             reuse(target, old, writer.store, plan, reusable)
+        stack.enter_context(compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)))
         check_foreseen(plan)
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
         remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"

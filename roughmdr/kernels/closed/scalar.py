@@ -1,7 +1,5 @@
 """Parameters of contacts in closed form: one number per asperity, passed to the kernels unchanged."""
 
-import numpy as np
-
 from roughmdr.kernels.interface import Columns, Material, law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -22,7 +20,10 @@ def params_of(params: Floats, i: int) -> float:
 @njit
 def heterogeneous(params: Floats) -> bool:
     """Return whether the parameters differ."""
-    return bool(np.any(params != params[0]))
+    others = 0
+    for i in range(params.size):
+        others += params[i] != params[0]
+    return others > 0
 
 
 def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:
