@@ -25,7 +25,7 @@ from roughmdr.aggregate.contacts import (
     stiffness_of_state,
     update_contact,
 )
-from roughmdr.aggregate.error_bound import bound_block, bound_each, no_terms, total_error
+from roughmdr.aggregate.error_bound import bound_block, bound_each, bounded_stiffness, no_terms, total_error
 from roughmdr.aggregate.scales import natural_scales
 from roughmdr.aggregate.totals import (
     CONDUCTANCE,
@@ -156,6 +156,7 @@ def compiled_sum(kernels: Kernels) -> SumKernels:
         "force_at": found_force if together else force_of_state,
         "stiffness_at": found_stiffness if together else stiffness_of_state,
         "total_error": total_error,
+        "bounded_stiffness": bounded_stiffness,
         "error_bound": bound_each if together else bound_block,
         "jumps": jumps_between_branches if kernels.branched else jumps,
         "add_totals": add_totals,

@@ -1,7 +1,5 @@
 """Parameters of contacts in closed form: one number per asperity, passed to the kernels unchanged."""
 
-import numpy as np
-
 from roughmdr.kernels.interface import Columns, Material, law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -22,7 +20,16 @@ def params_of(params: Floats, i: int) -> float:
 @njit
 def heterogeneous(params: Floats) -> bool:
     """Return whether the parameters differ."""
-    return bool(np.any(params != params[0]))
+    differing = 0
+    for i in range(params.size):
+        differing += params[i] != params[0]
+    return differing > 0
+
+
+@njit
+def alike(params: Floats) -> bool:
+    """Return False, as ``heterogeneous`` of shapes of which no parameter tells two apart."""
+    return False
 
 
 def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:
