@@ -190,7 +190,8 @@ def sum_over_asperities(
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     lowered = memory._replace(bottom=memory.bottom - adhesion.range)
-    visits = compiled_sum(kernels).loop(height, columns, material, adhesion.range, separation, lowered, totals)
+    loop = compiled_sum(kernels.in_sums or kernels).loop
+    visits = loop(height, columns, material, adhesion.range, separation, lowered, totals)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(totals.total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {kernels.name} with "

@@ -53,6 +53,9 @@ def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
     law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
     law.adhesive, law.branched, law.hardening = adhesive, adhesive and shape.branched(), not adhesive
+    if shape.similar and not adhesive:
+        law.in_sums = build(shape, cohesive=False, similar=True)
+        law.in_sums.hardening = True
     return law
 
 

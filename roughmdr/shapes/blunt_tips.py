@@ -48,6 +48,7 @@ class RoundedCone(ProfileShape):
     blend_radius: float
 
     name = "rounded_cone"
+    similar = True
     units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
     profile = _BluntTip(
         _cone_mdr_profile, _cone_reduced_load, _cone_f_and_slope, softening_interval=_cone_softening_interval

@@ -48,6 +48,7 @@ class Sphere(ProfileShape):
     radius: float
 
     name = "sphere"
+    similar = True
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     body_radius = ("radius",)
     profile = Profile(_mdr_profile, _reduced_load, _f_and_slope, _t_of_radius, end=1.0, roundings=_roundings)

@@ -13,7 +13,7 @@ from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
 from roughmdr.kernels.dugdale import paraboloid, zone, zone_edge
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile import branches, equilibrium, folds, initial_guess, newton
+from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton
 from roughmdr.kernels.profile.interface import ProfileKernels, law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
@@ -104,6 +104,10 @@ _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts
 _VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
     equilibrium.radius_force_stiffness,
+    elastic.y_of_x,
+    elastic.x_of_y,
+    elastic.indentation_at,
+    elastic.radius_force_stiffness,
     initial_guess.y_of_x,
     initial_guess.initial_guess,
     initial_guess.x_of_y,
@@ -131,13 +135,18 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
 
 
 @cache
-def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
-    """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range."""
-    profile, shared, tabled = profile_of(shape), shape.shared, issubclass(shape, TabledShape)
+def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> ProfileKernels:
+    """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range; ``similar`` for
+    asperities without adhesion that share one row.
+    """
+    profile, tabled = profile_of(shape), issubclass(shape, TabledShape)
+    shared = shape.shared or similar
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
         of_paraboloid = (paraboloid,) if shape is Paraboloid else ()
         parts |= _functions(zone, zone_edge, dugdale_equilibrium, dugdale_branches, *of_paraboloid)
+    if similar:
+        parts |= _functions(elastic)
     plain: dict[str, Any] = profile._asdict()
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
@@ -156,12 +165,12 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         plain["kink"] = parts.pop("kink")
     if profile.elastic_integral is not None:
         parts.pop("elastic_integral")
-    whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else shape.name)
+    whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else f"{shape.name}_similar" if similar else shape.name)
     vars(whole).update(constants, **{name: compiled(part) for name, part in plain.items() if part is not None})
     # What a table looks up is no vector code.
     vector = (
         {}
-        if shared or tabled
+        if shape.shared or tabled
         else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
     )
     inlined = whole.copy()
@@ -172,7 +181,9 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         vars(whole)[name] = specialise(part, kernels, inline=inline, small=part in small)
     whole.state_of_force = whole.state  # of a row under dead load
     if shared:
-        whole.prepare, whole.params_of = whole.prepare_shared, whole.shared_params
+        whole.params_of = whole.shared_params
+    if shape.shared:
+        whole.prepare = whole.prepare_shared
     if tabled:
         whole.prepare = whole.prepare_tabled
     vars(inlined).update({**vars(whole), **vector})
