@@ -57,7 +57,7 @@ class Kernels(ModuleType):
     """Whether radius, force and stiffness cost no more together than one of them."""
 
     in_sums: Self | None = None
-    """Kernels for the sum over asperities alone, cheaper since all asperities share one row; None where there are none."""
+    """Kernels for the sum over asperities alone, where all asperities share one row; None without."""
 
     prepare: Callable[[Material, Columns, int, int, float], Any]
     """(material, columns, start, stop, control) -> params of the asperities from start to stop; control is 0 for fixed
