@@ -69,6 +69,8 @@ class SumKernels(Kernels):
     force_at: Callable[[Floats, Any, int], float]
     stiffness_at: Callable[[Floats, Any, int], float]
     total_error: Callable[..., float]
+    bounded_stiffness: Callable[[Floats, Any, int], float]
+    """(contacts, params, i) -> |k| of one contact as the error bound takes it."""
     error_bound: Callable[..., float]
     jumps: Callable[..., float]
     add_totals: Callable[..., None]

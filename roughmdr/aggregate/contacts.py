@@ -66,11 +66,16 @@ def solve_iterative(
     for _ in range(law.newton_steps):
         for i in range(count):
             state[i], last_step[i], _ = law.newton_step(state[i], x[i], law.params_of(params, i))
-    for i in range(count):
-        branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
-        if branch > 0.0 and not law.converged(state[i], last_step[i], x[i], branch, own):
-            t, step, _ = law.newton_step(state[i], x[i], own)
-            state[i] = t if law.converged(t, step, x[i], branch, own) else law.state_on_branch(x[i], branch, own)
+    left = 0
+    for i in range(count):  # nothing but this, so that it becomes vector code
+        branch = in_contact[i] if law.adhesive else 1.0
+        left += (branch > 0.0) & (law.converged(state[i], last_step[i], x[i], branch, law.params_of(params, i)) < 1)
+    if left > 0:
+        for i in range(count):
+            branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
+            if branch > 0.0 and not law.converged(state[i], last_step[i], x[i], branch, own):
+                t, step, _ = law.newton_step(state[i], x[i], own)
+                state[i] = t if law.converged(t, step, x[i], branch, own) else law.state_on_branch(x[i], branch, own)
     law.evaluate(count, block)
 
 

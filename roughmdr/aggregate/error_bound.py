@@ -17,6 +17,7 @@ u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the
 """
 
 import math
+from typing import Any
 
 from roughmdr.aggregate.block import (
     DEPTH_SCALE,
@@ -30,9 +31,10 @@ from roughmdr.aggregate.block import (
     Block,
     law,
 )
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.jit import njit
-from roughmdr.numerics.summation import block_minimum
+from roughmdr.numerics.summation import block_minimum, block_sum
 
 _NEXT_TO_A_FOLD = 3.0  # m
 
@@ -52,6 +54,15 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
 def no_terms(t: float, params: object) -> tuple[float, float]:
     """Stand for ``term_sizes`` where no terms cancel."""
     return 0.0, 0.0
+
+
+def bounded_stiffness(contacts: Floats, params: Any, i: int) -> float:
+    """Return |k| of one contact over its natural scale; on the fold itself, where k is infinite, a bound of |k| eta."""
+    k = abs(contacts[STIFFNESS, i])
+    if law.adhesive:
+        stretch, pull = law.adhesion_terms(contacts[RADIUS, i], law.params_of(params, i))
+        return float(pull / stretch / ROUNDING if k == math.inf else k)
+    return float(k)
 
 
 def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
@@ -86,22 +97,26 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
     """Return the bound where P and k were found with the state: one by one, whichever way k goes along the branch."""
-    contacts, params, in_contact, scales = block.contacts, block.params, block.in_contact, block.scales
-    stiffness, error, rounding = 0.0, 0.0, 0.0
+    contacts, params, in_contact, terms = block.contacts, block.params, block.in_contact, block.scratch
+    rigidity, load = block.scales[STIFFNESS_SCALE], block.scales[FORCE_SCALE]
     for i in range(count):
-        if not law.adhesive or in_contact[i] > 0.0:
-            own = law.params_of(params, i)
-            of_force, of_indentation = law.relative_errors(own)
-            k, stretch, pull = abs(contacts[STIFFNESS, i]), 0.0, 0.0
-            if law.adhesive:
-                stretch, pull = law.adhesion_terms(contacts[RADIUS, i], own)
-                if k == math.inf:  # on the fold itself
-                    k = pull / stretch / ROUNDING
-            each = of_force * (abs(contacts[FORCE, i]) + 2.0 * pull)
-            each += 2.0 * _NEXT_TO_A_FOLD * of_indentation * k * stretch
-            if law.terms_cancel:
-                g, load = law.term_sizes(contacts[STATE, i], own)
-                each += of_force * load + _NEXT_TO_A_FOLD * of_indentation * k * g
-            stiffness, error = stiffness + scales[STIFFNESS_SCALE, i] * k, error + scales[FORCE_SCALE, i] * each
-            rounding = max(rounding, of_indentation)
-    return law.total_error(count, block, h, stiffness, error, rounding)
+        k = law.bounded_stiffness(contacts, params, i)
+        terms[i] = rigidity[i] * k if not law.adhesive or in_contact[i] > 0.0 else 0.0
+    stiffness = block_sum(terms, count)
+    for i in range(count):
+        own = law.params_of(params, i)
+        of_force, of_indentation = law.relative_errors(own)
+        k, force = law.bounded_stiffness(contacts, params, i), abs(contacts[FORCE, i])
+        each = of_force * force
+        if law.adhesive:
+            stretch, pull = law.adhesion_terms(contacts[RADIUS, i], own)
+            each = of_force * (force + 2.0 * pull) + 2.0 * _NEXT_TO_A_FOLD * of_indentation * k * stretch
+        if law.terms_cancel:
+            g, size = law.term_sizes(contacts[STATE, i], own)
+            each += of_force * size + _NEXT_TO_A_FOLD * of_indentation * k * g
+        terms[i] = load[i] * each if not law.adhesive or in_contact[i] > 0.0 else 0.0
+    error = block_sum(terms, count)
+    for i in range(count):
+        of_indentation = law.relative_errors(law.params_of(params, i))[1]
+        terms[i] = -of_indentation if not law.adhesive or in_contact[i] > 0.0 else 0.0
+    return law.total_error(count, block, h, stiffness, error, -block_minimum(terms, count))

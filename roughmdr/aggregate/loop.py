@@ -27,7 +27,7 @@ from roughmdr.aggregate.contacts import (
     stiffness_of_state,
     update_contact,
 )
-from roughmdr.aggregate.error_bound import bound_block, bound_each, no_terms, total_error
+from roughmdr.aggregate.error_bound import bound_block, bound_each, bounded_stiffness, no_terms, total_error
 from roughmdr.aggregate.scales import natural_scales
 from roughmdr.aggregate.totals import (
     CONDUCTANCE,
@@ -162,6 +162,7 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "force_at": found_force if together else force_of_state,
         "stiffness_at": found_stiffness if together else stiffness_of_state,
         "total_error": total_error,
+        "bounded_stiffness": bounded_stiffness,
         "error_bound": bound_each if together else bound_block,
         "jumps": jumps_between_branches if kernels.branched else jumps,
         "add_totals": add_totals,
@@ -196,7 +197,7 @@ def sum_over_asperities(
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     lowered = memory._replace(bottom=memory.bottom - adhesion.range)
     energetic, turn = not _ENERGIES.isdisjoint(rows), int(np.argmin(separation))
-    compiled = compiled_sum(kernels, energetic=energetic)
+    compiled = compiled_sum(kernels.in_sums or kernels, energetic=energetic)
     visits = compiled.loop(height, columns, material, adhesion.range, separation, turn, lowered, totals)
     if visits == _NOT_REPRESENTABLE or not np.isfinite(totals.total).all():
         raise OutOfRange(

@@ -39,7 +39,8 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
     }[shape, adhesive]
     law = _of_module(f"{'jkr' if adhesive else 'elastic'}_{shape}", module, suffix)
     law.adhesive = adhesive
-    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
+    heterogeneous = scalar.heterogeneous if shape == "power_law" else scalar.alike
+    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=heterogeneous)
     law.hardening = not adhesive or shape != "power_law"  # of JKR power laws only those with n >= 0.768
     law.found_together = "radius_force_stiffness" in vars(law)
     if not law.found_together:
@@ -52,6 +53,9 @@ def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
     law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
     law.adhesive, law.branched, law.hardening = adhesive, adhesive and shape.branched(), not adhesive
+    if shape.similar and not adhesive:
+        law.in_sums = build(shape, cohesive=False, similar=True)
+        law.in_sums.hardening = True
     return law
 
 

@@ -58,6 +58,9 @@ class Kernels(ModuleType):
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
 
+    in_sums: Self | None = None
+    """Kernels for the sum over asperities alone, where all asperities share one row; None without."""
+
     prepare: Callable[[Material, Columns, int, int, float], Any]
     """(material, columns, start, stop, control) -> params of the asperities from start to stop; control is 0 for fixed
     grips, 1 for dead load."""

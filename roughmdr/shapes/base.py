@@ -35,6 +35,7 @@ class Shape(ABC):
     pinned: ClassVar[bool] = False  # the contact radius is the shape's own under every load, as that of a flat punch
     uses_profile: ClassVar[bool] = False
     """Whether its kernels are made from its ``Profile`` and describe a contact by the parameter t of that."""
+    similar: ClassVar[bool] = False  # width and rise say all of a shape
     shared: ClassVar[bool] = False  # all asperities of an ensemble have one profile
     flat: ClassVar[bool] = False  # the tip is flat to one width
     corner: ClassVar[bool] = False  # g' jumps to infinity, at the edge of a flat or of a blunter tip

@@ -49,6 +49,7 @@ class RoundedCone(ProfileShape):
     blend_radius: float
 
     name = "rounded_cone"
+    similar = True
     units: ClassVar[dict[str, str]] = {"slope": "1", "blend_radius": "m"}
     profile = _BluntTip(
         _cone_mdr_profile,

@@ -87,6 +87,7 @@ class TruncatedCone(ProfileShape):
     flat_radius: float
 
     name = "truncated_cone"
+    similar = True
     units: ClassVar[dict[str, str]] = {"slope": "1", "flat_radius": "m"}
     profile = _Truncated(
         _cone_mdr_profile,
@@ -134,6 +135,7 @@ class TruncatedParaboloid(ProfileShape):
     flat_radius: float
 
     name = "truncated_paraboloid"
+    similar = True
     units: ClassVar[dict[str, str]] = {"radius": "m", "flat_radius": "m"}
     body_radius = ("radius",)
     profile = _Truncated(
@@ -183,6 +185,7 @@ class RoundedPunch(ProfileShape):
     edge_radius: float
 
     name = "rounded_punch"
+    similar = True
     units: ClassVar[dict[str, str]] = {"flat_radius": "m", "edge_radius": "m"}
     body_radius = ("flat_radius", "edge_radius")
     profile = _FlatTip(

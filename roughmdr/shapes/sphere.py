@@ -49,6 +49,7 @@ class Sphere(ProfileShape):
     radius: float
 
     name = "sphere"
+    similar = True
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     body_radius = ("radius",)
     profile = Profile(

@@ -20,10 +20,16 @@ def params_of(params: Floats, i: int) -> float:
 @njit
 def heterogeneous(params: Floats) -> bool:
     """Return whether the parameters differ."""
-    others = 0
+    differing = 0
     for i in range(params.size):
-        others += params[i] != params[0]
-    return others > 0
+        differing += params[i] != params[0]
+    return differing > 0
+
+
+@njit
+def alike(params: Floats) -> bool:
+    """Return False, as ``heterogeneous`` of shapes of which no parameter tells two apart."""
+    return False
 
 
 def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:

@@ -13,7 +13,7 @@ from roughmdr.kernels.dugdale import both_edges, edges_table, paraboloid, zone, 
 from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile import branches, equilibrium, folds, initial_guess, newton
+from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton
 from roughmdr.kernels.profile.interface import ProfileKernels, law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, OCTAVES, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
@@ -105,6 +105,10 @@ _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts
 _VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
     equilibrium.radius_force_stiffness,
+    elastic.y_of_x,
+    elastic.x_of_y,
+    elastic.indentation_at,
+    elastic.radius_force_stiffness,
     initial_guess.y_of_x,
     initial_guess.cubic,
     initial_guess.initial_guess,
@@ -134,9 +138,12 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
 
 
 @cache
-def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
-    """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range."""
-    profile, shared, tabled = profile_of(shape), shape.shared, issubclass(shape, TabledShape)
+def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> ProfileKernels:
+    """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range; ``similar`` for
+    asperities without adhesion that share one row.
+    """
+    profile, tabled = profile_of(shape), issubclass(shape, TabledShape)
+    shared = shape.shared or similar
     parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
     if cohesive:
         last = (paraboloid,) if shape is Paraboloid else (both_edges, edges_table)
@@ -145,6 +152,8 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         closed = parts.pop("gap_integrals_closed")
         if profile.zone_integrals is not None:
             parts["gap_integrals"] = closed
+    if similar:
+        parts |= _functions(elastic)
     plain: dict[str, Any] = profile._asdict()
     pairs = cohesive and shape is not Paraboloid
     octaves, split, node_size = _OCTAVES_OF_PAIRS if pairs else OCTAVES, _SPLIT if shared else 0, 4 if pairs else 2
@@ -168,12 +177,12 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         plain["kink"] = parts.pop("kink")
     if profile.elastic_integral is not None:
         parts.pop("elastic_integral")
-    whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else shape.name)
+    whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else f"{shape.name}_similar" if similar else shape.name)
     vars(whole).update(constants, **{name: compiled(part) for name, part in plain.items() if part is not None})
     # What a table looks up is no vector code.
     vector = (
         {}
-        if shared or tabled
+        if shape.shared or tabled
         else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
     )
     inlined = whole.copy()
@@ -184,7 +193,9 @@ def build(shape: type[Shape], *, cohesive: bool) -> ProfileKernels:
         vars(whole)[name] = specialise(part, kernels, inline=inline, small=part in small)
     whole.state_of_force = whole.state  # of a row under dead load
     if shared:
-        whole.prepare, whole.params_of = whole.prepare_shared, whole.shared_params
+        whole.params_of = whole.shared_params
+    if shape.shared:
+        whole.prepare = whole.prepare_shared
     if tabled:
         whole.prepare = whole.prepare_tabled
     vars(inlined).update({**vars(whole), **vector})

@@ -1,0 +1,45 @@
+"""One asperity without adhesion, where ``equilibrium`` and ``initial_guess`` have a term of adhesion that is 0.
+
+Without adhesion the state is a function of x alone where width and rise say all of a shape: all asperities share a row.
+Notation of ``layout``.
+"""
+
+import numpy as np
+
+from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.layout import OCTAVES
+from roughmdr.numerics.arguments import Floats
+
+_LOWEST = 2.0 ** (OCTAVES // 2)  # the octaves begin at 1/_LOWEST of the depth
+
+
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+    """Return the one row of all asperities."""
+    rows = np.zeros((1, 2 - law.first_node))
+    rows[0, 0] = columns.params[start]
+    law.fill_params(material, columns.width[start], columns.rise[start], control, rows[0])
+    law.fill_nodes(rows)
+    return rows
+
+
+def y_of_x(x: float, params: Floats) -> float:
+    """y at x."""
+    return x * _LOWEST
+
+
+def x_of_y(y: float, params: Floats) -> tuple[float, float]:
+    """x at y, and y dx/dy."""
+    return y / _LOWEST, y / _LOWEST
+
+
+def indentation_at(t: float, params: Floats) -> tuple[float, float]:
+    """g and its derivative by t (H 16)."""
+    _, _, g, dg = law.mdr_profile(t, params)
+    return g, dg
+
+
+def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:
+    """a over width, P over 2 E* width rise, and k over 2 E* width (H 10, 25)."""
+    a = law.mdr_profile(t, params)[0]
+    return a, law.reduced_load(t, params), a
