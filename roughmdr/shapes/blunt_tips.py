@@ -14,6 +14,8 @@ from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radi
 
 _CONE_SOFTENING_END = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
+_PARABOLOID_SOFTENING_END = 0.37915286960589590  # (sqrt(57) - 3)/12: q^2 there for c = 0
+
 _BluntTip = partial(Profile, softening_count=one, kink=kink_at_one, breakpoint_count=one)
 
 
@@ -113,17 +115,19 @@ def _t_of_q(q: float, params: Params) -> float:
 
 
 def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, float]:
-    """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0."""
-    c = params[0]
-    low, high = 0.0, 0.61575390344349083  # q where it stops falling for c = 0
+    """sqrt(a) g' falls from infinity at the blend to where 3 c a q^3 + (1 - c) (6 a^4 - 9 a^2 + 1)/2 = 0.
+
+    With w = q^2 that is convex, so that Newton's method comes from the root for c = 0 without going beyond.
+    """
+    c, w = params[0], _PARABOLOID_SOFTENING_END
     for _ in range(60):
-        q = 0.5 * (low + high)
-        square = 1.0 + q * q
-        if 3.0 * c * sqrt(square) * q * q * q + 0.5 * (1.0 - c) * ((6.0 * square - 9.0) * square + 1.0) < 0.0:
-            low = q
-        else:
-            high = q
-    return 1.0, 1.0 + high / c
+        a, q = sqrt(1.0 + w), sqrt(w)
+        value = 3.0 * c * a * w * q + 0.5 * (1.0 - c) * ((6.0 * w + 3.0) * w - 2.0)
+        slope = 1.5 * c * q * (w / a + 3.0 * a) + 0.5 * (1.0 - c) * (12.0 * w + 3.0)
+        if not value > 1e-16 * slope * w:
+            break
+        w -= value / slope
+    return 1.0, 1.0 + sqrt(w) / c
 
 
 @dataclass(frozen=True)

@@ -53,8 +53,8 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
     off = g - beta * m - wanted
     open_ = j + beta * (m * theta - short) - 0.5 * math.pi * params[RANGE]
     by_s, by_m = da * a * firm - dg * theta, m * firm + beta * theta
-    both = firm * (dg * m + beta * a * da)
-    return -(off * by_m + beta * open_) / both, (off * by_s - dg * open_) / both, by_m / both, -by_s / both
+    per = 1.0 / (firm * (dg * m + beta * a * da))
+    return -(off * by_m + beta * open_) * per, (off * by_s - dg * open_) * per, by_m * per, -by_s * per
 
 
 def newton_at_end(s: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:

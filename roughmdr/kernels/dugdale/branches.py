@@ -7,7 +7,7 @@ may be stable there only; its sign changes between them are solved for. Notation
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, JUNCTION, MAX_BRANCHES, ONSET, RANGE, UNIT
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, MAX_BRANCHES, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
 _FIRST = 2.0**-24  # the first state looked at; contact begins at 1
@@ -64,7 +64,7 @@ def find_branches(params: Floats) -> None:
         return
     edge_count = law.breakpoint_count(params)
     beyond = 2.0 * law.breakpoint(edge_count - 1, params)[0] if edge_count > 0 else 0.0
-    count, s, foot = 0, 0.0, 0.0
+    count, s, foot, m, m_before = 0, 0.0, 0.0, 0.0, 0.0
     stable = law.control_at(s, params)[1] > 0.0
     while True:
         before, was = s, stable
@@ -77,10 +77,11 @@ def find_branches(params: Floats) -> None:
             if stable:
                 break
             return
-        a, m = 0.0, s * params[JUNCTION]
+        a = 0.0
         if s > 1.0:
-            edges = law.zone_edge(s, params)
-            a, m = edges[1], edges[2]
+            near = m * (m / m_before) if m_before > 0.0 else 0.0  # as by a power law in steps that grow
+            edges = law.zone_edge_near(s, near, params)
+            a, m, m_before = edges[1], edges[2], m
             _, _, rise, _, growth = law.state_between(edges, params)
             stable = (rise if params[CONTROL] == 0.0 else growth) > 0.0
         else:

@@ -37,6 +37,11 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
     return a, a, m, theta, 2.0 * a * a, growth, 4.0 * a * growth
 
 
+def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
+    """As ``zone_edge``, which needs no place to begin at."""
+    return law.zone_edge(s, params)
+
+
 def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
     """J and K of ``zone``."""
     beyond = _q_minus_atan(m / a) if a > 0.0 else 0.0
@@ -54,4 +59,4 @@ def state_of_radius(radius: float, width: float, params: Floats) -> float:
     if params[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / law.zone_width(a, a, 2.0 * a * a, 4.0 * a, params)
+    return 1.0 + a / law.zone_width(a, a, 2.0 * a * a, 4.0 * a, 0.0, params)

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
@@ -11,7 +13,9 @@ from roughmdr.numerics.vector_math import atan
 _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
+_RTOL_STEPS = 1e-8  # of the last two steps of m over m, multiplied: the next error, the square of that, is rounding
 _WIDE = 0.5 * math.pi - 1.0
+_LEAST_SHARE = 1e-2  # of m, left after a step
 _NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
 _ROUNDING = 1e-15
 _MAX_ITERATIONS = 100
@@ -58,22 +62,25 @@ def zone_guess(a: float, slope: float, params: Floats) -> float:
     """
     c0, wanted = params[JUNCTION], 0.5 * math.pi * params[RANGE]
     wide = wanted / params[STRENGTH] / _WIDE
-    flat = wide * math.sqrt(0.5 + 0.5 * math.hypot(1.0, 4.0 * _WIDE * a / wide))
+    thin = 4.0 * _WIDE * a / wide
+    flat = wide * math.sqrt(0.5 + 0.5 * math.sqrt(1.0 + thin * thin))
     if a < _NEXT_TO_AXIS * c0 or slope == 0.0:
         return min(c0, flat)
-    risen = (3.0 * wanted * a * (a / slope)) ** (1.0 / 3.0)
-    return flat / math.hypot(1.0, flat / risen) if flat < risen else risen / math.hypot(1.0, risen / flat)
+    risen = float(np.cbrt(3.0 * wanted * a * (a / slope)))
+    ratio = min(flat, risen) / max(flat, risen)
+    return min(flat, risen) / math.sqrt(1.0 + ratio * ratio)
 
 
-def zone_width(t: float, a: float, g: float, slope: float, params: Floats) -> float:
-    """m = sqrt(c^2 - a^2) at the contact radius a at t, with g and g' there: by Newton's method on logarithms, then by
-    the cubic through the last two points of the inverse function with its slopes.
+def zone_width(t: float, a: float, g: float, slope: float, near: float, params: Floats) -> float:
+    """m = sqrt(c^2 - a^2) at the contact radius a at t, with g and g' there: by Newton's method on about the logarithm
+    of the gap, then by the cubic through the last two points of the inverse function with its slopes. It begins at
+    ``near`` unless that is 0.
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
     wanted, widest = 0.5 * math.pi * params[RANGE], law.widest_zone(a)
-    low, high, m = 0.0, math.inf, min(law.zone_guess(a, slope, params), 0.5 * widest)
-    m_before, off_before, rate_before, step = 0.0, 0.0, 0.0, 1.0
+    low, high, m = 0.0, math.inf, min(near if near > 0.0 else law.zone_guess(a, slope, params), 0.5 * widest)
+    m_before, off_before, rate_before, step = 0.0, 0.0, 0.0, m
     for _ in range(_MAX_ITERATIONS):
         value, growth = law.gap_at(t, a, g, m, params)
         if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
@@ -81,19 +88,20 @@ def zone_width(t: float, a: float, g: float, slope: float, params: Floats) -> fl
             m, m_before = 0.5 * (low + high), 0.0
             continue
         low, high = (m, high) if value < wanted else (low, m)
-        off, rate = math.log(wanted / value), value / (m * m * growth)
+        both = wanted + value
+        off, rate = 2.0 * (wanted - value) / both, both / wanted * (both / (4.0 * m * growth))
         way = off * rate
         if m_before > 0.0 and off != off_before:
-            step, across = math.log(m_before / m), off - off_before
+            step, across = m_before - m, off - off_before
             mean = step / across
             bend, turn = (3.0 * mean - 2.0 * rate - rate_before) / across, (rate + rate_before - 2.0 * mean) / across
             way += off * off * (bend + off * turn / across)
-        better = m * math.exp(min(max(way, -5.0), 5.0))
+        better = min(max(m + way, _LEAST_SHARE * m), m / _LEAST_SHARE)
         if law.end < math.inf and better >= widest and high == math.inf:
             if not law.gap_at(t, a, g, widest, params)[0] > wanted:
                 return widest
             high = widest
-        if abs(way * step) <= _RTOL_STEP or not low < high:
+        if abs(way * step) <= _RTOL_STEPS * m * m or not low < high:
             return better
         m_before, off_before, rate_before = m, off, rate
         m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
@@ -114,8 +122,13 @@ def contact_edge(s: float, params: Floats) -> tuple[float, float, float, float, 
 
 def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds."""
+    return law.zone_edge_near(s, 0.0, params)
+
+
+def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
+    """As ``zone_edge``, where m is about ``near``, or 0 where that is not known."""
     t, a, g, da, dg = law.contact_edge(s, params)
-    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, params)
+    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, near, params)
     return t, a, m, _atan(m / a), g, da, dg
 
 

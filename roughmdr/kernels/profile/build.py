@@ -117,6 +117,13 @@ _VECTOR_CODE: set[Callable[..., Any]] = {
     newton.newton_step,
     newton.converged,
 }
+_INLINE_OF_PAIRS: set[Callable[..., Any]] = {
+    zone.gap_integrals_closed,
+    zone_edge.contact_edge,
+    zone_edge.gap_at,
+    zone_edge.zone_guess,
+    both_edges.newton_of_both,
+}
 _VECTOR_CODE_OF_PARABOLOID: set[Callable[..., Any]] = {
     paraboloid.zone_edge,
     paraboloid.gap_integrals,
@@ -185,8 +192,10 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         if shape.shared or tabled
         else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
     )
+    if cohesive and profile.zone_integrals is not None:
+        vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
     inlined = whole.copy()
-    small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else set())
+    small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_PAIRS)
     for name, part in parts.items():
         kernels = inlined if part in small else whole
         inline = name in ("params_of", "shared_params")

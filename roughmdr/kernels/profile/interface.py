@@ -82,6 +82,7 @@ class ProfileKernels(Kernels):
     zone_width: Kernel
     zone_edge: Callable[..., tuple[float, float, float, float, float, float, float]]
     contact_edge: Callable[..., tuple[float, float, float, float, float]]
+    zone_edge_near: Callable[..., tuple[float, float, float, float, float, float, float]]
     state_along: Callable[..., tuple[float, float, float, float, float]]
     state_between: Callable[..., tuple[float, float, float, float, float]]
     newton_of_both: Callable[..., tuple[float, float, float, float]]
