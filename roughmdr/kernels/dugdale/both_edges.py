@@ -45,7 +45,7 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
         return step, size * (s + step) - m, 1.0 / slope, size / slope
     t, a, g, da, dg = law.contact_edge(s, params)
     if law.end < math.inf and not m < law.widest_zone(a):
-        return law.newton_at_end(s, wanted, params)
+        return law.newton_at_end(s, m, wanted, params)
     theta, square = _atan(m / a), a * a + m * m
     j, k = law.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (math.sqrt(square) + a)  # c - a
@@ -57,16 +57,24 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
     return -(off * by_m + beta * open_) * per, (off * by_s - dg * open_) * per, by_m * per, -by_s * per
 
 
-def newton_at_end(s: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
+def newton_at_end(s: float, m: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
     """As ``newton_of_both`` where the zone stays at the end of the profile; NaN where it does not."""
     t, a, g, da, dg = law.contact_edge(s, params)
-    m = law.widest_zone(a)
-    if law.gap_at(t, a, g, m, params)[0] > 0.5 * math.pi * params[RANGE]:
+    widest = law.widest_zone(a)
+    if law.gap_at(t, a, g, widest, params)[0] > 0.5 * math.pi * params[RANGE]:
         return math.nan, math.nan, math.nan, math.nan
-    m_by_s = -a * da / m
+    m_by_s = -a * da / widest
     slope = dg - params[STRENGTH] * m_by_s
-    step = (wanted - g + params[STRENGTH] * m) / slope
-    return step, step * m_by_s, 1.0 / slope, m_by_s / slope
+    step = (wanted - g + params[STRENGTH] * widest) / slope
+    return step, widest + step * m_by_s - m, 1.0 / slope, m_by_s / slope
+
+
+def room(s: float, m: float, params: Floats) -> float:
+    """m, or the way of m to the end of the profile where that is shorter: next to it the gap goes as a root."""
+    if law.end < math.inf and s > 1.0:
+        way = law.widest_zone(law.contact_edge(s, params)[1]) - m
+        return min(m, way) if way > 0.0 else m
+    return m
 
 
 def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, float, float, float, float]:
@@ -77,7 +85,7 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
         beyond = s - foot
         if not (abs(ds) < math.inf and abs(dm) < math.inf):
             break
-        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * m:
+        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * law.room(s, m, params):
             far = s + ds > foot + params[NEAR] * s and (foot > 0.0 or x > params[LAST_X] + CANCELLED)
             return far, s + ds, m + dm, s_slope * params[DEPTH], m_slope * params[DEPTH]
         s = max(s + ds, foot + _MIN_SHARE * beyond)
@@ -108,5 +116,6 @@ def contact_at(x: float, branch: float, params: Floats) -> tuple[float, float, f
         a, push, k = law.radius_force_stiffness(s, params)
         return s, a, push, k
     t, a, g, da, dg = law.contact_edge(s, params)
+    m = min(m, law.widest_zone(a))
     a, _, rise, push, growth = law.state_between((t, a, m, _atan(m / a), g, da, dg), params)
     return s, a, push, growth / rise

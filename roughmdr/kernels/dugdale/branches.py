@@ -15,7 +15,7 @@ _FIRST_STEP = 2.0**-8  # beyond it
 _STEP_ON_FLAT = 1.0 / 16.0
 _THIN_ZONE = 0.1  # m/a: with a thinner zone a contact is as in JKR, and has no further branch
 _LARGEST = 1e140  # its square is a float
-_RTOL = 1e-13  # of the indentation at a fold it takes the square
+_RTOL = 4e-16
 _MAX_ITERATIONS = 200
 _NEAR_END = 1.0 - 1e-9  # of the end of the profile: beyond, c and a are the same float
 

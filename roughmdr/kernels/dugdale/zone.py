@@ -120,7 +120,7 @@ def gap_integrals_closed(t: float, a: float, g: float, m: float, theta: float, p
     j = i - g * theta
     if j < _FEW_DIGITS * g * theta:
         j = law.thin_integral(a, g, m, params)
-    return j, k if m < law.widest_zone(a) else _UNBOUNDED
+    return j, min(k, _UNBOUNDED) if m < law.widest_zone(a) else _UNBOUNDED
 
 
 def thin_integral(a: float, g: float, m: float, params: Floats) -> float:

@@ -86,6 +86,7 @@ class ProfileKernels(Kernels):
     state_along: Callable[..., tuple[float, float, float, float, float]]
     state_between: Callable[..., tuple[float, float, float, float, float]]
     newton_of_both: Callable[..., tuple[float, float, float, float]]
+    room: Kernel
     newton_at_end: Callable[..., tuple[float, float, float, float]]
     both_edges: Callable[..., tuple[bool, float, float, float, float]]
     guess_both: Callable[..., tuple[float, float]]
