@@ -204,8 +204,11 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all figures; ``quick`` of small ensembles."""
+    from benchmarks.laws import by_law  # which takes its ensembles from here
+
     count, repeats = (20_000, 1) if quick else (1_000_000, 3)
     parts = [by_method(count, repeats), by_shape(count // 50, repeats), by_range(count // 10, repeats)]
+    parts.append(by_law(count // 50 if quick else count // 10, repeats))
     parts += [by_cell(200 if quick else 10_000, repeats), by_workers(count // 10, 24, repeats)]
     return xr.merge(parts, combine_attrs="no_conflicts")
 
