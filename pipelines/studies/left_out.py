@@ -114,6 +114,7 @@ def count_calls(asperities: int) -> list[Case]:
         count(scene)  # loads what it needs
         plain, left_out = count(scene)
         for part, changes in forced.items():
+            count(scene, **changes)  # loads what it needs
             counts, forced_on = count(scene, **changes)
             both = [each[PARTS[part]] for each in (plain, counts)]
             off = difference(left_out.variables["force"], forced_on.variables["force"])

@@ -31,6 +31,7 @@ from roughmdr.numerics.vector_math import atan
 _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 3e-8  # of the distance to the foot and of m: the next error, its square, is below rounding
+_ROUNDINGS = 4e-16
 _MAX_STEPS = 12
 _MIN_SHARE = 1e-2  # of the distance to the foot and of m: left after a step that would go beyond 0
 _MOST_GROWTH = 10.0  # of m in a step
@@ -85,7 +86,7 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
         beyond = s - foot
         if not (abs(ds) < math.inf and abs(dm) < math.inf):
             break
-        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * law.room(s, m, params):
+        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * law.room(s, m, params) + _ROUNDINGS * m:
             far = s + ds > foot + params[NEAR] * s and (foot > 0.0 or x > params[LAST_X] + CANCELLED)
             return far, s + ds, m + dm, s_slope * params[DEPTH], m_slope * params[DEPTH]
         s = max(s + ds, foot + _MIN_SHARE * beyond)
@@ -98,7 +99,7 @@ def edges_at(x: float, branch: float, params: Floats) -> tuple[bool, float, floa
     if branch < params[COUNT] or x <= params[LAST_X]:
         return False, 0.0, 0.0
     s, m = law.guess_both(x, params)
-    found, s, m, _, _ = law.both_edges(x, s, m, params)
+    found, s, m, _, _ = law.both_edges(x, s, m if m > 0.0 else params[JUNCTION], params)
     return found, s, m
 
 

@@ -16,6 +16,8 @@ from roughmdr.numerics.vector_math import binade_cell
 
 _cell = compiled(binade_cell, small=True)
 
+_MOST_LOG = 300.0  # of the growth of a guess
+
 
 def guess_both(x: float, params: Floats) -> tuple[float, float]:
     """s and m: within the octaves by cubics, beyond by power laws."""
@@ -24,8 +26,8 @@ def guess_both(x: float, params: Floats) -> tuple[float, float]:
     if node >= last:
         at, beyond = law.first_node + 4 * last, math.log(y) - law.octaves * math.log(2.0)
         return (
-            params[at] * math.exp(beyond * params[at + 1] / params[at]),
-            params[at + 2] * math.exp(beyond * params[at + 3] / params[at + 2]),
+            params[at] * math.exp(min(beyond * params[at + 1] / params[at], _MOST_LOG)),
+            params[at + 2] * math.exp(min(beyond * params[at + 3] / params[at + 2], _MOST_LOG)),
         )
     node = max(node, 0)
     at = law.first_node + 4 * node
@@ -75,7 +77,7 @@ def fill_nodes_of(params: Floats) -> None:
         way, step = params[last] - foot, params[last + 1] * interval
         power = step / way if way > 0.0 else 0.0
         s = params[last] + step * (1.0 + power * (0.5 + power / 6.0))
-        grown = params[last + 3] / params[last + 2] * interval
+        grown = min(params[last + 3] / params[last + 2] * interval, _MOST_LOG)
         found, s, m, s_slope, m_slope = law.both_edges(x, s, params[last + 2] * math.exp(grown), params)
         if not found:
             start = 2.0 * params[last] - foot if params[last] > foot else max(2.0 * foot, 1e-3)
