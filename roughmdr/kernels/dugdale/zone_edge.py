@@ -13,7 +13,6 @@ from roughmdr.numerics.vector_math import atan
 _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
-_RTOL_STEPS = 1e-8  # of the logarithms of the last two gaps, multiplied: the next one, the square, is rounding
 _WIDE = 0.5 * math.pi - 1.0
 _LEAST_SHARE = 1e-2  # of m, left after a step
 _NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
@@ -80,7 +79,7 @@ def zone_width(t: float, a: float, g: float, slope: float, near: float, params: 
     """
     wanted, widest = 0.5 * math.pi * params[RANGE], law.widest_zone(a)
     low, high, m = 0.0, math.inf, min(near if near > 0.0 else law.zone_guess(a, slope, params), 0.5 * widest)
-    m_before, off_before, rate_before, last = 0.0, 0.0, 0.0, 1.0
+    m_before, off_before, rate_before = 0.0, 0.0, 0.0
     for _ in range(_MAX_ITERATIONS):
         value, growth = law.gap_at(t, a, g, m, params)
         if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
@@ -92,7 +91,7 @@ def zone_width(t: float, a: float, g: float, slope: float, near: float, params: 
         off, rate = 2.0 * (wanted - value) / both, both / wanted * (both / (4.0 * m * growth))
         way = off * rate
         if m_before > 0.0 and off != off_before:
-            across, last = off - off_before, off_before
+            across = off - off_before
             mean = (m_before - m) / across
             bend, turn = (3.0 * mean - 2.0 * rate - rate_before) / across, (rate + rate_before - 2.0 * mean) / across
             way += off * off * (bend + off * turn / across)
@@ -101,7 +100,7 @@ def zone_width(t: float, a: float, g: float, slope: float, near: float, params: 
             if not law.gap_at(t, a, g, widest, params)[0] > wanted:
                 return widest
             high = widest
-        if abs(off * last) <= _RTOL_STEPS or not low < high:
+        if abs(off) <= _RTOL_STEP or not low < high:
             return better
         m_before, off_before, rate_before = m, off, rate
         m = better if low < better < high else (0.5 * (low + high) if high < math.inf else 2.0 * m)
