@@ -10,7 +10,7 @@ from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.shapes import SHAPES, Shape
 
-E, W = 4e6, 0.05
+MODULUS, WORK = 4e6, 0.05
 EXAMPLES: dict[str, dict[str, float]] = {
     "cone": {"slope": 0.1},
     "power_law": {"exponent": 2.7, "width": 1e-5, "rise": 1e-6},
@@ -24,14 +24,16 @@ EXAMPLES: dict[str, dict[str, float]] = {
 CONTACTS = 60
 
 
-def evaluations(name: str, strength: float) -> tuple[int, int, int]:
-    """Count evaluations to prepare an asperity and for its ``CONTACTS``, and contacts that were searched for."""
+def evaluations(name: str, strength: float, alike: int = 1) -> tuple[int, int, int]:
+    """Count evaluations to prepare asperities that are all alike and for ``CONTACTS`` of the first, and how many of
+    these were searched for.
+    """
     shape: Shape = SHAPES[name](**EXAMPLES[name])
-    width, rise, params = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in shape.nondimensional())
-    kernels = choose(name, Adhesion(W, "dugdale", strength), params)
+    width, rise, params = (np.full(alike, each) for each in shape.nondimensional())
+    kernels = choose(name, Adhesion(WORK, "dugdale", strength), params)
     with np.errstate(all="ignore"):
         with cProfile.Profile() as preparing:
-            row = kernels.prepare(Material(E, W, strength), Columns(width, rise, params), 0, 1, 0.0)[0]
+            row = kernels.prepare(Material(MODULUS, WORK, strength), Columns(width, rise, params), 0, alike, 0.0)[0]
         with cProfile.Profile() as solving:
             for x in np.geomspace(0.1, 1e3, CONTACTS).tolist():
                 kernels.contact_at(x, float(row[COUNT]), row)

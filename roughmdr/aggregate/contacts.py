@@ -54,10 +54,7 @@ def solve_closed(
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``solve_closed`` by Newton's method: one step for all contacts at a time, so that none waits for another.
-
-    With several branches, ``block.in_contact`` holds the number of the branch at the step before, and then the new one.
-    """
+    """Do as ``solve_closed`` by Newton's method, a step for all contacts at a time, so that none waits for another."""
     params, in_contact, last_step, state = block.params, block.in_contact, block.scratch, block.contacts[STATE]
     law.place(count, block, h, adhesion_range, memory, begin, end)
     x = block.contacts[RADIUS]  # until a is found
@@ -96,7 +93,8 @@ def solve_each(
 def place(count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int) -> None:
     """Put x of the first ``count`` asperities in the place of their radius, and find which of them are in contact.
 
-    Those out of contact have the x of first touch.
+    Those out of contact have the x of first touch. With several branches, ``block.in_contact`` holds the number of the
+    branch at the step before, and then the new one.
     """
     z, params, in_contact, x = block.z, block.params, block.in_contact, block.contacts[RADIUS]
     depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]

@@ -24,6 +24,7 @@ from roughmdr.numerics.compiling import let_collector_rest
 from roughmdr.numerics.fingerprint import COMPILED, fingerprint
 from roughmdr.numerics.rebind import rebuilt
 
+let_collector_rest()
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -97,9 +98,6 @@ def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[.
     copy = rebuilt(function, {}, partial(compiled, small=small))
     copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
     return njit(copy, small=small)
-
-
-let_collector_rest()
 
 
 class _Literals(ast.NodeTransformer):

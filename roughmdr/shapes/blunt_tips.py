@@ -1,5 +1,6 @@
 """Profiles with a tip blunter than the flank: the rounded cone and the capped paraboloid."""
 
+import math
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
@@ -14,7 +15,7 @@ from roughmdr.shapes.profile import Params, Profile, kink_at_one, one, q_of_radi
 
 _CONE_SOFTENING_END = 1.1053618248293666  # where sqrt(a) [2/(a + q) + atan q] is least
 
-_PARABOLOID_SOFTENING_END = 0.37915286960589590  # (sqrt(57) - 3)/12: q^2 there for c = 0
+_FLAT_SOFTENING_END = (math.sqrt(57.0) - 3.0) / 12.0  # q^2 where sqrt(a) g' is least for c = 0: 6 q^4 + 3 q^2 = 2
 
 _BluntTip = partial(Profile, softening_count=one, kink=kink_at_one, breakpoint_count=one)
 
@@ -119,7 +120,7 @@ def _paraboloid_softening_interval(index: int, params: Params) -> tuple[float, f
 
     With w = q^2 that is convex, so that Newton's method comes from the root for c = 0 without going beyond.
     """
-    c, w = params[0], _PARABOLOID_SOFTENING_END
+    c, w = params[0], _FLAT_SOFTENING_END
     for _ in range(60):
         a, q = sqrt(1.0 + w), sqrt(w)
         value = 3.0 * c * a * w * q + 0.5 * (1.0 - c) * ((6.0 * w + 3.0) * w - 2.0)

@@ -31,7 +31,7 @@ from roughmdr.numerics.vector_math import atan
 _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 3e-8  # of the distance to the foot and of m: the next error, its square, is below rounding
-_ROUNDINGS = 4e-16
+_ROUNDINGS = 4e-16  # of m, which no step need be smaller than
 _MAX_STEPS = 12
 _MIN_SHARE = 1e-2  # of the distance to the foot and of m: left after a step that would go beyond 0
 _MOST_GROWTH = 10.0  # of m in a step

@@ -9,7 +9,7 @@ import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import COUNT, DEPTH, JUNCTION, LAST
+from roughmdr.kernels.profile.layout import COUNT, JUNCTION, LAST
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import binade_cell
@@ -65,28 +65,23 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
 def fill_nodes_of(params: Floats) -> None:
     """Fill in the nodes of one row, each from the one before."""
     law.fill_first_node(params)
-    foot, at = params[LAST], law.first_node
-    m, slope = law.zone_at(foot, params)
+    at = law.first_node
+    m, slope = law.zone_at(params[LAST], params)
     params[at + 2], params[at + 3] = m, slope * params[at + 1]
     y = 1.0
     for node in range(1, (law.octaves << law.split) + 1):
-        before, last = y, law.first_node + 4 * (node - 1)
-        y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
+        before, at, y = y, law.first_node + 4 * node, law.y_of_node(node)
         x, dx = law.x_of_y(y, params)
         interval = math.log(y / before)
-        way, step = params[last] - foot, params[last + 1] * interval
-        power = step / way if way > 0.0 else 0.0
-        s = params[last] + step * (1.0 + power * (0.5 + power / 6.0))
-        grown = min(params[last + 3] / params[last + 2] * interval, _MOST_LOG)
-        found, s, m, s_slope, m_slope = law.both_edges(x, s, params[last + 2] * math.exp(grown), params)
-        if not found:
-            start = 2.0 * params[last] - foot if params[last] > foot else max(2.0 * foot, 1e-3)
-            s = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
-            m, per_s = law.zone_at(s, params)
-            s_slope = params[DEPTH] / law.control_at(s, params)[1]
-            m_slope = per_s * s_slope
-        at = law.first_node + 4 * node
-        params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * dx, m, m_slope * dx
+        s, m_before = law.extrapolate_node(node, interval, params), params[at - 2]
+        grown = min(params[at - 1] / m_before * interval, _MOST_LOG)
+        found, s, m, s_slope, m_slope = law.both_edges(x, s, m_before * math.exp(grown), params)
+        if found:
+            params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * dx, m, m_slope * dx
+        else:
+            law.fill_node(node, y, params)
+            m, slope = law.zone_at(params[at], params)
+            params[at + 2], params[at + 3] = m, slope * params[at + 1]
 
 
 def zone_at(s: float, params: Floats) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from roughmdr.numerics.vector_math import atan
 _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
-_WIDE = 0.5 * math.pi - 1.0
+_WIDE = 0.5 * math.pi - 1.0  # m theta - c + a over m where a is small
 _LEAST_SHARE = 1e-2  # of m, left after a step
 _NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
 _ROUNDING = 1e-15

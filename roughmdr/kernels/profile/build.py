@@ -99,7 +99,7 @@ def _no_t_of_q(q: float, params: Floats) -> float:
     return math.nan
 
 
-_OCTAVES_OF_PAIRS = 14  # a node costs as much as two visits
+_OCTAVES_OF_EDGES = 14  # a node costs as much as two visits
 _SPLIT = 5  # times an octave of the initial guess is halved where all asperities share one row
 _NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts have converged
 _VECTOR_CODE: set[Callable[..., Any]] = {
@@ -117,7 +117,7 @@ _VECTOR_CODE: set[Callable[..., Any]] = {
     newton.newton_step,
     newton.converged,
 }
-_INLINE_OF_PAIRS: set[Callable[..., Any]] = {
+_INLINE_OF_EDGES: set[Callable[..., Any]] = {
     zone.gap_integrals_closed,
     zone_edge.contact_edge,
     zone_edge.gap_at,
@@ -162,8 +162,9 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
     if similar:
         parts |= _functions(elastic)
     plain: dict[str, Any] = profile._asdict()
-    pairs = cohesive and shape is not Paraboloid
-    octaves, split, node_size = _OCTAVES_OF_PAIRS if pairs else OCTAVES, _SPLIT if shared else 0, 4 if pairs else 2
+    one_by_one = cohesive and shape is not Paraboloid
+    octaves, node_size = (_OCTAVES_OF_EDGES, 4) if one_by_one else (OCTAVES, 2)
+    split = _SPLIT if shared else 0
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
         "has_t_of_q": profile.t_of_q is not None,
@@ -174,7 +175,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         "first_node": first_node(octaves, split, node_size),
         "node_size": node_size,
         "newton_steps": _NEWTON_STEPS_OF_SPLIT if shared else _NEWTON_STEPS,
-        "one_by_one": pairs,
+        "one_by_one": one_by_one,
         "adhesive": cohesive,
         "branched": cohesive,
         "cohesive": cohesive,
@@ -195,7 +196,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
     if cohesive and profile.zone_integrals is not None:
         vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
     inlined = whole.copy()
-    small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_PAIRS)
+    small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_EDGES)
     for name, part in parts.items():
         kernels = inlined if part in small else whole
         inline = name in ("params_of", "shared_params")

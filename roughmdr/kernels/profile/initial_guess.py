@@ -30,6 +30,11 @@ def y_of_x(x: float, params: Floats) -> float:
     return side * side if params[TENSION] > 0.0 else x * _LOWEST
 
 
+def y_of_node(node: int) -> float:
+    """y at a node."""
+    return math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
+
+
 def cubic(u: float, first: float, slope: float, last: float, last_slope: float) -> float:
     """The cubic from u = 0 to 1 with these values and slopes at the ends."""
     rise = last - first
@@ -64,10 +69,10 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 def extrapolate_node(node: int, interval: float, params: Floats) -> float:
     """t at a node, from the node before, whose ln y is less by ``interval``: t - foot is about a power of y."""
-    foot, at = params[LAST], law.first_node + 2 * node
-    way, step = params[at - 2] - foot, params[at - 1] * interval
+    foot, before = params[LAST], law.first_node + law.node_size * (node - 1)
+    way, step = params[before] - foot, params[before + 1] * interval
     power = step / way if way > 0.0 else 0.0
-    return float(params[at - 2] + step * (1.0 + power * (0.5 + power / 6.0)))
+    return float(params[before] + step * (1.0 + power * (0.5 + power / 6.0)))
 
 
 def fill_first_node(params: Floats) -> None:
@@ -86,9 +91,9 @@ def fill_first_node(params: Floats) -> None:
 
 def fill_node(node: int, y: float, params: Floats) -> None:
     """Fill in one node, solved for by itself."""
-    foot, at = params[LAST], law.first_node + 2 * node
+    foot, at = params[LAST], law.first_node + law.node_size * node
     x, dx = law.x_of_y(y, params)
-    before = params[at - 2] if node > 0 else 0.0
+    before = params[at - law.node_size] if node > 0 else 0.0
     start = 2.0 * before - foot if before > foot else max(2.0 * foot, 1e-3)
     params[at] = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
     params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1]
@@ -104,7 +109,7 @@ def fill_nodes(rows: Floats) -> None:
     y = 1.0
     for node in range(1, (OCTAVES << law.split) + 1):
         before = y
-        y = math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
+        y = law.y_of_node(node)
         interval = math.log(y / before)
         for i in range(count):
             t[i] = law.extrapolate_node(node, interval, rows[i])

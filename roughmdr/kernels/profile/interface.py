@@ -57,6 +57,7 @@ class ProfileKernels(Kernels):
     node_size: int
     """How many numbers a node has."""
     y_of_x: Kernel
+    y_of_node: Callable[[int], float]
     cubic: Kernel
     guess_anywhere: Kernel
     x_of_y: Callable[..., tuple[float, float]]
