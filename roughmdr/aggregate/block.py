@@ -12,9 +12,10 @@ from roughmdr.numerics.arguments import Floats
 # Rows of the natural scales of a block.
 DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE = range(6)
 SCALES = 6
-# Rows of its contacts; the last three are filled where the kernels find them together with the state.
-STATE, RADIUS, FORCE, STIFFNESS = range(4)
-CONTACT_ROWS = 4
+# Rows of its contacts; the next three after the state are filled where the kernels find them together with it, the last
+# where they approach it by steps.
+STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR = range(5)
+CONTACT_ROWS = 5
 
 
 class Block(NamedTuple):

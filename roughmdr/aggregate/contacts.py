@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import DEPTH_SCALE, FORCE, PER_DEPTH, RADIUS, STATE, STIFFNESS, Block, law
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE, PER_DEPTH, RADIUS, STATE, STATE_ERROR, STIFFNESS, Block, law
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 
@@ -51,28 +51,43 @@ def solve_closed(
     law.evaluate(count, block)
 
 
+def solve_refined(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
+) -> None:
+    """Do as ``solve_closed`` in several steps, a loop for each, so that no contact waits for another."""
+    params, x, state = block.params, block.scratch, block.contacts[STATE]
+    law.place(count, block, h, adhesion_range, memory, begin, end)
+    for i in range(count):
+        state[i] = law.initial_guess(x[i], law.params_of(params, i))
+    for _ in range(law.refinements):
+        for i in range(count):
+            state[i] = law.refined(state[i], x[i], law.params_of(params, i))
+    law.evaluate(count, block)
+
+
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``solve_closed`` by Newton's method, a step for all contacts at a time, so that none waits for another."""
-    params, in_contact, last_step, state = block.params, block.in_contact, block.scratch, block.contacts[STATE]
+    """Do as ``solve_closed`` by a fixed number of steps for all contacts, as vector code, and a search for some."""
+    params, in_contact, x = block.params, block.in_contact, block.scratch
+    state, error = block.contacts[STATE], block.contacts[STATE_ERROR]
     law.place(count, block, h, adhesion_range, memory, begin, end)
-    x = block.contacts[RADIUS]  # until a is found
     for i in range(count):
-        state[i] = law.initial_guess(x[i], law.params_of(params, i))
-    for _ in range(law.newton_steps):
-        for i in range(count):
-            state[i], last_step[i], _ = law.newton_step(state[i], x[i], law.params_of(params, i))
-    left = 0
-    for i in range(count):  # nothing but this, so that it becomes vector code
+        state[i] = law.y_of_x(x[i], law.params_of(params, i))
+    for i in range(count):
+        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+    for i in range(count):
+        state[i], error[i], _ = law.approach(state[i], x[i], law.params_of(params, i))
+    unknown = 0
+    for i in range(count):
         branch = in_contact[i] if law.adhesive else 1.0
-        left += (branch > 0.0) & (law.converged(state[i], last_step[i], x[i], branch, law.params_of(params, i)) < 1)
-    if left > 0:
+        unknown += (branch > 0.0) & (law.converged(error[i], branch, law.params_of(params, i)) < 1)
+    if unknown > 0:
         for i in range(count):
             branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
-            if branch > 0.0 and not law.converged(state[i], last_step[i], x[i], branch, own):
-                t, step, _ = law.newton_step(state[i], x[i], own)
-                state[i] = t if law.converged(t, step, x[i], branch, own) else law.state_on_branch(x[i], branch, own)
+            if branch > 0.0 and not law.converged(error[i], branch, own):
+                t, left, _ = law.one_step(state[i], x[i], own)
+                state[i] = t if law.converged(left, branch, own) else law.state_on_branch(x[i], branch, own)
     law.evaluate(count, block)
 
 
@@ -80,23 +95,23 @@ def solve_each(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
     """Do as ``solve_closed`` for contacts that are solved one by one."""
-    params, in_contact, contacts = block.params, block.in_contact, block.contacts
+    params, in_contact, x, contacts = block.params, block.in_contact, block.scratch, block.contacts
+    state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     law.place(count, block, h, adhesion_range, memory, begin, end)
-    state, x, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     for i in range(count):
         if in_contact[i] > 0.0:
-            state[i], x[i], force[i], stiffness[i] = law.contact_at(x[i], in_contact[i], law.params_of(params, i))
+            state[i], a[i], force[i], stiffness[i] = law.contact_at(x[i], in_contact[i], law.params_of(params, i))
         else:
-            state[i], x[i], force[i], stiffness[i] = 0.0, 0.0, 0.0, 0.0
+            state[i], a[i], force[i], stiffness[i] = 0.0, 0.0, 0.0, 0.0
 
 
 def place(count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int) -> None:
-    """Put x of the first ``count`` asperities in the place of their radius, and find which of them are in contact.
+    """Put x of the first ``count`` asperities into ``block.scratch``, and find which of them are in contact.
 
     Those out of contact have the x of first touch. With several branches, ``block.in_contact`` holds the number of the
     branch at the step before, and then the new one.
     """
-    z, params, in_contact, x = block.z, block.params, block.in_contact, block.contacts[RADIUS]
+    z, params, in_contact, x = block.z, block.params, block.in_contact, block.scratch
     depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]
     lift = 1.0 if law.adhesive else 0.0
     for i in range(count):

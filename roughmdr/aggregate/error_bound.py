@@ -61,7 +61,7 @@ def bounded_stiffness(contacts: Floats, params: Any, i: int) -> float:
     k = abs(contacts[STIFFNESS, i])
     if law.adhesive:
         stretch, pull = law.adhesion_terms(contacts[RADIUS, i], law.params_of(params, i))
-        return float(pull / stretch / ROUNDING if k == math.inf else k)
+        return float(min(k, pull / stretch / ROUNDING))
     return float(k)
 
 

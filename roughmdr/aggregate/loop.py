@@ -24,6 +24,7 @@ from roughmdr.aggregate.contacts import (
     solve_closed,
     solve_each,
     solve_iterative,
+    solve_refined,
     stiffness_of_state,
     update_contact,
 )
@@ -50,6 +51,7 @@ from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 
 _NOT_REPRESENTABLE = -1
 _ENERGIES = {ENERGY, DISSIPATED}
+_OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at", "bounded_stiffness"}
 
 
 @njit
@@ -101,11 +103,14 @@ def _loop(
     in_contact, before, contacts = np.empty(BLOCK), np.empty(BLOCK), np.empty((CONTACT_ROWS, BLOCK))
     scratch = np.empty(BLOCK)
     total, compensation, wanted = totals.total, totals.compensation, totals.wanted
+    if law.shared:
+        params = law.prepare(material, columns, 0, height.size, 0.0)
     for start in range(0, height.size, BLOCK):
         z = height[start : min(start + BLOCK, height.size)]
         if count_above(z, closest) == 0:
             break
-        params = law.prepare(material, columns, start, start + z.size, 0.0)
+        if not law.shared:
+            params = law.prepare(material, columns, start, start + z.size, 0.0)
         block = Block(z, params, scales, max_scales, in_contact, before, contacts, scratch)
         if not law.natural_scales(block, columns, start, material, law.energetic):
             return _NOT_REPRESENTABLE
@@ -149,7 +154,8 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     """Return the kernels with the parts of the sum, compiled with them; without energies where not ``energetic``."""
     name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together
     whole = SumKernels(name)
-    solve = solve_each if kernels.one_by_one else solve_iterative if kernels.iterative else solve_closed
+    solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
+    solve = solve_each if kernels.one_by_one else solve
     vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name, "energetic": energetic})
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
@@ -168,7 +174,8 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "add_totals": add_totals,
     }
     for name, part in parts.items():
-        vars(whole)[name] = specialise(part, whole, inline=True)
+        of_one = name in _OF_ONE_CONTACT
+        vars(whole)[name] = specialise(part, whole, inline=not of_one, small=of_one)
     whole.loop = specialise(_loop, whole)
     return whole
 

@@ -61,10 +61,12 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
             energy = law.energy(contacts[STATE, i], law.params_of(params, i))
             terms[i] = worth[i] * energy if not law.adhesive or in_contact[i] > 0.0 else 0.0
         accumulate(total[ENERGY], compensation[ENERGY], step, block_sum(terms, count))
-    if wanted[COUNT]:
+    if not law.adhesive and wanted[COUNT]:
+        accumulate(total[COUNT], compensation[COUNT], step, float(count))
+    elif wanted[COUNT]:
         for i in range(count):
             touching = not law.cohesive or law.radius_at(contacts, params, i) > 0.0
-            terms[i] = 1.0 if touching and (not law.adhesive or in_contact[i] > 0.0) else 0.0
+            terms[i] = 1.0 if touching and in_contact[i] > 0.0 else 0.0
         accumulate(total[COUNT], compensation[COUNT], step, block_sum(terms, count))
 
 

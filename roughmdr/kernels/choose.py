@@ -5,7 +5,7 @@ from types import ModuleType
 
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.closed import flat_punch, hertz, jkr_cone, jkr_paraboloid, jkr_power, scalar
+from roughmdr.kernels.closed import flat_punch, hertz, jkr_cone, jkr_paraboloid, jkr_power, power_of_x, scalar
 from roughmdr.kernels.dugdale import flat_punch as dugdale_flat_punch
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.build import build
@@ -45,6 +45,9 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
     law.found_together = "radius_force_stiffness" in vars(law)
     if not law.found_together:
         law.radius_force_stiffness = specialise(scalar.radius_force_stiffness, law)
+    if shape == "power_law" and not adhesive:
+        law.in_sums = law.copy("_of_x")
+        vars(law.in_sums).update(vars(_of_module("", power_of_x)), __name__=law.in_sums.name, found_together=True)
     return law
 
 
@@ -65,7 +68,7 @@ def _dugdale(shape: type[Shape]) -> Kernels:
     if shape is not FlatPunch:
         return build(shape, cohesive=True)
     law = _of_module("dugdale_flat_punch", dugdale_flat_punch)
-    law.adhesive = law.iterative = law.branched = law.cohesive = law.found_together = True
+    law.adhesive = law.iterative = law.branched = law.cohesive = law.one_by_one = law.found_together = True
     return law
 
 

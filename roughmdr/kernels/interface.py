@@ -47,6 +47,8 @@ class Kernels(ModuleType):
     adhesive = False
     iterative = False
     """Whether states are found by Newton's method, and ``params`` is a row."""
+    shared = False
+    """Whether that is one row for all asperities."""
     branched = False
     """Whether there can be more than one stable branch."""
     cohesive = False
@@ -59,7 +61,7 @@ class Kernels(ModuleType):
     """Whether radius, force and stiffness cost no more together than one of them."""
 
     in_sums: Self | None = None
-    """Kernels for the sum over asperities alone, where all asperities share one row; None without."""
+    """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
 
     prepare: Callable[[Material, Columns, int, int, float], Any]
     """(material, columns, start, stop, control) -> params of the asperities from start to stop; control is 0 for fixed
@@ -110,14 +112,21 @@ class Kernels(ModuleType):
     term_sizes: Callable[..., tuple[float, float]]
     """(state, params) -> the sizes of those terms, in the units of ``adhesion_terms``."""
 
-    newton_steps = 0
-    """How many steps of Newton's method bring most contacts to their state; like all that follows, where iterative."""
+    refinements: int = 0
+    """How often ``refined`` leads from ``initial_guess`` at x to the state; 0 where ``state`` is no slower."""
+    refined: Kernel
+    """(state, x, params) -> the state one step nearer."""
+
     initial_guess: Kernel
-    """(x, params) -> the state at which Newton's method begins."""
-    newton_step: Callable[..., tuple[float, float, float]]
-    """(state, x, params) -> the state one step nearer, how far away it was, and d(state)/dx."""
+    """(x or ``y_of_x``, params) -> the state to begin at."""
+    y_of_x: Kernel
+    """(x, params) -> the variable of a table of guesses; this and the next two where ``iterative``."""
+    approach: Callable[..., tuple[float, float, float]]
+    """(that state, x, params) -> the state after a fixed number of steps, a bound of its error, and d(state)/dx."""
+    one_step: Callable[..., tuple[float, float, float]]
+    """As ``approach``, after one step."""
     converged: Callable[..., bool]
-    """(state, how far away the last was, x, branch, params) -> whether this is the state on that branch."""
+    """(error bound, branch, params) -> whether the state is that on this branch."""
     state_on_branch: Kernel
     """(x, branch, params) -> the state on branch number 1, 2, ..."""
     branch: Kernel

@@ -74,21 +74,19 @@ def _paraboloid_mdr_profile(t: float, params: Params) -> tuple[float, float, flo
 
     t is a on the cap and 1 + q/c beyond, so that it resolves the blend where the cap is nearly flat.
     """
-    c = params[0]
-    if t <= 1.0:
-        return t, 1.0, c * t * t, 2.0 * c * t
-    q = c * (t - 1.0)
-    a = sqrt(1.0 + q * q)
-    return a, c * q / a, c * a * a + (1.0 - c) * a * q, c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
+    c, on_cap = params[0], t <= 1.0
+    q = 0.0 if on_cap else c * (t - 1.0)
+    a = t if on_cap else sqrt(1.0 + q * q)
+    growth = 1.0 if on_cap else c * q / a
+    steepening = 2.0 * c * t if on_cap else c * (2.0 * c * q + (1.0 - c) * (1.0 + 2.0 * q * q) / a)
+    return a, growth, a * (c * a + (1.0 - c) * q), steepening
 
 
 def _paraboloid_reduced_load(t: float, params: Params) -> float:
-    c = params[0]
-    if t <= 1.0:
-        return 2.0 * c * t * t * t / 3.0
-    q = c * (t - 1.0)
-    square = 1.0 + q * q
-    return 2.0 * c * square * sqrt(square) / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
+    c, on_cap = params[0], t <= 1.0
+    q = 0.0 if on_cap else c * (t - 1.0)
+    a = t if on_cap else sqrt(1.0 + q * q)
+    return 2.0 * c * a * a * a / 3.0 + (1.0 - c) * (q + 2.0 * q * q * q / 3.0)
 
 
 def _paraboloid_mdr_integral(t: float, params: Params) -> float:

@@ -22,7 +22,7 @@ from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
 _KERNEL_ERROR = 1e-13  # of the force over its terms, as tested
-_TINY = 1e-150  # 1/z^2 of a smaller z overflows
+refinements = 2
 _expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)
 
@@ -67,13 +67,13 @@ def scales(
     return depth, a_c[0], 2.0 * effective_modulus * a_c[0] * stretch[0], 2.0 * effective_modulus * a_c[0]
 
 
-@njit
+@_vector
 def relative_errors(n: float) -> tuple[float, float]:
     """The error of the force; the state comes from the distance to the fold."""
     return _KERNEL_ERROR, 0.0
 
 
-@njit
+@_vector
 def adhesion_terms(a: float, n: float) -> tuple[float, float]:
     """dl over dl(a_c), and a dl over a_c dl(a_c)."""
     stretch = math.sqrt(a)
@@ -96,23 +96,42 @@ def _halley(value: float, slope: float, bend: float, x: float, ratio: float) -> 
 
 
 @_vector
+def _approach(l: float, x: float, e: float) -> float:
+    """Return l one step nearer to X(l) = x, by Halley's method with 2 (X - x)/(X + x) for ln(X/x)."""
+    value, slope, bend = _distance(l, e, 1.0 / e)
+    return l - _halley(value, slope, bend, x, 2.0 * (value - x) / (value + x) if x > 1.0 else 0.0)
+
+
+@_vector
+def _first_step(x: float, e: float) -> float:
+    """Return l after a first step from the right limits, l ~ sqrt(2 x/(1 + e)) and l ~ ln(x)/(1 + e)."""
+    p = 1.0 + e
+    square = 0.5 * p * x
+    l = 2.0 / p * _log1p(math.sqrt(square) + square / (1.0 + math.sqrt(1.0 + square)))  # asinh of the root
+    value, slope, bend = _distance(l, e, 1.0 / e)
+    return float(l - _halley(value, slope, bend, x, _log(value / x) if x > 1.0 else 0.0))
+
+
+@_vector
 def stable_log_tau(x: float, e: float) -> float:
     """The l >= 0 with X(l) = x >= 0: the stable branch.
 
-    The start has the right limits, l ~ sqrt(2 x/(1 + e)) and l ~ ln(x)/(1 + e); Halley's method, on X near the fold and
-    on ln X away from it, is at rounding error after three steps for e from 2e-4 to 400 and x up to 1e300. After the
-    first step 2 (X - x)/(X + x) replaces ln(X/x).
+    Halley's method, on X near the fold and on ln X away from it, is at rounding error after three steps for e from 2e-4
+    to 400 and x up to 1e300.
     """
-    p = 1.0 + e
-    z = max(0.5 * p * math.sqrt(2.0 * x / p), _TINY)
-    l = 2.0 / p * _log1p(z + z / (1.0 / z + math.sqrt(1.0 + 1.0 / z / z)))  # asinh z
-    far, per_e = x > 1.0, 1.0 / e
-    value, slope, bend = _distance(l, e, per_e)
-    l -= _halley(value, slope, bend, x, _log(value / x) if far else 0.0)
-    for _ in range(2):
-        value, slope, bend = _distance(l, e, per_e)
-        l -= _halley(value, slope, bend, x, 2.0 * (value - x) / (value + x) if far else 0.0)
-    return l if x > 0.0 else 0.0
+    return _approach(_approach(_first_step(x, e), x, e), x, e) if x > 0.0 else 0.0
+
+
+@_vector
+def initial_guess(x: float, n: float) -> float:
+    """l after the first of these steps."""
+    return _first_step(x, 2.0 * n - 1.0)
+
+
+@_vector
+def refined(l: float, x: float, n: float) -> float:
+    """l after another step."""
+    return _approach(l, x, 2.0 * n - 1.0) if x > 0.0 else 0.0
 
 
 @_vector

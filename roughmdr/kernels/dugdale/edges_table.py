@@ -64,17 +64,16 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
 
 def fill_nodes_of(params: Floats) -> None:
     """Fill in the nodes of one row, each from the one before."""
-    law.fill_first_node(params)
+    first = law.fill_first_node(params)
     at = law.first_node
     m, slope = law.zone_at(params[LAST], params)
     params[at + 2], params[at + 3] = m, slope * params[at + 1]
-    y = 1.0
     for node in range(1, (law.octaves << law.split) + 1):
-        before, at, y = y, law.first_node + 4 * node, law.y_of_node(node)
+        at, y = law.first_node + 4 * node, law.y_of_node(node)
         x, dx = law.x_of_y(y, params)
-        interval = math.log(y / before)
-        s, m_before = law.extrapolate_node(node, interval, params), params[at - 2]
-        grown = min(params[at - 1] / m_before * interval, _MOST_LOG)
+        s = law.extrapolate_node(node, law.step_to(node, params), params) if node > 1 else first
+        m_before = params[at - 2]
+        grown = min(params[at - 1] / m_before * math.log(y / law.y_of_node(node - 1)), _MOST_LOG)
         found, s, m, s_slope, m_slope = law.both_edges(x, s, m_before * math.exp(grown), params)
         if found:
             params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * dx, m, m_slope * dx

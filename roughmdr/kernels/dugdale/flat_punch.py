@@ -17,7 +17,6 @@ from roughmdr.numerics.jit import compiled, njit
 
 scales, force_scales = compiled(build.scales), compiled(build.force_scales)
 params_of = njit(build.params_of, inline=True)
-newton_steps = 1
 _KERNEL_ERROR = 1e-12  # of the force, as tested
 _MAX_DEPTH = 2.0**26  # over beta: of a larger depth the roundings would be more than 1e-12 of a closing contact
 
@@ -81,24 +80,6 @@ def state_on_branch(x: float, branch: float, params: Floats) -> float:
 
 
 @njit
-def initial_guess(x: float, params: Floats) -> float:
-    """delta/b at x, with nothing left to solve for."""
-    return state(x, params)
-
-
-@njit
-def newton_step(s: float, x: float, params: Floats) -> tuple[float, float, float]:
-    """The state, a step of 0, and the slope."""
-    return state(x, params), 0.0, params[DEPTH]
-
-
-@njit
-def converged(s: float, step: float, x: float, branch: float, params: Floats) -> bool:
-    """True: the state is explicit."""
-    return True
-
-
-@njit
 def state_of_radius(radius: float, size: float, params: Floats) -> float:
     """NaN: the radius does not determine the state."""
     return math.nan
@@ -136,6 +117,14 @@ def radius_force_stiffness(s: float, params: Floats) -> tuple[float, float, floa
     """a/b, P over 2 E* b^2, and k over 2 E* b."""
     a, m, angle = _opening(s, params)
     return a, max(s, 0.0) - 0.5 * params[STRENGTH] * (angle + a * m), a
+
+
+@njit
+def contact_at(x: float, branch: float, params: Floats) -> tuple[float, float, float, float]:
+    """delta/b, a/b, P over 2 E* b^2, and k over 2 E* b at x."""
+    s = state(x, params)
+    a, push, k = radius_force_stiffness(s, params)
+    return s, a, push, k
 
 
 @njit

@@ -13,21 +13,22 @@ from roughmdr.kernels.dugdale import both_edges, edges_table, paraboloid, zone, 
 from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton
+from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton, one_number
 from roughmdr.kernels.profile.interface import ProfileKernels, law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, OCTAVES, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, NUMBER, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
 from roughmdr.numerics.jit import compiled, specialise
 from roughmdr.shapes import Paraboloid, Shape, TabledShape
 from roughmdr.shapes.power_profiles import profile_of
+from roughmdr.shapes.profile import Profile
 
 
 def fill_params(material: Material, width: float, rise: float, control: float, params: Floats) -> None:
     """Fill the row of one asperity, in which the parameters of its shape stand already."""
     modulus, work, strength = material
     params[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
-    params[CONTROL] = control
+    params[CONTROL], params[NUMBER] = control, params[0]
     params[STRENGTH], params[RANGE] = 2.0 * strength / modulus * width / rise, work / strength / rise
     law.precompute(params)
     law.find_branches(params)
@@ -99,9 +100,9 @@ def _no_t_of_q(q: float, params: Floats) -> float:
     return math.nan
 
 
+_OCTAVES, _OCTAVES_OF_SIMILAR = 24, 40
 _OCTAVES_OF_EDGES = 14  # a node costs as much as two visits
-_SPLIT = 5  # times an octave of the initial guess is halved where all asperities share one row
-_NEWTON_STEPS, _NEWTON_STEPS_OF_SPLIT = 3, 1  # after which nine in ten contacts have converged
+_SPLIT = 6  # times an octave of the initial guess is halved where all asperities share one row
 _VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
     equilibrium.radius_force_stiffness,
@@ -115,7 +116,11 @@ _VECTOR_CODE: set[Callable[..., Any]] = {
     initial_guess.x_of_y,
     initial_guess.extrapolate_node,
     newton.newton_step,
+    newton.one_step,
+    newton.two_steps,
     newton.converged,
+    equilibrium.adhesion_terms,
+    equilibrium.relative_errors,
 }
 _INLINE_OF_EDGES: set[Callable[..., Any]] = {
     zone.gap_integrals_closed,
@@ -163,7 +168,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         parts |= _functions(elastic)
     plain: dict[str, Any] = profile._asdict()
     one_by_one = cohesive and shape is not Paraboloid
-    octaves, node_size = (_OCTAVES_OF_EDGES, 4) if one_by_one else (OCTAVES, 2)
+    octaves, node_size = (_OCTAVES_OF_EDGES, 4) if one_by_one else (_OCTAVES_OF_SIMILAR if similar else _OCTAVES, 2)
     split = _SPLIT if shared else 0
     constants = {
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
@@ -171,16 +176,17 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape is Paraboloid else math.sqrt(2.0),
         "octaves": octaves,
+        "shared": shared,
         "split": split,
         "first_node": first_node(octaves, split, node_size),
         "node_size": node_size,
-        "newton_steps": _NEWTON_STEPS_OF_SPLIT if shared else _NEWTON_STEPS,
         "one_by_one": one_by_one,
         "adhesive": cohesive,
         "branched": cohesive,
         "cohesive": cohesive,
     }
     plain["t_of_q"] = profile.t_of_q or _no_t_of_q
+    parts["approach"] = parts["one_step" if shared else "two_steps"]
     if cohesive:
         plain["kink"] = parts.pop("kink")
     if profile.elastic_integral is not None:
@@ -188,11 +194,16 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
     whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else f"{shape.name}_similar" if similar else shape.name)
     vars(whole).update(constants, **{name: compiled(part) for name, part in plain.items() if part is not None})
     # What a table looks up is no vector code.
-    vector = (
-        {}
-        if shape.shared or tabled
-        else {name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")}
-    )
+    vector: dict[str, Callable[..., Any]] = {}
+    if not (shape.shared or tabled):
+        alone = ProfileKernels(f"{shape.name}_alone")
+        vars(alone).update({name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")})
+        several = profile.precompute is not Profile._field_defaults["precompute"]
+        vector = (
+            vars(alone)
+            if several
+            else {name: specialise(part, alone, small=True) for name, part in _functions(one_number).items()}
+        )
     if cohesive and profile.zone_integrals is not None:
         vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
     inlined = whole.copy()

@@ -8,10 +8,9 @@ import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import OCTAVES
 from roughmdr.numerics.arguments import Floats
 
-_LOWEST = 2.0 ** (OCTAVES // 2)  # the octaves begin at 1/_LOWEST of the depth
+_PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
 
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
@@ -25,12 +24,12 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
 
 def y_of_x(x: float, params: Floats) -> float:
     """y at x."""
-    return x * _LOWEST
+    return x * _PER_DEPTH
 
 
 def x_of_y(y: float, params: Floats) -> tuple[float, float]:
     """x at y, and y dx/dy."""
-    return y / _LOWEST, y / _LOWEST
+    return y / _PER_DEPTH, y / _PER_DEPTH
 
 
 def indentation_at(t: float, params: Floats) -> tuple[float, float]:

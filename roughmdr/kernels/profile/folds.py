@@ -28,6 +28,8 @@ from roughmdr.numerics.arguments import Floats
 
 _LARGEST = 1e140  # its square is a float
 _RTOL = 1e-15
+_HALVED = 12  # which of the steps halve the interval
+_LEAST = 0.1  # factor on an end
 # Nearer than _NEAR to a foot, relative to t, the controlled quantity above the foot is the integral of its slope, since
 # the difference has lost too many digits. Where its terms are above _SWING times the depth that distance is larger in
 # proportion, but at most _FARTHEST: up to there Gauss's rule is exact to rounding.
@@ -50,7 +52,8 @@ def log_excess(t: float, tension: float, params: Floats) -> float:
 def steepness_crossing(low: float, high: float, tension: float, params: Floats) -> float:
     """The t between low (or 0) and high (or inf) where the steepness passes the tension; inf where none is found.
 
-    By secants and halves in ln t, in which the steepness is nearly a power law.
+    By secants in ln t, in which the steepness is nearly a power law, with the factor of N. Anderson and A. Björck (BIT
+    13 (1973) 253) on an end that stays, and now and then by halves.
     """
     rising, factor = True, 16.0
     if high == math.inf:
@@ -69,18 +72,20 @@ def steepness_crossing(low: float, high: float, tension: float, params: Floats) 
             high, low, factor = low, low / factor, min(factor * factor, 1e20)
     z_low, z_high = math.log(low), math.log(high)
     e_low, e_high = law.log_excess(low, tension, params), law.log_excess(high, tension, params)
-    z = z_high
+    z, side = z_high, 0
     for i in range(200):
-        z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % 3 < 2 else 0.5 * (z_low + z_high)
+        z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % _HALVED > 0 else 0.5 * (z_low + z_high)
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
         excess = law.log_excess(math.exp(z), tension, params)
         if abs(excess) < _RTOL or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
-            z_high, e_high = z, excess
+            e_low *= max(1.0 - excess / e_high, _LEAST) if side > 0 else 1.0
+            z_high, e_high, side = z, excess, 1
         else:
-            z_low, e_low = z, excess
+            e_high *= max(1.0 - excess / e_low, _LEAST) if side < 0 else 1.0
+            z_low, e_low, side = z, excess, -1
     return math.exp(z)
 
 

@@ -1,7 +1,7 @@
 """The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts of them, and
 power laws beyond.
 
-y = (1 + sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
+y = (1 + 4 sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
 ``layout``.
 """
 
@@ -10,29 +10,31 @@ import math
 import numpy as np
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, OCTAVES, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import binade_cell
 
 _octave = compiled(binade_cell, small=True)
 
-_LOWEST = 2.0 ** (OCTAVES // 2)  # without adhesion the octaves begin at 1/_LOWEST of the depth
-_LARGEST = 2.0**OCTAVES
-_MAX_STEP = 0.1  # of the distance to the foot: after a larger second step a node is solved for by itself
+_PER_DEPTH = 2.0**12  # without adhesion the octaves begin at its inverse of the depth
+_FINE = 4.0
+_MAX_ERROR = 1e-4  # of the distance to the foot: with a larger one a node is solved for by itself
+_STEPS = 8  # before that
 _CORNER = 1e-6  # of the depth over the foot: a steeper foot is a corner, not a fold
 _BEND = 1e-4  # of the foot: so far from a fold the slope is linear
 
 
 def y_of_x(x: float, params: Floats) -> float:
     """y at x."""
-    side = 1.0 + math.sqrt(max(x - params[LAST_X], 0.0))
-    return side * side if params[TENSION] > 0.0 else x * _LOWEST
+    side = 1.0 + _FINE * math.sqrt(max(x - params[LAST_X], 0.0))
+    return side * side if params[TENSION] > 0.0 else x * _PER_DEPTH
 
 
 def y_of_node(node: int) -> float:
     """y at a node."""
-    return math.ldexp(1.0 + math.ldexp(float(node & ((1 << law.split) - 1)), -law.split), node >> law.split)
+    parts = 1 << law.split
+    return float(parts + (node & (parts - 1))) / float(parts) * float(1 << (node >> law.split))
 
 
 def cubic(u: float, first: float, slope: float, last: float, last_slope: float) -> float:
@@ -41,10 +43,10 @@ def cubic(u: float, first: float, slope: float, last: float, last_slope: float) 
     return first + u * (slope + u * ((3.0 * rise - 2.0 * slope - last_slope) + u * (slope + last_slope - 2.0 * rise)))
 
 
-def initial_guess(x: float, params: Floats) -> float:
+def initial_guess(y: float, params: Floats) -> float:
     """t within the octaves; meaningless outside."""
-    node, u = _octave(law.y_of_x(x, params), law.split)
-    node = min(max(node, 0), (OCTAVES << law.split) - 1)
+    node, u = _octave(y, law.split)
+    node = min(max(node, 0), (law.octaves << law.split) - 1)
     at = law.first_node + 2 * node
     parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
     return law.cubic(u, params[at], params[at + 1] / float(parts), params[at + 2], params[at + 3] / float(parts + 1))
@@ -52,41 +54,56 @@ def initial_guess(x: float, params: Floats) -> float:
 
 def guess_anywhere(x: float, params: Floats) -> float:
     """t within and outside the octaves."""
-    y = law.y_of_x(x, params)
-    if 1.0 <= y < _LARGEST:
-        return law.initial_guess(x, params)
-    end = law.first_node if y < 1.0 else law.first_node + 2 * (OCTAVES << law.split)
-    return float(params[end] * math.pow(y if y < 1.0 else y / _LARGEST, params[end + 1] / params[end]))
+    y, largest = law.y_of_x(x, params), math.ldexp(1.0, law.octaves)
+    if 1.0 <= y < largest:
+        return law.initial_guess(y, params)
+    end = law.first_node if y < 1.0 else law.first_node + 2 * (law.octaves << law.split)
+    return float(params[end] * math.pow(y if y < 1.0 else y / largest, params[end + 1] / params[end]))
 
 
 def x_of_y(y: float, params: Floats) -> tuple[float, float]:
     """x at y, and y dx/dy."""
     side = math.sqrt(y)
+    way = (side - 1.0) / _FINE
     if params[TENSION] > 0.0:
-        return params[LAST_X] + (side - 1.0) * (side - 1.0), (side - 1.0) * side
-    return y / _LOWEST, y / _LOWEST
+        return params[LAST_X] + way * way, way * side / _FINE
+    return y / _PER_DEPTH, y / _PER_DEPTH
 
 
-def extrapolate_node(node: int, interval: float, params: Floats) -> float:
-    """t at a node, from the node before, whose ln y is less by ``interval``: t - foot is about a power of y."""
+def extrapolate_node(node: int, step: float, params: Floats) -> float:
+    """t at a node, a ``step_to`` it away from the node before: t - foot is about an exponential of such steps."""
     foot, before = params[LAST], law.first_node + law.node_size * (node - 1)
-    way, step = params[before] - foot, params[before + 1] * interval
-    power = step / way if way > 0.0 else 0.0
-    return float(params[before] + step * (1.0 + power * (0.5 + power / 6.0)))
+    way = params[before] - foot
+    z = params[before + 1] * step / way if way > 0.0 else 0.0
+    bend = 1.0 + z * z / 12.0
+    return float(foot + way * (bend + 0.5 * z) / (bend - 0.5 * z))
 
 
-def fill_first_node(params: Floats) -> None:
-    """Fill in the first node: the foot, or without adhesion a small contact."""
-    foot = params[LAST]
+def step_to(node: int, params: Floats) -> float:
+    """The step from the node before to node > 1: in ln y; or, as t - foot grows with sqrt y - 1 next to a foot, in the
+    logarithm of that, times d ln y by it at the node before.
+    """
+    y, before = law.y_of_node(node), law.y_of_node(node - 1)
+    if params[TENSION] == 0.0:
+        return math.log(y / before)
+    side = math.sqrt(before)
+    return 2.0 * (side - 1.0) / side * math.log((math.sqrt(y) - 1.0) / (side - 1.0))
+
+
+def fill_first_node(params: Floats) -> float:
+    """Fill in the first node, the foot or without adhesion a small contact; return about the t at the next."""
+    foot, y = params[LAST], law.y_of_node(1)
     if params[TENSION] == 0.0:
         law.fill_node(0, 1.0, params)
-        return
+        return float(law.extrapolate_node(1, math.log(y), params))
     params[law.first_node] = foot
-    if foot == 0.0 or law.control_at(foot, params)[1] > _CORNER * params[DEPTH] / foot:
+    slope = law.control_at(foot, params)[1] if foot > 0.0 or law.flat else math.inf
+    if foot == 0.0 or slope > _CORNER * params[DEPTH] / foot:
         params[law.first_node + 1] = 0.0
-    else:
-        bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
-        params[law.first_node + 1] = math.sqrt(0.5 * params[DEPTH] / bent)
+        return float(foot + (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH] / slope)
+    bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
+    params[law.first_node + 1] = math.sqrt(0.5 * params[DEPTH] / bent) / _FINE
+    return float(foot + 2.0 * params[law.first_node + 1] * (math.sqrt(y) - 1.0))
 
 
 def fill_node(node: int, y: float, params: Floats) -> None:
@@ -102,27 +119,28 @@ def fill_node(node: int, y: float, params: Floats) -> None:
 def fill_nodes(rows: Floats) -> None:
     """Fill in the nodes of all rows, each node for all rows at a time, so that no row waits for another."""
     count = rows.shape[0]
-    t, step, per = np.empty(count), np.empty(count), np.empty(count)
+    t, error, per = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
-        if rows[i, COUNT] > 0.0:
-            law.fill_first_node(rows[i])
-    y = 1.0
-    for node in range(1, (OCTAVES << law.split) + 1):
-        before = y
+        t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
+    for node in range(1, (law.octaves << law.split) + 1):
         y = law.y_of_node(node)
-        interval = math.log(y / before)
-        for i in range(count):
-            t[i] = law.extrapolate_node(node, interval, rows[i])
-        for _ in range(2):
+        if node > 1:
+            step = law.step_to(node, rows[0])
             for i in range(count):
-                t[i], step[i], per[i] = law.newton_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
+                t[i] = law.extrapolate_node(node, step, rows[i])
+        for _ in range(_STEPS):
+            for i in range(count):
+                t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
+            unsure = 0
+            for i in range(count):
+                unsure += error[i] > _MAX_ERROR
+            if unsure == 0:
+                break
         for i in range(count):
-            rows[i, law.first_node + 2 * node], rows[i, law.first_node + 2 * node + 1] = (
-                t[i],
-                law.x_of_y(y, rows[i])[1] * per[i],
-            )
+            rows[i, law.first_node + 2 * node] = t[i]
+            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i]
         for i in range(count):
-            # ``newton_step`` is for fixed grips.
-            trusted = (abs(step[i]) < _MAX_STEP * (t[i] - rows[i, LAST])) & (rows[i, CONTROL] == 0.0)
+            # ``one_step`` is for fixed grips.
+            trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)
             if not trusted and rows[i, COUNT] > 0.0:
                 law.fill_node(node, y, rows[i])

@@ -50,23 +50,25 @@ class ProfileKernels(Kernels):
     solve_on_branch: Kernel
     octaves: int
     """Of the initial guess."""
+    newton_step: Callable[..., tuple[float, float, float]]
     split: int
     """Times an octave of the initial guess is halved."""
     first_node: int
     """The place in a row of the first node of the initial guess."""
     node_size: int
     """How many numbers a node has."""
-    y_of_x: Kernel
     y_of_node: Callable[[int], float]
     cubic: Kernel
     guess_anywhere: Kernel
     x_of_y: Callable[..., tuple[float, float]]
     extrapolate_node: Kernel
-    fill_first_node: Callable[[Floats], None]
+    step_to: Callable[[int, Floats], float]
+    fill_first_node: Callable[[Floats], float]
     fill_node: Callable[..., None]
     fill_nodes: Callable[[Floats], None]
     fill_params: Callable[..., None]
 
+    two_steps: Callable[..., tuple[float, float, float]]
     stride: float
     """By which factor the search for branches under adhesion with a range goes on."""
     widest_zone: Kernel

@@ -6,7 +6,6 @@ Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of
 """
 
 MAX_BRANCHES = 8
-OCTAVES = 24
 CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
 
 # Indices from the end of a row: the parameters of the shape stand at its beginning.
@@ -19,8 +18,9 @@ LAST, LAST_X = -6, -7  # the foot of the last branch: its t and its x, the dista
 ONSET = -8  # the x at which contact, or attraction, begins when the surfaces approach
 STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range
 JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and t over s - 1 (s - 2 on a flat)
+NUMBER = -13  # what tells shapes of one kind apart, besides width and rise: the first of the row once more
 NEAR = (
-    -13
+    -14
 )  # relative to t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
 FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
 FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first

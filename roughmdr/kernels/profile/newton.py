@@ -11,6 +11,7 @@ _INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for 
 _MIDDLE = 64.0 / 225.0
 _INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
 _RTOL_STEP = 1e-8  # of the distance to the foot and of the value: the next error, its square, is below rounding
+_RTOL = 1e-16  # of the distance to the foot
 _MIN_DISTANCE = 1e-3  # of the distance to the foot: left after a step that would go beyond it
 _FREE_STEPS = 6  # then every third step is a bisection: where the slope changes much, Newton's method may not converge
 
@@ -75,8 +76,38 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
     return max(t - step, params[LAST] + _MIN_DISTANCE * beyond), away, params[DEPTH] / slope
 
 
-def converged(t: float, away: float, x: float, branch: float, params: Floats) -> bool:
-    """Whether t is the state on ``branch`` after a step from a distance ``away``: true only beyond the last foot."""
-    beyond = t - params[LAST]
-    is_last = (branch == params[COUNT]) & (x > params[LAST_X])
-    return bool(is_last & (beyond > params[NEAR] * t) & (away <= _RTOL_STEP * beyond))
+def one_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
+    """The state one step from t, a bound of its error over its distance to the foot (inf next to it), and dt/dx."""
+    foot = params[LAST]
+    t, away, per = law.newton_step(t, x, params)
+    left = away / (t - foot)
+    return t, left * left if (x > params[LAST_X]) & (t - foot > params[NEAR] * t) else math.inf, per
+
+
+def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
+    """As ``one_step`` after two, the second on the cubic that the inverse function and its slopes at both points give.
+
+    Its error is about the product of the squares of the distances from both.
+    """
+    foot, lift, wanted = params[LAST], params[DEPTH] if params[TENSION] > 0.0 else 0.0, x * params[DEPTH]
+    value, slope = law.indentation_at(t, params)
+    rest, per = (value + lift) - wanted, 1.0 / slope
+    second = max(t - rest * per, foot + _MIN_DISTANCE * (t - foot))
+    value, slope = law.indentation_at(second, params)
+    last, per_last = (value + lift) - wanted, 1.0 / slope
+    way, rise = second - t, last - rest
+    share = last / rise if rise != 0.0 else 0.0
+    bend = way - rise * per_last
+    bend -= (1.0 - share) * ((rise * per - way) - bend)
+    found = second - (last * per_last + share * share * bend)
+    beyond, size = found - foot, wanted + lift
+    far = max(abs(way) * size, abs(rest) * beyond)
+    near = max(abs(second - found) * size, abs(last) * beyond)
+    left = far * near / (size * size * beyond * beyond)
+    error = left * left if (x > params[LAST_X]) & (beyond > params[NEAR] * found) else math.inf
+    return found, error, params[DEPTH] * per_last
+
+
+def converged(error: float, branch: float, params: Floats) -> bool:
+    """Whether a state on the last branch, with the ``error`` of a fixed number of steps, is that on ``branch``."""
+    return bool((error <= _RTOL) & (branch == params[COUNT]))
