@@ -42,6 +42,14 @@ class Contact(NamedTuple):
     @classmethod
     def of(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
         """Return the contact of a shape; ShapeError unless it is one, OutOfRange if a float cannot hold its scales."""
+        contact = cls.rounded(shape, effective_modulus, adhesion)
+        return contact._replace(depth=contact._exact(contact.depth, contact.params))
+
+    @classmethod
+    def rounded(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
+        """Return likewise the contact with a depth of as many digits as its kernels have: next to the fold of a single
+        asperity it needs more, in a mean over heights it does not.
+        """
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         width, rise, params = shape.nondimensional()
@@ -60,7 +68,7 @@ class Contact(NamedTuple):
             contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
         depth, radius, force, stiffness = scales
         contact._check(indentation=depth[0], contact_radius=radius, force=force, stiffness=stiffness)
-        return contact._replace(depth=contact._exact(depth, params))
+        return contact
 
     def _under_load(self) -> tuple[tuple[float, float], float, Any]:
         """Return the pull-off force [N] (without adhesion the natural force), its radius [m], and params under dead

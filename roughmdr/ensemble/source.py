@@ -143,8 +143,10 @@ class Source(Section):
         """Return the number of ``nodes`` of a rule with so many scores."""
         raise NotImplementedError
 
-    def nodes(self, rule: Rule) -> Nodes:
-        """Return quadrature nodes that stand for all asperities, at the scores of a rule for each random parameter."""
+    def nodes(self, *rules: Rule) -> Nodes:
+        """Return quadrature nodes that stand for all asperities, at the scores of one rule for all random parameters
+        of all populations, or of one for each.
+        """
         raise NotImplementedError
 
     @property

@@ -97,7 +97,7 @@ def compute(
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
     radii, area = _largest_radii(nodes, closest, count), source.nominal_area
-    limits = as_ensemble(source, source.nodes(chosen.rule)).validity_limits(radii)
+    limits = as_ensemble(source, source.nodes(*chosen.rules)).validity_limits(radii)
     model = problem.adhesion.model
     nominal_area = math.nan if area is None else area
     givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
@@ -131,7 +131,7 @@ def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
     def independent(separation: Floats) -> tuple[Floats, Floats]:
         along = LoadingPath(separation, no_memory(separation))
         deeper = separation.min() < problem.path.separation.min()
-        nodes = set_up(problem._replace(path=along), chosen.rule) if deeper else moved(chosen.nodes, along)
+        nodes = set_up(problem._replace(path=along), *chosen.rules) if deeper else moved(chosen.nodes, along)
         total, _ = totals_of(nodes, separation, problem.rows, list(range(separation.size)))
         return count * total[FORCE], count * total[STIFFNESS]
 

@@ -39,27 +39,37 @@ _MEAN_ROUNDING = 1e-10  # relative: means that differ by less do so by roundings
 _PROBES = 5  # steps of each kind that are compared where nothing has a kink
 
 
-_CurvesOfRule = Callable[[list[QuadratureNode], Rule | None], Floats]
+_CurvesOfRule = Callable[[list[QuadratureNode], PartialRule | None], Floats]
 
 
 class Converged(NamedTuple):
-    """A rule with its nodes."""
+    """Rules, one for each random parameter, with their nodes."""
 
-    rule: Rule
+    rules: tuple[Rule, ...]
     nodes: list[QuadratureNode]
     error: float
     """Error bound of the force over its largest value; inf where there is none."""
     error_of_others: float
     """Likewise of the other rows, except for the stiffness, which is infinite at detachment."""
     smooth: bool
-    """Whether the rule is that for smooth functions."""
+    """Whether the rules are those for smooth functions."""
 
     def sums(self, problem: Problem, nodes: list[QuadratureNode], *, dissipating: bool) -> tuple[Floats, int]:
         """Return the totals of one asperity [row, step], and how often tables were multiplied; ``nodes`` may have been
         moved to the path of the problem.
         """
         steps = list(range(problem.path.separation.size))
-        return sums_of(problem, self.rule if self.smooth else None, nodes, steps, dissipating=dissipating)
+        partial = PartialRule.of(problem, self.rules, nodes) if self.smooth else None
+        return sums_of(problem, partial, nodes, steps, dissipating=dissipating)
+
+
+class _Trial(NamedTuple):
+    """Rules with their nodes, the weights of their parts, and the curves that they give."""
+
+    rules: tuple[Rule, ...]
+    nodes: list[QuadratureNode]
+    partial: PartialRule | None
+    found: Floats
 
 
 def converge_at_kinks(problem: Problem, *, dissipating: bool) -> tuple[Converged, KinkSplit | None]:
@@ -78,17 +88,31 @@ def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
 
     Nothing has a kink then, and a few steps are compared.
     """
-    rule = Rule.smooth(FIRST_ORDER)
-    found = PartialRule.of(problem, rule, set_up(problem, rule))
-    if found is None:
+    finest = Rule.smooth(_ORDERS[-1])
+    if any(_mean_error(parameter, finest) > _MAX_PARTIAL for parameter in problem.source.drawn_parameters):
+        return None
+    rules = _first_rules(problem)
+    nodes = set_up(problem, *rules)
+    first = PartialRule.of(problem, rules, nodes)
+    if first is None:
         return None
     separation = problem.path.separation
     falls = np.append(True, np.diff(separation) < 0.0)
-    kinds = np.flatnonzero(falls), np.flatnonzero(~falls), found.steps
+    kinds = np.flatnonzero(falls), np.flatnonzero(~falls), first.steps
     steps = np.unique(np.concatenate([[int(np.argmin(separation))], *(_spread(kind) for kind in kinds)]))
-    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating), in_parts=True)
-    of_means = _mean_errors(problem, smooth.rule)
-    return smooth._replace(error=max(smooth.error, of_means), error_of_others=max(smooth.error_of_others, of_means))
+    smooth = _converge_order(problem, _curves(problem, steps.tolist(), dissipating), nodes, in_parts=True)
+    return _with_means(problem, smooth, others=True)
+
+
+def _first_rules(problem: Problem) -> tuple[Rule, ...]:
+    return (Rule.smooth(FIRST_ORDER),) * sum(problem.source.node_axes)
+
+
+def _with_means(problem: Problem, smooth: Converged, *, others: bool) -> Converged:
+    """Return the rules with errors not below those in the means of the parameters, of ``others`` too or not."""
+    of_means = _mean_errors(problem, smooth.rules)
+    of_others = max(smooth.error_of_others, of_means if others else 0.0)
+    return smooth._replace(error=max(smooth.error, of_means), error_of_others=of_others)
 
 
 def _spread(steps: Ints) -> Ints:
@@ -108,24 +132,22 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
         steps = _spread(np.array(steps)).tolist()
     curves = _curves(problem, steps, dissipating)
     if not problem.source.one_parameter:
-        product = _converge_order(problem, curves)
-        of_means = _mean_errors(problem, product.rule)
-        others = max(product.error_of_others, of_means if len(problem.judged) > 1 or dissipating else 0.0)
-        return product._replace(error=max(product.error, of_means), error_of_others=others)
+        product = _converge_order(problem, curves, set_up(problem, *_first_rules(problem)))
+        return _with_means(problem, product, others=len(problem.judged) > 1 or dissipating)
     # A contact that detaches makes a kink over the parameter, at each step another one.
     limit, rtol, factor = (
         (WARNED_ERROR, _RTOL_KINKED, _KINK_FACTOR) if problem.hysteretic else (_MAX_ERROR, RTOL_PANEL, 1.0)
     )
     smooth: Converged | None = None
     with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
-        smooth = _converge_order(problem, curves)
-    if smooth is not None and max(smooth.error, smooth.error_of_others, _mean_errors(problem, smooth.rule)) <= limit:
+        smooth = _converge_order(problem, curves, set_up(problem, *_first_rules(problem)))
+    if smooth is not None and max(smooth.error, smooth.error_of_others, _mean_errors(problem, smooth.rules)) <= limit:
         return smooth
     rule, nodes, errors = halve_panels(partial(set_up, problem), lambda nodes: curves(nodes, None), rtol)
     errors *= factor
     if smooth is not None and max(smooth.error, smooth.error_of_others) <= errors.max():
         return smooth
-    return Converged(rule, nodes, float(errors[0]), float(errors[1:].max(initial=0.0)), smooth=False)
+    return Converged((rule,), nodes, float(errors[0]), float(errors[1:].max(initial=0.0)), smooth=False)
 
 
 def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _CurvesOfRule:
@@ -133,49 +155,72 @@ def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _Curve
     judged = problem._replace(rows=problem.judged)
     rows = (*judged.rows, DISSIPATED) if dissipating else judged.rows
 
-    def curves(nodes: list[QuadratureNode], smooth: Rule | None) -> Floats:
-        return sums_of(judged, smooth, nodes, list(steps), dissipating=dissipating)[0][np.ix_(rows, steps)]
+    def curves(nodes: list[QuadratureNode], partial: PartialRule | None) -> Floats:
+        return sums_of(judged, partial, nodes, list(steps), dissipating=dissipating)[0][np.ix_(rows, steps)]
 
     return curves
 
 
-def _converge_order(problem: Problem, curves: _CurvesOfRule, *, in_parts: bool = False) -> Converged:
-    """Raise the order of Gauss's rule for smooth functions until two agree or a higher one does not help.
+def _converge_order(
+    problem: Problem, curves: _CurvesOfRule, nodes: list[QuadratureNode], *, in_parts: bool = False
+) -> Converged:
+    """Raise the orders of Gauss's rules for smooth functions, from the first rules and their nodes on, until two agree
+    or a higher one does not help.
 
-    Rules that have to be taken ``in_parts`` but do not have them are not tried.
+    That is done one axis after the other; where there are kinks, which cross all axes, for all axes at once. Rules that
+    have to be taken ``in_parts`` but do not have them are not tried.
     """
-    rule = Rule.smooth(FIRST_ORDER)
-    nodes = set_up(problem, rule)
-    found = curves(nodes, rule)
-    last = changes = np.full(len(found), math.inf)
-    for order in _ORDERS:
-        finer_rule = Rule.smooth(order)
-        count = problem.source.node_count(order)
-        if count == len(nodes):  # no parameter is drawn
-            return Converged(rule, nodes, 0.0, 0.0, smooth=True)
-        if count > _MAX_NODES:
+
+    def trial(rules: tuple[Rule, ...], nodes: list[QuadratureNode]) -> _Trial:
+        partial = PartialRule.of(problem, rules, nodes)
+        return _Trial(rules, nodes, partial, curves(nodes, partial))
+
+    base = trial(_first_rules(problem), nodes)
+    every = tuple(range(len(base.rules)))
+    kinked = problem.hysteretic and base.partial is None
+    waiting: list[tuple[int, ...]] = [every] if kinked and every else [(axis,) for axis in every]
+    errors = {axes: np.full(len(base.found), math.inf) for axes in waiting}
+    changes = errors.copy()
+    while waiting:
+        axes = waiting.pop(0)
+        order = next((order for order in _ORDERS if order > base.rules[axes[0]].scores.size), None)
+        if order is None:
+            continue
+        rules = tuple(Rule.smooth(order) if axis in axes else rule for axis, rule in enumerate(base.rules))
+        if _count(problem, rules) > _MAX_NODES:
+            continue
+        finer = trial(rules, set_up(problem, *rules))
+        if in_parts and finer.partial is None:
             break
-        finer_nodes = set_up(problem, finer_rule)
-        if in_parts and PartialRule.of(problem, finer_rule, finer_nodes) is None:
-            break
-        finer = curves(finer_nodes, finer_rule)
-        largest, change = (np.abs(values).max(axis=1, initial=0.0) for values in (finer, finer - found))
-        last, changes = changes, change / np.where(largest > 0.0, largest, 1.0)
-        too_large = changes > _RTOL_ORDER
+        largest, change = (
+            np.abs(values).max(axis=1, initial=0.0) for values in (finer.found, finer.found - base.found)
+        )
+        last, changes[axes] = changes[axes], change / np.where(largest > 0.0, largest, 1.0)
+        kinked = problem.hysteretic and finer.partial is None
+        pairs = zip(changes[axes].tolist(), last.tolist(), strict=True)
+        errors[axes] = np.array([_changes_to_come(*pair, kinked) for pair in pairs])
+        too_large = changes[axes] > _RTOL_ORDER
         if not too_large.any():
+            continue
+        base = finer
+        slow = bool((changes[axes] > _SLOW * last)[too_large].all())
+        if in_parts and slow and errors[axes].max() > _MAX_PARTIAL:
             break
-        rule, nodes, found = finer_rule, finer_nodes, finer
-        if (changes > _SLOW * last)[too_large].all():
-            break
-    pairs = zip(changes.tolist(), last.tolist(), strict=True)
-    kinked = problem.hysteretic and PartialRule.of(problem, rule, nodes) is None
-    errors = [_changes_to_come(change, before, kinked) for change, before in pairs]
-    return Converged(rule, nodes, errors[0], max(errors[1:], default=0.0), smooth=True)
+        if not slow:
+            waiting.append(axes)
+    force, *others = sum(errors.values(), np.zeros(len(base.found))).tolist()
+    return Converged(base.rules, base.nodes, force, max(others, default=0.0), smooth=True)
 
 
-def _mean_errors(problem: Problem, rule: Rule) -> float:
-    """Return the sum of the errors of a rule in the means of all parameters."""
-    return sum(_mean_error(parameter, rule) for parameter in problem.source.drawn_parameters)
+def _count(problem: Problem, rules: tuple[Rule, ...]) -> int:
+    """Return the number of nodes of rules."""
+    orders = iter([rule.scores.size for rule in rules])
+    return sum(math.prod(next(orders) for _ in range(axes)) for axes in problem.source.node_axes)
+
+
+def _mean_errors(problem: Problem, rules: tuple[Rule, ...]) -> float:
+    """Return the sum of the errors of rules in the means of all parameters whose means are known."""
+    return sum(map(_mean_error, problem.source.drawn_parameters, rules))
 
 
 def _mean_error(parameter: Callable[[Floats], Floats], rule: Rule) -> float:

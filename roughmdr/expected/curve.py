@@ -5,7 +5,7 @@ s = sqrt(x - foot), even at a fold; but the stiffness grows as 1/s there, and is
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from roughmdr.aggregate.totals import AREA, COUNT, ENERGY, FORCE, RADIUS, STIFFN
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Heights
 from roughmdr.errors import OutOfRange
-from roughmdr.expected.table import AdaptiveTable
+from roughmdr.expected.table import ORDER, AdaptiveTable
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.profile import layout
 from roughmdr.numerics.arguments import Floats
@@ -53,9 +53,7 @@ def scales_of(contact: Contact, rows: Sequence[int]) -> Floats:
     return np.array([scales[row] for row in rows])
 
 
-def curves_of(
-    contacts: list[Contact], heights: tuple[Heights, ...], closest: float, rows: tuple[int, ...]
-) -> list[Curve]:
+def curves_of(contacts: list[Contact], heights: list[Heights], closest: float, rows: tuple[int, ...]) -> list[Curve]:
     """Return the curve of each contact, up to the indentation of its highest summit by the flat at ``closest`` [m].
 
     Contacts with equal parameters share one, unless their ranges of heights over depths are very different.
@@ -75,10 +73,70 @@ def curves_of(
     return [curves[number] for number in range(len(contacts))]
 
 
+def curves_to_touch(contacts: list[Contact], fractions: Floats, rows: tuple[int, ...]) -> list[Curve]:
+    """Return the curve of each contact with adhesion and one branch from detachment to first touch, on pieces that all
+    share; equal parameters have one curve. Those of few asperities are as much less accurate.
+    """
+    keys = [np.asarray(contact.params).tobytes() for contact in contacts]
+    distinct = dict(zip(keys, contacts, strict=True))
+    sums = dict.fromkeys(keys, 0.0)
+    for key, fraction in zip(keys, fractions.tolist(), strict=True):
+        sums[key] += fraction
+    shares = np.array(list(sums.values()))
+    feet = [branch_ends(contact)[0][0] for contact in distinct.values()]
+
+    def quantities(s: Floats) -> Floats:
+        pairs = zip(feet, distinct.values(), strict=True)
+        parts = [over_s(quantities_at(contact, foot + s * s, 1, rows), s, rows) for foot, contact in pairs]
+        return np.concatenate(parts)
+
+    rtol = np.outer(shares.max() / shares, rtol_of(rows)).ravel().clip(max=1.0)
+    low, high, coefficients, errors = tabulate(quantities, (0.0, 1.0), rtol, 1.0, contacts[0])
+    shape = low.size, len(distinct), len(rows)
+    series = np.ascontiguousarray(coefficients.reshape(*shape, ORDER).swapaxes(0, 1))
+    bounds = np.ascontiguousarray(errors.reshape(shape).swapaxes(0, 1))
+    first, offsets = np.array([0, low.size]), 1.0 - np.array(feet)
+    curves = {
+        key: Curve(first, offsets[k : k + 1], AdaptiveTable(low, high, series[k], bounds[k]))
+        for k, key in enumerate(distinct)
+    }
+    return [curves[key] for key in keys]
+
+
 def _curve(contact: Contact, deepest: float, width: float, rows: tuple[int, ...]) -> Curve:
     """Tabulate up to the indentation ``deepest``, for heights of this width, both over the depth."""
+    feet, tops = branch_ends(contact)
     adhesive = contact.law.adhesive
-    rtol = np.array([_RTOL_STIFFNESS if row == STIFFNESS else _RTOL for row in rows])
+    last = max(deepest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
+    tables = []
+    for branch, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
+
+        def quantities(s: Floats, branch: int = branch, foot: float = foot) -> Floats:
+            return over_s(quantities_at(contact, foot + s * s, branch, rows), s, rows)
+
+        tables.append(tabulate(quantities, (0.0, math.sqrt(top - foot)), rtol_of(rows), width, contact))
+    first = np.cumsum([0, *(table.low.size for table in tables)])
+    merged = AdaptiveTable(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
+    return Curve(first, float(adhesive) - np.array(feet), merged)
+
+
+def rtol_of(rows: tuple[int, ...]) -> Floats:
+    """Return the tolerance of the series of each row."""
+    return np.array([_RTOL_STIFFNESS if row == STIFFNESS else _RTOL for row in rows])
+
+
+def tabulate(
+    function: Callable[[Floats], Floats],
+    ends: tuple[float, float],
+    rtol: Floats,
+    width: float,
+    contact: Contact,
+) -> AdaptiveTable:
+    """Tabulate quantities of a contact, or of several like it, s -> [row, s], between two s.
+
+    ``width`` is that of the heights, over the depth. OutOfRange where the heights reach too far.
+    """
+    adhesive = contact.law.adhesive
     nearest = _FOLD if adhesive else math.sqrt(_NEGLIGIBLE_INDENTATION * width)
     first_edge = 1.0 if adhesive else math.sqrt(_FIRST_EDGE * width)
 
@@ -88,26 +146,16 @@ def _curve(contact: Contact, deepest: float, width: float, rows: tuple[int, ...]
     def weight(low: Floats, high: Floats, _: Floats) -> Floats:
         return (high - low) / high
 
-    feet, tops = branch_ends(contact)
-    last = max(deepest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
-    tables = []
-    for branch, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
-
-        def quantities(s: Floats, branch: int = branch, foot: float = foot) -> Floats:
-            return _quantities(contact, s, foot, branch, rows)
-
-        # On a piece that ends far higher than it begins, small values at its begin would be lost.
-        end = math.sqrt(top - foot)
-        if end > first_edge * _GROWTH**_MAX_EDGES:
-            raise OutOfRange(
-                f"the heights reach {deepest:.3g} times the natural depth of {contact.shape}; the expected law "
-                f"goes up to {(first_edge * _GROWTH**_MAX_EDGES) ** 2:.3g} times, estimator 'sampled' has no such limit"
-            )
-        edges = [0.0, *(first_edge * _GROWTH**k for k in range(_MAX_EDGES) if first_edge * _GROWTH**k < end), end]
-        tables.append(AdaptiveTable.of(quantities, np.array(edges), rtol, min_width, weight))
-    first = np.cumsum([0, *(table.low.size for table in tables)])
-    merged = AdaptiveTable(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
-    return Curve(first, float(adhesive) - np.array(feet), merged)
+    # On a piece that ends far higher than it begins, small values at its begin would be lost.
+    begin, end = ends
+    edges = [first_edge * _GROWTH**k for k in range(_MAX_EDGES)]
+    if end > first_edge * _GROWTH**_MAX_EDGES:
+        raise OutOfRange(
+            f"the heights reach {end * end:.3g} times the natural depth of {contact.shape}; the expected law "
+            f"goes up to {(first_edge * _GROWTH**_MAX_EDGES) ** 2:.3g} times, estimator 'sampled' has no such limit"
+        )
+    within = [begin, *(edge for edge in edges if begin < edge < end), end]
+    return AdaptiveTable.of(function, np.array(within), rtol, min_width, weight)
 
 
 def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
@@ -120,10 +168,9 @@ def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
     return feet, params[layout.TOP_X : layout.TOP_X + count - 1].tolist()
 
 
-def _quantities(contact: Contact, s: Floats, foot: float, branch: int, rows: tuple[int, ...]) -> Floats:
-    """Return the quantities at s, the stiffness times 2 s: [row, s]."""
+def quantities_at(contact: Contact, x: Floats, branch: int, rows: tuple[int, ...]) -> Floats:
+    """Return the quantities over their natural scales at distances x to the onset, on a branch: [row, x]."""
     kernels, params = contact.law, contact.params
-    x = foot + s * s
     if kernels.branched:
         state = apply(kernels.state_on_branch, x, float(branch), params)
     else:
@@ -133,9 +180,16 @@ def _quantities(contact: Contact, s: Floats, foot: float, branch: int, rows: tup
         FORCE: force,
         RADIUS: radius,
         AREA: radius * radius,
-        STIFFNESS: 2.0 * s * stiffness,
+        STIFFNESS: stiffness,
         COUNT: np.where(radius > 0.0, 1.0, 0.0),
     }
     if ENERGY in rows:
         quantities[ENERGY] = apply(kernels.energy, state, params)
     return np.array([quantities[row] for row in rows])
+
+
+def over_s(quantities: Floats, s: Floats, rows: tuple[int, ...]) -> Floats:
+    """Return quantities [row, s] as they are tabulated: the stiffness times 2 s."""
+    return np.array(
+        [2.0 * s * values if row == STIFFNESS else values for row, values in zip(rows, quantities, strict=True)]
+    )

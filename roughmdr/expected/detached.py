@@ -20,16 +20,16 @@ from roughmdr.aggregate.totals import DISSIPATED, ERROR, STIFFNESS
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.curve import Curve, scales_of
 from roughmdr.expected.heights import HeightTable
-from roughmdr.expected.intervals import Intervals, jump_energies
+from roughmdr.expected.intervals import Intervals, has_branches, jump_energies
 from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, totals_of
-from roughmdr.expected.score_lines import crossings, lines_along
+from roughmdr.expected.score_lines import Line, crossings, lines_along, weighty
 from roughmdr.expected.table import ORDER
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.numerics.chebyshev import find_piece, series_at
 from roughmdr.numerics.gauss import last_coefficients, unit_gauss
 from roughmdr.numerics.jit import njit
 
-_ORDER = 32  # of the rule over s on each of two panels, which part where the median depth has the limit
+_ORDER = 48  # of the rule over s on each of two panels, which part where the median depth has the limit
 _NODES, _WEIGHTS = unit_gauss(_ORDER)
 _LAST = last_coefficients(_ORDER)
 _NEAR_END, _NO_HEIGHTS = 0.01, 1e-12  # of the range of heights, and of all heights: with more there they have an end
@@ -41,15 +41,13 @@ class PartialRule(NamedTuple):
     """A rule for smooth functions, with the weights of parts of it at the steps that need them."""
 
     problem: Problem
-    rule: Rule
     nodes: list[QuadratureNode]
-    lines: Ints
-    """Numbers of the nodes: [line, score]."""
+    lines: list[Line]
     steps: Ints
     """Those that need it."""
 
     @classmethod
-    def of(cls, problem: Problem, rule: Rule, nodes: list[QuadratureNode]) -> "PartialRule | None":
+    def of(cls, problem: Problem, rules: tuple[Rule, ...], nodes: list[QuadratureNode]) -> "PartialRule | None":
         """Return None where no step needs it, or where it does not hold.
 
         It holds while the flat has turned once only, for heights whose density is smooth and contacts of one branch,
@@ -63,14 +61,15 @@ class PartialRule(NamedTuple):
         steps = np.flatnonzero((rise > shallowest) & (rise < deepest))
         if not steps.size or not all(map(_are_smooth, {id(node.heights): node.heights for node in nodes}.values())):
             return None
-        log_depths = np.log([node.contact.depth[0] for node in nodes])
-        lines = lines_along(problem.source.node_axes, rule, log_depths)
-        lines = lines[np.array([node.fraction for node in nodes])[lines].sum(axis=1) > _NEGLIGIBLE]
-        rises = np.diff(log_depths[lines], axis=1) > 0.0
-        falls = np.diff(log_depths[lines], axis=1) < 0.0
-        monotone = (rises.all(axis=1) | falls.all(axis=1)).all()
-        one_branch = all(nodes[number].curve.first.size == 2 for number in lines.ravel())
-        return cls(problem, rule, nodes, lines, steps) if lines.size and monotone and one_branch else None
+        log_depths, fractions = np.array([(math.log(node.contact.depth[0]), node.fraction) for node in nodes]).T
+        lines = [
+            line
+            for line in lines_along(problem.source.node_axes, rules, log_depths)
+            if fractions[line.numbers].sum() > _NEGLIGIBLE
+        ]
+        monotone = all(_is_monotone(log_depths[line.numbers][weighty(line.rule)]) for line in lines)
+        one_branch = not any(has_branches(nodes[number].contact) for line in lines for number in line.numbers)
+        return cls(problem, nodes, lines, steps) if lines and monotone and one_branch else None
 
     def totals(self, steps: list[int]) -> tuple[Floats, int]:
         """Return the totals of one asperity [row, step], 0 but at some steps, and how often tables were multiplied.
@@ -78,8 +77,8 @@ class PartialRule(NamedTuple):
         The energy lost in jumps is not among them.
         """
         separation, rows = self.problem.path.separation, self.problem.rows
-        nodes, on_lines = list(self.nodes), np.unique(self.lines)
-        for number in on_lines.tolist():
+        nodes = list(self.nodes)
+        for number in np.concatenate([line.numbers for line in self.lines]).tolist():
             node = nodes[number]
             begin = node.in_contact.begin.copy()
             begin[self.steps] = separation[self.steps] - node.heights.origin - node.contact.depth[0]
@@ -106,7 +105,7 @@ class PartialRule(NamedTuple):
         values = np.zeros((len(rows), s.size))
         stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
         for line in self.lines:
-            for number, weights in zip(line.tolist(), self._weights_above(line, limit).T, strict=True):
+            for number, weights in zip(line.numbers.tolist(), self._weights_above(line, limit).T, strict=True):
                 node = self.nodes[number]
                 y = (top - node.heights.origin)[:, None] - (1.0 - s) * (1.0 + s) * node.contact.depth[0]
                 scales = scales_of(node.contact, rows) * node.contact.depth[0]
@@ -122,7 +121,7 @@ class PartialRule(NamedTuple):
         off = np.zeros((2, separation.size))  # as if all made contact or lost it
         for line in self.lines:
             above = self._weights_above(line, top - bottom).T
-            for number, weights in zip(line.tolist(), above, strict=True):
+            for number, weights in zip(line.numbers.tolist(), above, strict=True):
                 node = self.nodes[number]
                 contact, heights = node.contact, node.heights
                 low, high = bottom - heights.origin, top - heights.origin - contact.depth[0]
@@ -134,26 +133,26 @@ class PartialRule(NamedTuple):
         rises = np.diff(separation, prepend=math.inf) > 0.0
         return np.asarray(dissipated_of(self.nodes, separation.size) + np.cumsum(np.where(rises, lost, -made)))
 
-    def _weights_above(self, line: Ints, limit: Floats) -> Floats:
+    def _weights_above(self, line: Line, limit: Floats) -> Floats:
         """Return the weights of the nodes of a line for integrals over depths above each limit [m]: [limit, score]."""
-        depths = np.array([self.nodes[number].contact.depth[0] for number in line.tolist()])
-        middle = self.nodes[line[line.size // 2]].fraction / self.rule.weights[line.size // 2]
-        below = self.rule.weights_below(crossings(self.rule, np.log(depths), np.log(limit)))
-        return np.asarray(middle * (self.rule.weights - below if depths[0] < depths[-1] else below))
+        rule, numbers = line
+        depths = np.array([self.nodes[number].contact.depth[0] for number in numbers.tolist()])
+        middle = self.nodes[numbers[numbers.size // 2]].fraction / rule.weights[numbers.size // 2]
+        below = rule.weights_below(crossings(rule, np.log(depths), np.log(limit)))
+        return np.asarray(middle * (rule.weights - below if depths[0] < depths[-1] else below))
 
 
 def sums_of(
-    problem: Problem, smooth: Rule | None, nodes: list[QuadratureNode], steps: list[int], *, dissipating: bool
+    problem: Problem, partial: PartialRule | None, nodes: list[QuadratureNode], steps: list[int], *, dissipating: bool
 ) -> tuple[Floats, int]:
     """Return the totals of one asperity [row, step] at some steps, and how often tables were multiplied.
 
-    Nodes are those of the rule ``smooth``; None where they are of a rule that is not for smooth functions.
+    ``partial`` has the weights of parts of the nodes where steps need them.
     """
-    partial = None if smooth is None else PartialRule.of(problem, smooth, nodes)
     if partial is None:
         total, products = totals_of(nodes, problem.path.separation, problem.rows, steps)
     else:
-        total, products = partial.totals(steps)
+        total, products = partial._replace(problem=problem).totals(steps)
     if dissipating:
         count = problem.path.separation.size
         total[DISSIPATED] = dissipated_of(nodes, count) if partial is None else partial.dissipated()
@@ -171,6 +170,11 @@ def _range(nodes: list[QuadratureNode]) -> tuple[float, float, float]:
     at = np.searchsorted(below, [_NEGLIGIBLE, 0.5, 1.0 - _NEGLIGIBLE]).clip(max=order.size - 1)
     low, middle, high = depths[order[at]].tolist()
     return low, middle, high
+
+
+def _is_monotone(values: Floats) -> bool:
+    rises = np.diff(values)
+    return bool((rises > 0.0).all() or (rises < 0.0).all())
 
 
 def _are_smooth(heights: HeightTable) -> bool:

@@ -36,6 +36,13 @@ class Intervals(NamedTuple):
         step, before, branch, begin, end = self
         return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
 
+    def up_to(self, ends: Floats) -> "Intervals":
+        """Return the part of each interval below ``ends`` [step]; those that begin there are left out."""
+        ends = ends[self.step]
+        kept = self.begin < ends
+        step, before, branch, begin, _ = self
+        return Intervals(step[kept], before[kept], branch[kept], begin[kept], ends[kept])
+
     def disjoint(self, separation: Floats) -> "tuple[Intervals, Ints, Ints]":
         """Return intervals that end where others at the same separation [m] and on the same branch begin.
 
@@ -52,9 +59,14 @@ class Intervals(NamedTuple):
         return Intervals(number, before, branch, begin, end), step, rank
 
 
+def has_branches(contact: Contact) -> bool:
+    """Return whether summits in contact may be on several branches, or touch at a distance."""
+    return bool(contact.law.branched and (contact.adhesion.cohesive or len(branch_ends(contact)[0]) > 1))
+
+
 def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
     """Return the summits in contact at each step, and those that jumped since the step before."""
-    if contact.law.branched and (contact.adhesion.cohesive or len(branch_ends(contact)[0]) > 1):
+    if has_branches(contact):
         return _with_branches(contact, path.separation)
     return _without_branches(contact, path)
 

@@ -3,16 +3,18 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble import Source
-from roughmdr.ensemble.nodes import Nodes, Rule
-from roughmdr.expected.curve import Curve, curves_of, scales_of
+from roughmdr.ensemble.nodes import Heights, Nodes, Rule
+from roughmdr.expected.curve import Curve, curves_of, curves_to_touch, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
-from roughmdr.expected.intervals import Intervals, contact_intervals, jump_energies
+from roughmdr.expected.intervals import Intervals, contact_intervals, has_branches, jump_energies
+from roughmdr.expected.mean_contact import MeanContact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats
@@ -52,8 +54,12 @@ class QuadratureNode(NamedTuple):
 
     fraction: float
     contact: Contact
-    curve: Curve
+    curve: Curve | None
+    """Up to first touch where ``above`` is given; None where there is nothing to it, without adhesion."""
     heights: HeightTable
+    above: MeanContact | None
+    """The mean contact above first touch of all nodes that were set up with these heights; None where the curve goes
+    on."""
     in_contact: Intervals
     """Of heights as differences to the origin of ``heights``."""
     jumped: Intervals
@@ -68,22 +74,61 @@ def contacts_of(problem: Problem, nodes: Nodes) -> list[Contact]:
         problem.source.shared_profile or shape(**{name: column[number] for name, column in columns.items()})
         for number in range(nodes.weights.size)
     ]
-    return [Contact.of(one, problem.effective_modulus, problem.adhesion) for one in shapes]
+    return [Contact.rounded(one, problem.effective_modulus, problem.adhesion) for one in shapes]
 
 
-def set_up(problem: Problem, rule: Rule) -> list[QuadratureNode]:
-    """Return the nodes at the scores of a rule."""
-    nodes = problem.source.nodes(rule)
+def set_up(problem: Problem, *rules: Rule) -> list[QuadratureNode]:
+    """Return the nodes at the scores of a rule, or of one for each random parameter.
+
+    Those of one branch have curves up to first touch, and share the rest.
+    """
+    return _nodes(problem, rules, shared=True)
+
+
+def set_up_apart(problem: Problem, *rules: Rule) -> list[QuadratureNode]:
+    """Return likewise the nodes, each with the whole curve of its contact."""
+    return _nodes(problem, rules, shared=False)
+
+
+def _nodes(problem: Problem, rules: tuple[Rule, ...], *, shared: bool) -> list[QuadratureNode]:
+    nodes, rows, closest = problem.source.nodes(*rules), problem.rows, float(problem.path.separation.min())
     contacts = contacts_of(problem, nodes)
-    tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
-    curves = curves_of(contacts, nodes.heights, float(problem.path.separation.min()), problem.rows)
-    each = zip(nodes.weights.tolist(), contacts, curves, (tables[heights] for heights in nodes.heights), strict=True)
+    heights_of = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
+    whole = [number for number, contact in enumerate(contacts) if not shared or _is_apart(contact)]
+    groups: dict[Heights, list[int]] = {}
+    for number in sorted(set(range(len(contacts))).difference(whole)):
+        groups.setdefault(nodes.heights[number], []).append(number)
+    curves: dict[int, Curve] = {}
+    above: dict[int, MeanContact] = {}
+    if whole:
+        found = curves_of([contacts[k] for k in whole], [nodes.heights[k] for k in whole], closest, rows)
+        curves |= dict(zip(whole, found, strict=True))
+    for heights, alike in groups.items():
+        own, fractions = [contacts[k] for k in alike], nodes.weights[alike]
+        mean = MeanContact.of(own, fractions, (heights, heights_of[heights]), closest, rows)
+        above |= dict.fromkeys(alike, mean)
+    if one_branch := [number for alike in groups.values() for number in alike if contacts[number].law.adhesive]:
+        found = curves_to_touch([contacts[k] for k in one_branch], nodes.weights[one_branch], rows)
+        curves |= dict(zip(one_branch, found, strict=True))
+    each = zip(nodes.weights.tolist(), contacts, (heights_of[heights] for heights in nodes.heights), strict=True)
     return [
         QuadratureNode(
-            fraction, contact, curve, heights, *contact_intervals(contact, problem.path.relative_to(heights.origin))
+            fraction,
+            contact,
+            curves.get(number),
+            heights,
+            above.get(number),
+            *contact_intervals(contact, problem.path.relative_to(heights.origin)),
         )
-        for fraction, contact, curve, heights in each
+        for number, (fraction, contact, heights) in enumerate(each)
     ]
+
+
+def _is_apart(contact: Contact) -> bool:
+    """Return whether a contact shares no curve: where it has branches, or a kink above first touch, each its own one,
+    which a mean curve would have all.
+    """
+    return has_branches(contact) or (not contact.shape.flat and contact.shape.breakpoints.size > 0)
 
 
 def moved(nodes: list[QuadratureNode], path: LoadingPath) -> list[QuadratureNode]:
@@ -98,24 +143,45 @@ def totals_of(
 ) -> tuple[Floats, int]:
     """Return the totals of one asperity [row, step], 0 but at ``steps``, and how often tables were multiplied.
 
-    Row ERROR is the error bound of the first of ``rows``, the force.
+    Row ERROR is the error bound of the first of ``rows``, the force. The nodes are all that were set up together.
     """
     total, products = np.zeros((ROWS, separation.size)), 0
     selected = np.isin(np.arange(separation.size), steps)
     stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
-    for fraction, contact, curve, heights, in_contact, _ in nodes:
-        intervals, order, rank = in_contact.at_steps(selected).disjoint(separation)
-        found = np.zeros((len(rows) + 1, order.size))
-        relative = separation[order] - heights.origin
-        products += integrate(intervals, relative, contact.depth[0], curve, heights, stiffness_row, found)
-        for number in range(1, rank.max(initial=0) + 1):
-            within = np.flatnonzero(rank == number)
-            found[:, within] += found[:, within - 1]
-        scales = fraction * scales_of(contact, rows)
-        found *= np.append(scales, scales[0])[:, None]
-        for row, values in zip((*rows, ERROR), found, strict=True):
-            total[row] += np.bincount(order, values, separation.size)
+    found = np.zeros((len(rows) + 1, separation.size))
+    for mean in {id(node.above): node.above for node in nodes if node.above is not None}.values():
+        products += mean.add_to(found, separation, np.flatnonzero(selected), stiffness_row)
+    for node in nodes:
+        products += _add_node(node, found, separation, selected, rows)
+    total[[*rows, ERROR]] = found
     return total, products
+
+
+def _add_node(
+    node: QuadratureNode, total: Floats, separation: Floats, selected: NDArray[np.bool_], rows: tuple[int, ...]
+) -> int:
+    """Add the sums over the summits of a node, where others share its curve only over those that the flat is not above,
+    to total[row, step]; return how often tables were multiplied.
+    """
+    contact, heights = node.contact, node.heights
+    own = node.in_contact.at_steps(selected)
+    if node.above is not None:
+        own = own.up_to(separation - heights.origin)
+    if node.curve is None or not own.step.size:
+        return 0
+    intervals, order, rank = own.disjoint(separation)
+    found = np.zeros((len(rows) + 1, order.size))
+    stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
+    relative = separation[order] - heights.origin
+    products = integrate(intervals, relative, contact.depth[0], node.curve, heights, stiffness_row, found)
+    for number in range(1, rank.max(initial=0) + 1):
+        within = np.flatnonzero(rank == number)
+        found[:, within] += found[:, within - 1]
+    scales = node.fraction * scales_of(contact, rows)
+    found *= np.append(scales, scales[0])[:, None]
+    for row, values in enumerate(found):
+        total[row] += np.bincount(order, values, separation.size)
+    return int(products)
 
 
 def undecided_of(nodes: list[QuadratureNode], steps: int) -> Floats:
@@ -130,8 +196,9 @@ def undecided_of(nodes: list[QuadratureNode], steps: int) -> Floats:
 def dissipated_of(nodes: list[QuadratureNode], steps: int) -> Floats:
     """Return the energy [J] that an asperity has lost in jumps up to each step."""
     dissipated = np.zeros(steps)
-    for fraction, contact, _, heights, _, jumped in nodes:
-        scale = fraction * contact.force * contact.depth[0]
-        jumping = heights.between(jumped.begin, jumped.end)
+    for node in nodes:
+        contact, jumped = node.contact, node.jumped
+        scale = node.fraction * contact.force * contact.depth[0]
+        jumping = node.heights.between(jumped.begin, jumped.end)
         np.add.at(dissipated, jumped.step, scale * jump_energies(contact, jumped) * jumping)
     return np.cumsum(dissipated)

@@ -106,8 +106,7 @@ def _tail_index(values: Floats, before: Floats, ratio: float) -> Floats:
 
 
 def _panels(ends: list[tuple[float, float]], set_up: SetUp, curves: Curves) -> list[_Panel]:
-    nodes = set_up(_rule(ends))
-    parts = [nodes[first : first + _ORDER] for first in range(0, len(nodes), _ORDER)]
+    parts = [set_up(_rule([pair])) for pair in ends]
     return [_Panel(low, high, part, curves(part)) for (low, high), part in zip(ends, parts, strict=True)]
 
 

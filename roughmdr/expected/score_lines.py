@@ -1,55 +1,70 @@
 """Nodes of a rule along one axis of its scores, and where a quantity of theirs passes a level between them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.ensemble.nodes import Rule, hermite
 from roughmdr.numerics.arguments import Floats, Ints
 
 _STEPS = 8  # of Newton's method
+_NEGLIGIBLE = 1e-24  # weight of a score: what is there, far in a tail, does not matter
 
 
-def lines_along(axes: tuple[int, ...], rule: Rule, values: Floats) -> Ints:
-    """Return the numbers of the nodes along that axis of each population on which the values depend most.
+class Line(NamedTuple):
+    """The nodes along one axis, at equal scores of all others."""
 
-    They are [line, score]. Populations without an axis have none.
+    rule: Rule
+    numbers: Ints
+    """Of the nodes: [score]."""
+
+
+def lines_along(axes: tuple[int, ...], rules: tuple[Rule, ...], values: Floats) -> list[Line]:
+    """Return the lines along that axis of each population on which the values depend most.
+
+    ``axes`` are their numbers, ``rules`` has one for each axis of each population. Populations without an axis have no
+    lines.
     """
-    order, first = rule.scores.size, 0
-    lines = [np.zeros((0, order), dtype=np.int64)]
+    first, left, lines = 0, list(rules), []
     for count in axes:
-        numbers = first + np.arange(order**count).reshape((order,) * count)
-        first += order**count
-        slopes = [abs(_mean(rule, values[numbers] * _along(rule.scores, axis, count))) for axis in range(count)]
-        if slopes:
-            lines.append(np.moveaxis(numbers, int(np.argmax(slopes)), -1).reshape(-1, order))
-    return np.concatenate(lines)
+        own, left = left[:count], left[count:]
+        shape = tuple(rule.scores.size for rule in own)
+        numbers = first + np.arange(math.prod(shape)).reshape(shape)
+        first += numbers.size
+        if own:
+            axis = int(np.argmax([abs(_slope(own, values[numbers], axis)) for axis in range(count)]))
+            some = np.moveaxis(numbers, axis, -1).reshape(-1, shape[axis])
+            lines += [Line(own[axis], each) for each in some]
+    return lines
 
 
-def _along(scores: Floats, axis: int, count: int) -> Floats:
-    """Return scores as an array that varies along one of so many axes."""
-    return scores.reshape([-1 if each == axis else 1 for each in range(count)])
-
-
-def _mean(rule: Rule, values: Floats) -> float:
-    """Return the mean of values over all their axes, each one of scores."""
-    for _ in range(values.ndim):
-        values = (values * rule.weights).sum(axis=-1)
+def _slope(rules: list[Rule], values: Floats, axis: int) -> float:
+    """Return the mean slope of values at the scores of some rules along one of their axes."""
+    for each, rule in reversed(list(enumerate(rules))):
+        values = (values * (rule.weights * rule.scores if each == axis else rule.weights)).sum(axis=-1)
     return float(values)
+
+
+def weighty(rule: Rule) -> NDArray[np.bool_]:
+    """Return which scores are not of negligible weight."""
+    return rule.weights > _NEGLIGIBLE
 
 
 def crossings(rule: Rule, values: Floats, levels: Floats) -> Floats:
     """Return the scores at which the polynomial through monotone values at the scores has each level; infinite beyond
-    the last scores.
+    the last scores that are not of negligible weight.
     """
-    order = rule.scores.size
+    order, some = rule.scores.size, weighty(rule)
     rising = values if values[0] < values[-1] else -values
     levels = levels if values[0] < values[-1] else -levels
     series = (rule.weights * rising * hermite(rule.scores, order)).sum(axis=1)
     slopes = series[1:] * np.sqrt(np.arange(1.0, order))
-    after = np.clip(np.searchsorted(rising, levels), 1, order - 1)
-    low, high = rule.scores[after - 1], rule.scores[after]
-    x = np.interp(levels, rising, rule.scores)
+    scores, rising = rule.scores[some], rising[some]
+    after = np.clip(np.searchsorted(rising, levels), 1, scores.size - 1)
+    low, high = scores[after - 1], scores[after]
+    x = np.interp(levels, rising, scores)
     for _ in range(_STEPS):
         basis = hermite(x, order)
         value, slope = np.einsum("m,mx->x", series, basis), np.einsum("m,mx->x", slopes, basis[:-1])

@@ -19,6 +19,7 @@ import roughmdr as rm
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import FORCE
 from roughmdr.ensemble.nodes import Rule
+from roughmdr.expected.converge import FIRST_ORDER, converge_at_kinks
 from roughmdr.expected.detached import PartialRule
 from roughmdr.expected.node import Problem, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
@@ -112,10 +113,11 @@ PROFILES = {
 
 
 class Asperities(NamedTuple):
-    """Equal asperities, arrays over their parameters, under normal heights of std 1 um."""
+    """Asperities, arrays over their parameters; at detachment contacts are smaller than ``reach`` [m]."""
 
     profile: Profile
     parameters: list[Floats]
+    reach: float = 8.0 * UM
 
     def indentation(self, a: Floats) -> Floats:
         own = [column.reshape(column.shape + (1,) * (a.ndim - 1)) for column in self.parameters]
@@ -133,7 +135,7 @@ class Asperities(NamedTuple):
     def fold(self) -> Floats:
         """Return the contact radius at detachment."""
         corner = self.profile.corner(*self.parameters)
-        low, high = np.maximum(corner, 1e-12), corner + 8.0 * UM
+        low, high = np.maximum(corner, 1e-12), corner + self.reach
         for _ in range(BISECTIONS):
             middle = np.sqrt(low * high)
             falls = self.slope(middle) < 0.0
@@ -148,7 +150,7 @@ class Asperities(NamedTuple):
         ends = mean[:, None] + std * np.array([-9.0, -6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0, 9.0])
         level = np.maximum(np.column_stack([lowest, np.maximum(ends, lowest[:, None])]) - h, self.indentation(fold))
         low = _root(fold, corner) + 0.0 * level  # in sqrt(a^2 - corner^2) all is smooth, also at a corner
-        high = low + 40.0 * UM
+        high = low + 5.0 * self.reach
         for _ in range(BISECTIONS):
             middle = 0.5 * (low + high)
             below = self.indentation(np.hypot(corner, middle)) < level
@@ -265,6 +267,72 @@ def test_unloading_against_nested_quadrature(case: dict[str, object]) -> None:
     assert stated < 1e-9
 
 
+M0, M2, M4 = UM * UM, 4.2e-3, 1.8e8
+NAYAK = {"source": "nayak", "patch": "1 mm", "m0": M0, "m2": M2, "m4": M4}
+
+
+def mean_force_of_summits(h: float, bottom: float, order: int) -> float:
+    """Return the mean force of the summits of a Gaussian surface after loading to ``bottom``, at h.
+
+    By quadrature over t, y = t^3 and u, y^2 and y + u the product of the curvatures and their mean without units, whose
+    density is sqrt(6/pi) y^2 exp(y^2 - 3/2 (y + u)^2) 2 y; given these the height is normal (Nayak 1971).
+    """
+    part = 1.5 * M2 * M2 / (M0 * M4)
+
+    def asperities(t: Floats) -> Asperities:
+        return Asperities(PROFILES["paraboloid"], [math.sqrt(1.5 / M4) / t**3], reach=1e-2)
+
+    def depth(t: float) -> float:
+        one = asperities(np.array([t]))
+        return float(-one.indentation(one.fold)[0])
+
+    low, high = 0.05, 2.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if depth(middle) > h - bottom else (low, middle)
+    edges = np.unique([0.05, 0.35, 0.7, 1.0, 1.3, 1.6, 2.0, high])  # a fraction of 1e-16 lies below the first
+    nodes, weights = leggauss(order)
+    x, weights = 0.5 * (1.0 + nodes), 0.5 * weights
+    total = 0.0
+    for begin, end in pairwise(edges.tolist()):
+        t, wide = begin + (end - begin) * x * x * (3.0 - 2.0 * x), (end - begin) * 6.0 * x * (1.0 - x) * weights
+        for low_u, high_u in pairwise([0.0, 1.0, 2.5, 6.0]):
+            u, wide_u = low_u + (high_u - low_u) * x, (high_u - low_u) * weights
+            y, S = np.repeat(t**3, order), np.add.outer(t**3, u).ravel()
+            share = math.sqrt(6.0 / math.pi) * y * y * np.exp(y * y - 1.5 * S * S) * 2.0 * y
+            share *= np.outer(3.0 * t * t * wide, wide_u).ravel()
+            one = asperities(np.repeat(t, order))
+            lowest = np.maximum(bottom, h + one.indentation(one.fold))
+            force = one.force_above(lowest, h, math.sqrt(part * M0) * S, math.sqrt(M0 * (1.0 - part)))
+            total += float((share * force).sum())
+    return total
+
+
+def test_summits_of_gaussian_surfaces_against_nested_quadrature() -> None:
+    """Their radius has a pole, and goes with the height."""
+    path = [4.0 * UM, 0.5 * UM, 0.8 * UM, 4.0 * UM]
+    asked = made_of({}, path)
+    got = rm.run({**asked, "asperities": NAYAK}).isel(realization=0)
+    force, stated = got.force.to_numpy(), float(got.numerical_error)
+    count = read({**asked, "asperities": NAYAK}).asperities.expected_count
+    twin, coarse = (count * mean_force_of_summits(0.8 * UM, 0.5 * UM, order) for order in (20, 16))
+    largest = float(np.abs(force).max())
+    assert abs(twin - coarse) <= 1e-10 * largest
+    assert abs(force[2] - twin) <= (stated + 1e-10) * largest
+    assert stated < 1e-9
+
+
+def test_each_parameter_has_as_many_scores_as_it_needs() -> None:
+    """Those of the flat, on which the depth of detachment depends most, are more than those of the slope."""
+    case = CASES[5]
+    separation = np.array([3.0 * UM, TURN, *(TURN + rise for rise in rises_of(case))])
+    chosen, _ = converge_at_kinks(problem_of(case, separation), dissipating=False)
+    slope, flat = (rule.scores.size for rule in chosen.rules)
+    assert slope == FIRST_ORDER < flat <= 18
+    assert len(chosen.nodes) == slope * flat
+    assert chosen.error < 1e-10
+
+
 def test_weights_of_parts_integrate_polynomials() -> None:
     """Up to any score, and with all that lies above to the weights of the whole."""
     rule, ends = Rule.smooth(12), np.array([-np.inf, -3.0, -0.4, 0.0, 1.7, np.inf])
@@ -295,7 +363,7 @@ def test_the_error_falls_exponentially_with_the_order() -> None:
     for order in (8, 12, 18):
         rule = Rule.smooth(order)
         nodes = set_up(problem, rule)
-        partial = PartialRule.of(problem, rule, nodes)
+        partial = PartialRule.of(problem, (rule, rule), nodes)
         assert partial is not None
         whole.append(np.abs(totals_of(nodes, separation, (FORCE,), steps)[0][FORCE, 2:] - exact).max())
         parts.append(np.abs(partial.totals(steps)[0][FORCE, 2:] - exact).max())
@@ -322,19 +390,20 @@ def test_the_energy_lost_is_that_of_many_draws_of_the_depth() -> None:
     np.testing.assert_allclose(got[1:], expected, rtol=1e-8)
 
 
-def count_products(case: dict[str, object], steps: int) -> int:
-    down = np.linspace(4.0 * UM, -0.5 * UM, steps)
-    problem = problem_of(case, np.concatenate([down, down[::-1]]))
-    nodes = set_up(problem, Rule.smooth(12))
-    return totals_of(nodes, problem.path.separation, (FORCE,), list(range(2 * steps)))[1]
-
-
-def test_heights_are_integrated_once_for_loading_and_unloading() -> None:
-    """On the way back only those between the old and the new lowest height are left to do."""
+def count_products(order: int, *, unload: bool) -> int:
     down = np.linspace(4.0 * UM, -0.5 * UM, 40)
-    problem = problem_of(CASES[0], down)
-    loading = totals_of(set_up(problem, Rule.smooth(12)), down, (FORCE,), list(range(40)))[1]
-    assert count_products(CASES[0], 40) < 1.25 * loading
+    problem = problem_of(CASES[0], np.concatenate([down, down[::-1]]) if unload else down)
+    steps = list(range(problem.path.separation.size))
+    return totals_of(set_up(problem, Rule.smooth(order)), problem.path.separation, (FORCE,), steps)[1]
+
+
+def test_heights_above_the_flat_are_integrated_once_for_all_nodes() -> None:
+    """And once for loading and unloading; on the way back only those between the flat and the lowest height of each
+    node are left to do.
+    """
+    coarse, fine = (count_products(order, unload=False) for order in (12, 24))
+    assert fine < 1.5 * coarse
+    assert count_products(12, unload=True) - coarse < 2 * 12 * 40
 
 
 def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
@@ -344,7 +413,7 @@ def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
 
     def holds(case: dict[str, object], separation: Floats) -> bool:
         problem = problem_of(case, separation)
-        return PartialRule.of(problem, rule, set_up(problem, rule)) is not None
+        return PartialRule.of(problem, (rule,), set_up(problem, rule)) is not None
 
     assert holds(CASES[0], down)
     assert not holds({**CASES[0], "height": {"distribution": "exponential", "scale": "1 um"}}, down)

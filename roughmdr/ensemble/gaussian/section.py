@@ -149,8 +149,9 @@ class NayakAsperities(PatchSource):
     def node_count(self, order: int) -> int:
         return order
 
-    def nodes(self, rule: Rule) -> Nodes:
+    def nodes(self, *rules: Rule) -> Nodes:
         """Return nodes at products of curvatures of these normal scores."""
+        (rule,) = rules
         v = product_of_score(rule.scores)
         return Nodes(rule.weights, {"radius": self.summits.radius(v)}, tuple(map(self._heights, v.tolist())))
 

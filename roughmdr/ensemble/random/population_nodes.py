@@ -87,9 +87,14 @@ def _bears_force(score: float, ratio: float) -> bool:
     return math.log(fraction_above(score)) + _MAX_FORCE_EXPONENT * math.log(ratio) >= math.log(_NEGLIGIBLE_FORCE)
 
 
-def nodes_of(populations: Populations, rule: Rule) -> Nodes:
-    """Return nodes at the scores of a rule for each random shape parameter of each population."""
-    parts = [_nodes_of_one(populations, population, rule) for population in populations.members]
+def nodes_of(populations: Populations, *rules: Rule) -> Nodes:
+    """Return nodes at the scores of one rule for all random shape parameters of all populations, or of one for each."""
+    axes = sum(len(population.random_parameters) for population in populations.members)
+    left, parts = list(rules if len(rules) > 1 else rules * axes), []
+    for population in populations.members:
+        count = len(population.random_parameters)
+        parts.append(_nodes_of_one(populations, population, left[:count]))
+        left = left[count:]
     names = populations.members[0].parameters
     return Nodes(
         np.concatenate([part.weights for part in parts]),
@@ -98,16 +103,18 @@ def nodes_of(populations: Populations, rule: Rule) -> Nodes:
     )
 
 
-def _nodes_of_one(populations: Populations, population: Population, rule: Rule) -> Nodes:
-    names, order = population.random_parameters, rule.scores.size
-    indices = np.indices((order,) * len(names)).reshape(len(names), order ** len(names))
-    weights = population.fraction * np.prod(rule.weights[indices], axis=0)
-    scores = dict(zip(names, rule.scores[indices], strict=True))
+def _nodes_of_one(populations: Populations, population: Population, rules: list[Rule]) -> Nodes:
+    names, shape = population.random_parameters, tuple(rule.scores.size for rule in rules)
+    indices = np.indices(shape).reshape(len(names), -1) if names else np.zeros((0, 1), dtype=int)
+    weights, scores = np.full(indices.shape[1], population.fraction), {}
+    for name, rule, index in zip(names, rules, indices, strict=True):
+        weights, scores[name] = weights * rule.weights[index], rule.scores[index]
     parameters = {
         name: entry.from_scores(scores.get(name, np.zeros(weights.size)))
         for name, entry in population.parameters.items()
     }
     if populations.correlated in scores:
-        at_score = {t: heights_given(population.height, t, populations.score_correlation) for t in rule.scores}
-        return Nodes(weights, parameters, tuple(at_score[t] for t in scores[populations.correlated]))
+        correlated = scores[populations.correlated].tolist()
+        at_score = {t: heights_given(population.height, t, populations.score_correlation) for t in set(correlated)}
+        return Nodes(weights, parameters, tuple(at_score[t] for t in correlated))
     return Nodes(weights, parameters, (heights_of(population.height),) * weights.size)

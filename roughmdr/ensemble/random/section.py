@@ -196,8 +196,8 @@ class RandomAsperities(PatchSource):
     def node_count(self, order: int) -> int:
         return sum(order**axes for axes in self.node_axes)
 
-    def nodes(self, rule: Rule) -> Nodes:
-        return nodes_of(self.populations, rule)
+    def nodes(self, *rules: Rule) -> Nodes:
+        return nodes_of(self.populations, *rules)
 
     def extremes(self, chance: float) -> Ensemble:
         highest, parameters = self.populations.extremes(chance)

@@ -140,6 +140,7 @@ class LocalLaw(NamedTuple):
 
 def _integrals(node: QuadratureNode, s: Floats, lowest: Floats, rows: int) -> Floats:
     """Return the first ``rows`` totals of an asperity of a node on each ring: [row, ring]."""
+    assert node.curve is not None
     found, ones = np.zeros((rows + 1, s.size)), np.ones(s.size, dtype=np.int64)
     origin, infinite = node.heights.origin, np.full(s.size, math.inf)
     each = Intervals(np.arange(s.size), ones, ones, lowest - origin, infinite)

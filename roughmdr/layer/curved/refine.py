@@ -10,7 +10,7 @@ from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, converge
-from roughmdr.expected.node import Problem, set_up
+from roughmdr.expected.node import Problem, set_up_apart
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.layer.curved.bulk import displacement_matrix
 from roughmdr.layer.curved.equilibrium import Half
@@ -67,7 +67,7 @@ def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solut
         path = LoadingPath.along(some, unload=hysteretic, adhesive=adhesive)
         problem = Problem(source, path, layer.effective_modulus, layer.adhesion, ROWS)
         rule = converge(problem, None, dissipating=False)
-        law = LocalLaw.of(set_up(problem, rule.rule), density, scale, deepest)
+        law = LocalLaw.of(set_up_apart(problem, *rule.rules), density, scale, deepest)
         body, places, change = _on_wide_rings(law, shape, layer.effective_modulus, separation, error)
         if not adhesive or min(float(place.state.s.min()) for place in places) >= deepest:
             return Solution(body, places, change, rule.error)
