@@ -8,12 +8,10 @@ import math
 
 import numpy as np
 
-from roughmdr.numerics.double_double import two_product
-
 SERIES_UP_TO = 0.4142
 """Differences of arguments up to here are computed as series: directly they would lose a digit and a half."""
 
-_LOG_2_HIGH, _LOG_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # the first times a whole number is exact
+LOG_2_HIGH, LOG_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # the first times a whole number is exact
 _PER_LOG_2 = 1.0 / math.log(2.0)
 _TO_WHOLE = 6755399441055744.0  # 1.5 2^52: added to a number it leaves the nearest whole one, in the last bits
 _ODD = tuple(1.0 / (2 * k + 5) for k in range(20))
@@ -22,8 +20,6 @@ _TAN_22_5, _TAN_67_5 = math.sqrt(2.0) - 1.0, math.sqrt(2.0) + 1.0
 _SMALLEST_NORMAL = float(np.finfo(np.float64).tiny)
 _MANTISSA, _ONE = np.int64(0xFFFFFFFFFFFFF), np.int64(0x3FF0000000000000)
 _EXP_MAX, _EXP_MIN = 709.0, -60.0  # e^709 is a float, e^-60 - 1 is -1
-_ROOT_MIN = -708.0  # e^-708 is normal
-_RAISED_BY, _RAISED = 54.0, 2.0**54  # makes all floats normal
 
 
 def sqrt(x: float) -> float:
@@ -78,11 +74,11 @@ def _power_of_two(shifted: float) -> float:
     return float(np.int64((np.float64(shifted).view(np.int64) + np.int64(1023)) << np.int64(52)).view(np.float64))
 
 
-def _growth(high: float, low: float) -> tuple[float, float]:
+def scale_and_growth(high: float, low: float) -> tuple[float, float]:
     """Return 2^k and e^r - 1, for high + low = k ln 2 + r and high from -708 to 709."""
     shifted = high * _PER_LOG_2 + _TO_WHOLE
     k = shifted - _TO_WHOLE
-    r = ((high - k * _LOG_2_HIGH) - k * _LOG_2_LOW) + low
+    r = ((high - k * LOG_2_HIGH) - k * LOG_2_LOW) + low
     square = r * r
     even, odd = 0.0, 0.0
     for j in range(10, -1, -2):
@@ -92,7 +88,7 @@ def _growth(high: float, low: float) -> tuple[float, float]:
 
 def expm1(x: float) -> float:
     """Return e^x - 1; inf beyond 709."""
-    scale, growth = _growth(_EXP_MAX if x > _EXP_MAX else (_EXP_MIN if x < _EXP_MIN else x), 0.0)
+    scale, growth = scale_and_growth(_EXP_MAX if x > _EXP_MAX else (_EXP_MIN if x < _EXP_MIN else x), 0.0)
     return math.inf if x > _EXP_MAX else scale * growth + (scale - 1.0)
 
 
@@ -112,7 +108,7 @@ def binade_cell(y: float, split: int) -> tuple[int, float]:
     return int((bits >> np.int64(52 - split)) - (np.int64(1023) << split)), float(within) - 1.0
 
 
-def _binade(x: float) -> tuple[float, float]:
+def power_and_log(x: float) -> tuple[float, float]:
     """Return k and ln m for x = 2^k m normal and m from 0.7 to 1.42."""
     k, beyond = binade_cell(x, 0)
     high = beyond > math.sqrt(2.0) - 1.0
@@ -123,25 +119,8 @@ def _binade(x: float) -> tuple[float, float]:
 
 def log(x: float) -> float:
     """Return ln x for a normal x > 0, NaN elsewhere."""
-    power, rest = _binade(x)
-    return power * _LOG_2_HIGH + (rest + power * _LOG_2_LOW) if _SMALLEST_NORMAL <= x < math.inf else math.nan
-
-
-def root(x: float, n: float) -> float:
-    """Return x^(1/n) for x >= 0 and n > 0; 0 below e^-708, inf beyond e^709; below n = 1 within 2 + 1/n roundings.
-
-    Its logarithm is two floats: with one alone the error would be ln x/n roundings.
-    """
-    small = x < _SMALLEST_NORMAL
-    power, rest = _binade(x * _RAISED if small else x)
-    power = power - _RAISED_BY if small else power
-    above, below = power * _LOG_2_HIGH, rest + power * _LOG_2_LOW
-    high = (above + below) / n
-    product, error = two_product(high, n)
-    low = (((above - product) + below) - error) / n
-    scale, growth = _growth(_EXP_MAX if high > _EXP_MAX else (_ROOT_MIN if high < _ROOT_MIN else high), low)
-    found = math.inf if high > _EXP_MAX else (0.0 if high < _ROOT_MIN else scale + scale * growth)
-    return found if x > 0.0 else 0.0
+    power, rest = power_and_log(x)
+    return power * LOG_2_HIGH + (rest + power * LOG_2_LOW) if _SMALLEST_NORMAL <= x < math.inf else math.nan
 
 
 def log1p(y: float) -> float:

@@ -100,7 +100,8 @@ def fill_first_node(params: Floats) -> float:
     slope = law.control_at(foot, params)[1] if foot > 0.0 or law.flat else math.inf
     if foot == 0.0 or slope > _CORNER * params[DEPTH] / foot:
         params[law.first_node + 1] = 0.0
-        return float(foot + (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH] / slope)
+        way = (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
+        return float(foot + way / slope if slope > 0.0 else foot)
     bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
     params[law.first_node + 1] = math.sqrt(0.5 * params[DEPTH] / bent) / _FINE
     return float(foot + 2.0 * params[law.first_node + 1] * (math.sqrt(y) - 1.0))
