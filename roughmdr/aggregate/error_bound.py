@@ -57,7 +57,7 @@ def no_terms(t: float, params: object) -> tuple[float, float]:
 
 
 def bounded_stiffness(contacts: Floats, params: Any, i: int) -> float:
-    """Return |k| of one contact over its natural scale; on the fold itself, where k is infinite, a bound of |k| eta."""
+    """Return |k| of one contact over its natural scale; next to the fold, where k is infinite, a bound of |k| eta."""
     k = abs(contacts[STIFFNESS, i])
     if law.adhesive:
         stretch, pull = law.adhesion_terms(contacts[RADIUS, i], law.params_of(params, i))

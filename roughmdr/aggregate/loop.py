@@ -51,6 +51,7 @@ from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 
 _NOT_REPRESENTABLE = -1
 _ENERGIES = {ENERGY, DISSIPATED}
+# Inlined by LLVM: what numba inlines of them is no vector code.
 _OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at", "bounded_stiffness"}
 
 

@@ -147,3 +147,8 @@ def energy(s: float, params: Floats) -> float:
 def kink(low: float, high: float, params: Floats) -> bool:
     """Whether the indentation may not be smooth from low to high."""
     return True
+
+
+def kink_between(low: float, high: float, params: Floats) -> bool:
+    """Whether contact begins, s = 1, from low to high: with a paraboloid there is no other kink."""
+    return low < 1.0 < high

@@ -187,6 +187,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
     }
     plain["t_of_q"] = profile.t_of_q or _no_t_of_q
     parts["approach"] = parts["one_step" if shared else "two_steps"]
+    plain["kink_between"] = parts.pop("kink_between", profile.kink)
     if cohesive:
         plain["kink"] = parts.pop("kink")
     if profile.elastic_integral is not None:
@@ -200,12 +201,14 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         vars(alone).update({name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")})
         several = profile.precompute is not Profile._field_defaults["precompute"]
         vector = (
-            vars(alone)
+            dict(vars(alone))
             if several
             else {name: specialise(part, alone, small=True) for name, part in _functions(one_number).items()}
         )
     if cohesive and profile.zone_integrals is not None:
         vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
+    if not tabled:
+        vector["kink_between"] = compiled(plain["kink_between"], small=True)
     inlined = whole.copy()
     small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_EDGES)
     for name, part in parts.items():

@@ -18,9 +18,9 @@ from roughmdr.numerics.vector_math import binade_cell
 _octave = compiled(binade_cell, small=True)
 
 _PER_DEPTH = 2.0**12  # without adhesion the octaves begin at its inverse of the depth
-_FINE = 4.0
+_FINE = 4.0  # factor on the root in y: the larger, the more octaves next to the foot
 _MAX_ERROR = 1e-4  # of the distance to the foot: with a larger one a node is solved for by itself
-_STEPS = 8  # before that
+_STEPS = 8  # of Newton's method before that
 _CORNER = 1e-6  # of the depth over the foot: a steeper foot is a corner, not a fold
 _BEND = 1e-4  # of the foot: so far from a fold the slope is linear
 

@@ -69,6 +69,8 @@ class ProfileKernels(Kernels):
     fill_params: Callable[..., None]
 
     two_steps: Callable[..., tuple[float, float, float]]
+    kink_between: Callable[..., bool]
+    """(low, high, params) -> whether the indentation is not smooth for states from low to high."""
     stride: float
     """By which factor the search for branches under adhesion with a range goes on."""
     widest_zone: Kernel

@@ -12,6 +12,7 @@ _MIDDLE = 64.0 / 225.0
 _INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
 _RTOL_STEP = 1e-8  # of the distance to the foot and of the value: the next error, its square, is below rounding
 _RTOL = 1e-16  # of the distance to the foot
+_REACH = 64.0  # times the first step: a kink within it makes the error larger than stated
 _MIN_DISTANCE = 1e-3  # of the distance to the foot: left after a step that would go beyond it
 _FREE_STEPS = 6  # then every third step is a bisection: where the slope changes much, Newton's method may not converge
 
@@ -87,7 +88,7 @@ def one_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
 def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     """As ``one_step`` after two, the second on the cubic that the inverse function and its slopes at both points give.
 
-    Its error is about the product of the squares of the distances from both.
+    Its error is about the product of the squares of the distances from both; inf where there is a kink near.
     """
     foot, lift, wanted = params[LAST], params[DEPTH] if params[TENSION] > 0.0 else 0.0, x * params[DEPTH]
     value, slope = law.indentation_at(t, params)
@@ -104,7 +105,9 @@ def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     far = max(abs(way) * size, abs(rest) * beyond)
     near = max(abs(second - found) * size, abs(last) * beyond)
     left = far * near / (size * size * beyond * beyond)
-    error = left * left if (x > params[LAST_X]) & (beyond > params[NEAR] * found) else math.inf
+    reach = _REACH * abs(way)
+    smooth = law.kink_between(second - reach, second + reach, params) < 1
+    error = left * left if (x > params[LAST_X]) & (beyond > params[NEAR] * found) & smooth else math.inf
     return found, error, params[DEPTH] * per_last
 
 
