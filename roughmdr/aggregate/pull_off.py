@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.loop import count_above, sum_over_asperities
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.kernels.adhesion import Adhesion
@@ -33,7 +33,7 @@ def pull_off_of(
     if not (kernels.adhesive and count):
         return WITHOUT_TENSION
     top, few = height[:count], Columns(*(column[:count] for column in columns))
-    depths = detachment_depths(kernels, few, effective_modulus, adhesion)
+    depths = detachments(kernels, few, effective_modulus, adhesion).depth
 
     def sums(along: LoadingPath, rows: set[int]) -> Floats:
         total, _, _ = sum_over_asperities(
