@@ -6,22 +6,27 @@ from typing import Any, NamedTuple
 from numpy import bool_
 from numpy.typing import NDArray
 
-from roughmdr.kernels.interface import Kernels
+from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import as_argument
 
 # Rows of the natural scales of a block.
 DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE = range(6)
 SCALES = 6
-# Rows of its contacts; the next three after the state are filled where the kernels find them together with it, the last
-# where they approach it by steps.
-STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR = range(5)
-CONTACT_ROWS = 5
+# Rows of its contacts. Radius, force and stiffness are filled where the kernels find them together with the state.
+STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
+"""STATE_ERROR is filled where the kernels approach the state by steps. IN_CONTACT is 1 in contact, else 0, with several
+branches the number of the branch. BEFORE is that at the step before. TERM has room for x until the contacts are found,
+then for the terms of a sum.
+"""
+CONTACT_ROWS = 8
 
 
 class Block(NamedTuple):
     """Arrays over the asperities of a block, from the highest to the lowest.
 
-    Loops take the arrays out first: an array that is taken out of a tuple within a loop keeps it from vector code.
+    Loops take the arrays out first: an array that is taken out of a tuple within a loop keeps it from vector code. They
+    are few, as each one that is passed on takes long to compile.
     """
 
     z: Floats
@@ -32,13 +37,8 @@ class Block(NamedTuple):
     """Natural scales, [row, asperity] in SI."""
     max_scales: Floats
     """The largest of each row."""
-    in_contact: Floats
-    """1 in contact, else 0; with several branches the number of the branch."""
-    in_contact_before: Floats
-    """As ``in_contact`` at the step before."""
     contacts: Floats
     """[row, asperity], over natural scales."""
-    scratch: Floats
 
 
 class Totals(NamedTuple):
@@ -77,8 +77,14 @@ class SumKernels(Kernels):
     add_totals: Callable[..., None]
     loop: Callable[..., int]
     block_at: Callable[..., Block]
-    """This and the next: of a flat on a machine."""
+    """This and what follows: of a flat on a machine."""
     add_response: Callable[..., None]
+    response: Callable[..., Any]
+
+
+def prepare_of(kernels: Kernels, columns: Columns, material: Material) -> Callable[..., Any]:
+    """Return ``prepare`` of the kernels as an argument: a loop calls it once a block and need not hold its code."""
+    return as_argument(kernels.prepare, material, columns, 0, 0, 0.0)
 
 
 law = SumKernels("law")

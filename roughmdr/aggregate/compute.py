@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from roughmdr.aggregate import loop, totals
-from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation
 from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.pull_off import pull_off_of
@@ -150,7 +150,7 @@ def prepare(
         law = choose(shape, one, params)
         loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), rows)
         if law.adhesive and unload:
-            detachment_depths(law, columns, 1.0, one)
+            detachments(law, columns, 1.0, one)
             prepare_pull_off()
     if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))

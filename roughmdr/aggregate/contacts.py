@@ -2,33 +2,42 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import DEPTH_SCALE, FORCE, PER_DEPTH, RADIUS, STATE, STATE_ERROR, STIFFNESS, Block, law
+from roughmdr.aggregate.block import (
+    DEPTH_SCALE,
+    FORCE,
+    IN_CONTACT,
+    PER_DEPTH,
+    RADIUS,
+    STATE,
+    STATE_ERROR,
+    STIFFNESS,
+    TERM,
+    Block,
+    law,
+)
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 
 
 def update_contact(count: int, block: Block, memory: Staircase, begin: int, end: int) -> None:
     """Set which of the first ``count`` asperities are in contact, by the pairs begin to end of the staircase."""
-    z, depth, in_contact, bottom, top = block.z, block.scales[DEPTH_SCALE], block.in_contact, memory.bottom, memory.top
-    low, high = bottom[begin], top[begin]
+    z, scales, contacts = block.z, block.scales, block.contacts
     for i in range(count):
-        in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else 0.0
-    for j in range(begin + 1, end):
-        low, high = bottom[j], top[j]
+        contacts[IN_CONTACT, i] = 0.0
+    for j in range(begin, end):
+        low, high = memory.bottom[j], memory.top[j]
         for i in range(count):
-            in_contact[i] = 1.0 if (z[i] >= low) & (z[i] - high > -depth[i]) else in_contact[i]
+            held = (z[i] >= low) & (z[i] - high > -scales[DEPTH_SCALE, i])
+            contacts[IN_CONTACT, i] = 1.0 if held else contacts[IN_CONTACT, i]
 
 
 def evaluate(count: int, block: Block) -> None:
-    """Find a, P and k of the first ``count`` contacts."""
+    """Find a, P and k of the first ``count`` contacts from their states."""
     contacts, params = block.contacts, block.params
-    a, force, stiffness = contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     for i in range(count):
-        a[i], force[i], stiffness[i] = law.radius_force_stiffness(contacts[STATE, i], law.params_of(params, i))
-
-
-def skip(count: int, block: Block) -> None:
-    """Leave a, P and k to be computed from the state where they are asked for."""
+        contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
+            contacts[STATE, i], law.params_of(params, i)
+        )
 
 
 def solve_closed(
@@ -38,24 +47,26 @@ def solve_closed(
 
     Without adhesion all of them are. Those out of contact have the state of first touch.
     """
-    z, params, in_contact, state = block.z, block.params, block.in_contact, block.contacts[STATE]
-    depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]
+    z, params = block.z, block.params
+    scales, contacts = block.scales, block.contacts
     if law.adhesive:
         law.update_contact(count, block, memory, begin, end)
         for i in range(count):
-            x = ((z[i] - h) + depth[i]) * per_depth[i]
-            state[i] = law.state(x if in_contact[i] > 0.0 else 1.0, law.params_of(params, i))
+            x = ((z[i] - h) + scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i]
+            contacts[STATE, i] = law.state(x if contacts[IN_CONTACT, i] > 0.0 else 1.0, law.params_of(params, i))
     else:
         for i in range(count):
-            state[i] = law.state((z[i] - h) * per_depth[i], law.params_of(params, i))
-    law.evaluate(count, block)
+            contacts[STATE, i] = law.state((z[i] - h) * scales[PER_DEPTH, i], law.params_of(params, i))
+    if law.found_together:
+        law.evaluate(count, block)
 
 
 def solve_refined(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
     """Do as ``solve_closed`` in several steps, a loop for each, so that no contact waits for another."""
-    params, x, state = block.params, block.scratch, block.contacts[STATE]
+    params, contacts = block.params, block.contacts
+    state, x = contacts[STATE], contacts[TERM]
     law.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
         state[i] = law.initial_guess(x[i], law.params_of(params, i))
@@ -69,8 +80,8 @@ def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
     """Do as ``solve_closed`` by a fixed number of steps for all contacts, as vector code, and a search for some."""
-    params, in_contact, x = block.params, block.in_contact, block.scratch
-    state, error = block.contacts[STATE], block.contacts[STATE_ERROR]
+    params, contacts = block.params, block.contacts
+    state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
     law.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
         state[i] = law.y_of_x(x[i], law.params_of(params, i))
@@ -95,35 +106,38 @@ def solve_each(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
     """Do as ``solve_closed`` for contacts that are solved one by one."""
-    params, in_contact, x, contacts = block.params, block.in_contact, block.scratch, block.contacts
-    state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
+    params, contacts = block.params, block.contacts
     law.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
-        if in_contact[i] > 0.0:
-            state[i], a[i], force[i], stiffness[i] = law.contact_at(x[i], in_contact[i], law.params_of(params, i))
-        else:
-            state[i], a[i], force[i], stiffness[i] = 0.0, 0.0, 0.0, 0.0
+        state, a, force, stiffness = 0.0, 0.0, 0.0, 0.0
+        if contacts[IN_CONTACT, i] > 0.0:
+            x, branch = contacts[TERM, i], contacts[IN_CONTACT, i]
+            state, a, force, stiffness = law.contact_at(x, branch, law.params_of(params, i))
+        contacts[STATE, i], contacts[RADIUS, i] = state, a
+        contacts[FORCE, i], contacts[STIFFNESS, i] = force, stiffness
 
 
 def place(count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int) -> None:
-    """Put x of the first ``count`` asperities into ``block.scratch``, and find which of them are in contact.
+    """Put x of the first ``count`` asperities into the row TERM, and find which of them are in contact.
 
-    Those out of contact have the x of first touch. With several branches, ``block.in_contact`` holds the number of the
+    Those out of contact have the x of first touch. With several branches, IN_CONTACT holds the number of the
     branch at the step before, and then the new one.
     """
-    z, params, in_contact, x = block.z, block.params, block.in_contact, block.scratch
-    depth, per_depth = block.scales[DEPTH_SCALE], block.scales[PER_DEPTH]
+    z, params = block.z, block.params
+    scales, contacts = block.scales, block.contacts
     lift = 1.0 if law.adhesive else 0.0
     for i in range(count):
-        x[i] = max(((z[i] - h) + lift * depth[i]) * per_depth[i], 0.0)
+        contacts[TERM, i] = max(((z[i] - h) + lift * scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i], 0.0)
     if law.branched:
         for i in range(count):
-            in_contact[i] = law.branch(x[i], in_contact[i], z[i] >= h - adhesion_range, law.params_of(params, i))
+            contacts[IN_CONTACT, i] = law.branch(
+                contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= h - adhesion_range, law.params_of(params, i)
+            )
     elif law.adhesive:
         law.update_contact(count, block, memory, begin, end)
     if law.adhesive:
         for i in range(count):
-            x[i] = x[i] if in_contact[i] > 0.0 else 1.0
+            contacts[TERM, i] = contacts[TERM, i] if contacts[IN_CONTACT, i] > 0.0 else 1.0
 
 
 def radius_of_state(contacts: Floats, params: Any, i: int) -> float:

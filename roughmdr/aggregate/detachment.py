@@ -3,9 +3,11 @@
 import math
 from collections.abc import Callable
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.aggregate.block import prepare_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -17,29 +19,41 @@ from roughmdr.numerics.summation import BLOCK
 _MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
 
 
-def _fill_depths(columns: Columns, material: Material, depths: Floats) -> None:
-    """Fill in how far below first touch [m] each contact detaches."""
-    for start in range(0, depths.size, BLOCK):
-        stop = min(start + BLOCK, depths.size)
-        params = law.prepare(material, columns, start, stop, 0.0)
+class Detachments(NamedTuple):
+    """Where adhesive contacts detach under fixed grips."""
+
+    depth: Floats
+    """How far below first touch [m]."""
+    radius: Floats
+    """Their radius there [m], where adhesion has no range; 0 where they are not representable."""
+
+
+def _fill(columns: Columns, material: Material, prepare: Callable[..., Any], found: Detachments) -> None:
+    """Fill in where each contact detaches; ``prepare`` as in ``Kernels``."""
+    depth, radius = found.depth, found.radius
+    for start in range(0, depth.size, BLOCK):
+        stop = min(start + BLOCK, depth.size)
+        params = prepare(material, columns, start, stop, 0.0)
         for i in range(start, stop):
             own = law.params_of(params, i - start)
-            (depth, _), _, _, _ = law.scales(
+            (depth[i], _), size, _, _ = law.scales(
                 material.effective_modulus, material.work, columns.width[i], columns.rise[i], own
             )
-            depths[i] = depth
+            if not law.cohesive:
+                radius[i] = size * law.radius(law.state(0.0, own), own) if depth[i] > 0.0 else 0.0
 
 
 @cache
-def _compiled(kernels: Kernels) -> Callable[[Columns, Material, Floats], None]:
-    return specialise(_fill_depths, kernels)
+def _compiled(kernels: Kernels) -> Callable[..., None]:
+    return specialise(_fill, kernels)
 
 
-def detachment_depths(kernels: Kernels, columns: Columns, effective_modulus: float, adhesion: Adhesion) -> Floats:
-    """Return how far below first touch [m] each adhesive contact detaches; E* [Pa]."""
-    depths = np.empty(columns.width.size)
-    _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, adhesion.strength), depths)
-    return depths
+def detachments(kernels: Kernels, columns: Columns, effective_modulus: float, adhesion: Adhesion) -> Detachments:
+    """Return where each adhesive contact detaches; E* [Pa]."""
+    found = Detachments(np.empty(columns.width.size), np.zeros(columns.width.size))
+    material = Material(effective_modulus, adhesion.work, adhesion.strength)
+    _compiled(kernels)(columns, material, prepare_of(kernels, columns, material), found)
+    return found
 
 
 def clear_separation(ensemble: Ensemble, effective_modulus: float, adhesion: Adhesion) -> float:
@@ -55,7 +69,7 @@ def clear_separation(ensemble: Ensemble, effective_modulus: float, adhesion: Adh
     for model in adhesion.candidates:
         one = adhesion._replace(model=model)
         with np.errstate(all="ignore"):  # what no float can hold is NaN
-            depths = detachment_depths(choose(ensemble.shape, one, columns.params), columns, effective_modulus, one)
+            depths = detachments(choose(ensemble.shape, one, columns.params), columns, effective_modulus, one).depth
             if not ((depths > 0.0) & (depths < math.inf)).all():
                 return math.nan
             found = float(np.max(height + (1.0 + _MARGIN) * np.maximum(depths, one.range)))

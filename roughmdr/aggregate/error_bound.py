@@ -23,18 +23,20 @@ from roughmdr.aggregate.block import (
     DEPTH_SCALE,
     FORCE,
     FORCE_SCALE,
+    IN_CONTACT,
     PER_DEPTH,
     RADIUS,
     STATE,
     STIFFNESS,
     STIFFNESS_SCALE,
+    TERM,
     Block,
     law,
 )
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.jit import njit
-from roughmdr.numerics.summation import block_minimum, block_sum
+from roughmdr.numerics.summation import BLOCK, block_minimum, sum_by_halves
 
 _NEXT_TO_A_FOLD = 3.0  # m
 
@@ -72,8 +74,8 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
     in the lowest or the highest state: two calls bound a block whose parameters are alike. Only a retraction brings a
     state below that of first touch, x = 1.
     """
-    params, first, state = block.params, law.params_of(block.params, 0), block.contacts[STATE]
-    scratch, in_contact = block.scratch, block.in_contact
+    params, contacts = block.params, block.contacts
+    first, terms = law.params_of(params, 0), contacts[TERM]
     lift = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
     high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
@@ -81,28 +83,28 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
         low = law.state(1.0, first)
         if retracted:
             for i in range(count):
-                scratch[i] = state[i] if in_contact[i] > 0.0 else math.inf
-            low = max(min(low, block_minimum(scratch, count)), ROUNDING)
+                terms[i] = contacts[STATE, i] if contacts[IN_CONTACT, i] > 0.0 else math.inf
+            low = max(min(low, block_minimum(terms, count)), ROUNDING)
     stiffness = max(abs(law.stiffness(low, first)), abs(law.stiffness(high, first)))
     least_force = 1.0 if law.adhesive else 0.0  # without adhesion the natural force is no force of this contact
     error = max(least_force, abs(law.force(high, first))) * law.relative_errors(first)[0]
-    if law.heterogeneous(params):
+    if not law.alike and law.heterogeneous(params):
         for i in range(count):
-            own = law.params_of(params, i)
-            stiffness = max(stiffness, abs(law.stiffness(max(state[i], low), own)))
-            error = max(error, abs(law.force(state[i], own)) * law.relative_errors(own)[0])
+            own, state = law.params_of(params, i), contacts[STATE, i]
+            stiffness = max(stiffness, abs(law.stiffness(max(state, low), own)))
+            error = max(error, abs(law.force(state, own)) * law.relative_errors(own)[0])
     stiffness = count * stiffness * block.max_scales[STIFFNESS_SCALE]
     return law.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
 
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
     """Return the bound where P and k were found with the state: one by one, whichever way k goes along the branch."""
-    contacts, params, in_contact, terms = block.contacts, block.params, block.in_contact, block.scratch
-    rigidity, load = block.scales[STIFFNESS_SCALE], block.scales[FORCE_SCALE]
+    contacts, params = block.contacts, block.params
+    scales, terms = block.scales, contacts[TERM]
     for i in range(count):
         k = law.bounded_stiffness(contacts, params, i)
-        terms[i] = rigidity[i] * k if not law.adhesive or in_contact[i] > 0.0 else 0.0
-    stiffness = block_sum(terms, count)
+        terms[i] = scales[STIFFNESS_SCALE, i] * k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+    stiffness = sum_by_halves(terms, count, BLOCK)
     for i in range(count):
         own = law.params_of(params, i)
         of_force, of_indentation = law.relative_errors(own)
@@ -114,9 +116,9 @@ def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
         if law.terms_cancel:
             g, size = law.term_sizes(contacts[STATE, i], own)
             each += of_force * size + _NEXT_TO_A_FOLD * of_indentation * k * g
-        terms[i] = load[i] * each if not law.adhesive or in_contact[i] > 0.0 else 0.0
-    error = block_sum(terms, count)
+        terms[i] = scales[FORCE_SCALE, i] * each if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+    error = sum_by_halves(terms, count, BLOCK)
     for i in range(count):
         of_indentation = law.relative_errors(law.params_of(params, i))[1]
-        terms[i] = -of_indentation if not law.adhesive or in_contact[i] > 0.0 else 0.0
+        terms[i] = -of_indentation if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
     return law.total_error(count, block, h, stiffness, error, -block_minimum(terms, count))

@@ -8,10 +8,23 @@ terms and their order depend on the asperities and the path alone.
 import math
 from collections.abc import Callable
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate.block import CONTACT_ROWS, DEPTH_SCALE, RADIUS_SCALE, SCALES, Block, SumKernels, Totals, law
+from roughmdr.aggregate.block import (
+    BEFORE,
+    CONTACT_ROWS,
+    DEPTH_SCALE,
+    IN_CONTACT,
+    RADIUS_SCALE,
+    SCALES,
+    Block,
+    SumKernels,
+    Totals,
+    law,
+    prepare_of,
+)
 from roughmdr.aggregate.contacts import (
     evaluate,
     force_of_state,
@@ -20,7 +33,6 @@ from roughmdr.aggregate.contacts import (
     found_stiffness,
     place,
     radius_of_state,
-    skip,
     solve_closed,
     solve_each,
     solve_iterative,
@@ -44,7 +56,7 @@ from roughmdr.aggregate.totals import (
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels, Material
-from roughmdr.loading.staircase import Staircase
+from roughmdr.loading.staircase import Staircase, no_memory
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
@@ -53,6 +65,18 @@ _NOT_REPRESENTABLE = -1
 _ENERGIES = {ENERGY, DISSIPATED}
 # Inlined by LLVM: what numba inlines of them is no vector code.
 _OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at", "bounded_stiffness"}
+
+
+class Steps(NamedTuple):
+    """The steps of a path."""
+
+    separation: Floats
+    """[m]"""
+    turn: int
+    """The step at which the flat is closest."""
+    memory: Staircase
+    """The bottom is lower by the adhesion range, from which on the surfaces attract each other; without adhesion the
+    next float above the flat: at its height there is no contact."""
 
 
 @njit
@@ -72,10 +96,10 @@ def count_above(height: Floats, lowest: float) -> int:
     return low
 
 
-def lowest_in_contact(h: float, begin: int, end: int, memory: Staircase, deepest: float) -> float:
+def lowest_in_contact(begin: int, end: int, memory: Staircase, deepest: float) -> float:
     """Return the lowest height that can be in contact: the least max(bottom, top - deepest) of the staircase."""
     if not law.adhesive:
-        return float(np.nextafter(h, math.inf))  # at z = h there is no contact
+        return float(memory.bottom[begin])
     lowest = math.inf
     for j in range(begin, end):
         lowest = min(lowest, max(memory.bottom[j], memory.top[j] - deepest))
@@ -87,66 +111,64 @@ def _loop(
     columns: Columns,
     material: Material,
     adhesion_range: float,
-    separation: Floats,
-    turn: int,
-    memory: Staircase,
+    steps: Steps,
+    prepare: Callable[..., Any],
     totals: Totals,
 ) -> int:
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
-    At the step ``turn`` the flat is closest. Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not
-    representable. The caller has lowered ``memory.bottom`` by the adhesion range, from which on the surfaces attract
-    each other. ``compiled_sum`` says which functions the names of ``law`` stand for.
+    Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. ``prepare`` as in
+    ``Kernels``; ``compiled_sum`` says which functions the names of ``law`` stand for.
     """
     visits = 0
+    separation, turn, memory = steps.separation, steps.turn, steps.memory
     closest = separation[turn] - adhesion_range
-    scales, max_scales = np.empty((SCALES, BLOCK)), np.empty(SCALES)
-    in_contact, before, contacts = np.empty(BLOCK), np.empty(BLOCK), np.empty((CONTACT_ROWS, BLOCK))
-    scratch = np.empty(BLOCK)
+    scales, contacts, max_scales = np.empty((SCALES, BLOCK)), np.empty((CONTACT_ROWS, BLOCK)), np.empty(SCALES)
     total, compensation, wanted = totals.total, totals.compensation, totals.wanted
     if law.shared:
-        params = law.prepare(material, columns, 0, height.size, 0.0)
+        params = prepare(material, columns, 0, height.size, 0.0)
     for start in range(0, height.size, BLOCK):
         z = height[start : min(start + BLOCK, height.size)]
-        if count_above(z, closest) == 0:
+        if z[0] < closest:
             break
         if not law.shared:
-            params = law.prepare(material, columns, start, start + z.size, 0.0)
-        block = Block(z, params, scales, max_scales, in_contact, before, contacts, scratch)
-        if not law.natural_scales(block, columns, start, material, law.energetic):
-            return _NOT_REPRESENTABLE
+            params = prepare(material, columns, start, start + z.size, 0.0)
+        block = Block(z, params, scales, max_scales, contacts)
+        if not law.natural_scales(block, columns, start, material):
+            visits = _NOT_REPRESENTABLE
+            break
         count_before = 0
-        for i in range(BLOCK):  # one by one, here and below: slices take long to compile
-            in_contact[i] = before[i] = 0.0
+        if law.adhesive:
+            for i in range(BLOCK):  # one by one, here and below: slices take long to compile
+                contacts[IN_CONTACT, i] = contacts[BEFORE, i] = 0.0
         for step in range(separation.size):
             h = separation[step]
             begin, end = memory.first[step], memory.first[step + 1]
-            count = count_above(z, law.lowest_in_contact(h, begin, end, memory, max_scales[DEPTH_SCALE]))
+            count = count_above(z, law.lowest_in_contact(begin, end, memory, max_scales[DEPTH_SCALE]))
             if count > 0:
                 visits += count
                 law.solve_contacts(count, block, h, adhesion_range, memory, begin, end)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or memory.top[begin] > memory.bottom[begin]
                     error = law.error_bound(count, block, h, retracted)
-                    accumulate(total[ERROR], compensation[ERROR], step, error)
+                    total[ERROR, step], compensation[ERROR, step] = accumulate(
+                        total[ERROR, step], compensation[ERROR, step], error
+                    )
             if law.adhesive:
                 for i in range(count, count_before):
-                    in_contact[i] = 0.0  # too low
+                    contacts[IN_CONTACT, i] = 0.0  # too low
                 if law.energetic and wanted[DISSIPATED]:
                     dissipated = law.jumps(max(count, count_before), block)
-                    accumulate(total[DISSIPATED], compensation[DISSIPATED], step, dissipated)
+                    total[DISSIPATED, step], compensation[DISSIPATED, step] = accumulate(
+                        total[DISSIPATED, step], compensation[DISSIPATED, step], dissipated
+                    )
                 count_before = count
             if step == turn:
                 for i in range(count):
-                    if not law.adhesive or in_contact[i] > 0.0:
+                    if not law.adhesive or contacts[IN_CONTACT, i] > 0.0:
                         totals.max_radius[start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
             if count > 0:
                 law.add_totals(count, block, step, totals)
-    for row in range(ROWS):
-        for step in range(separation.size):
-            total[row, step] += compensation[row, step]
-    if law.energetic and wanted[DISSIPATED]:
-        cumulative_sum(total[DISSIPATED])
     return visits
 
 
@@ -157,12 +179,13 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     whole = SumKernels(name)
     solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
     solve = solve_each if kernels.one_by_one else solve
-    vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name, "energetic": energetic})
+    vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name})
+    whole.energetic, whole.found_together = energetic, together
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,
         "update_contact": update_contact,
-        "evaluate": evaluate if together else skip,
+        "evaluate": evaluate,
         "place": place,
         "solve_contacts": solve,
         "radius_at": found_radius if together else radius_of_state,
@@ -203,10 +226,17 @@ def sum_over_asperities(
     shape = ROWS, separation.size
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
-    lowered = memory._replace(bottom=memory.bottom - adhesion.range)
-    energetic, turn = not _ENERGIES.isdisjoint(rows), int(np.argmin(separation))
-    compiled = compiled_sum(kernels.in_sums or kernels, energetic=energetic)
-    visits = compiled.loop(height, columns, material, adhesion.range, separation, turn, lowered, totals)
+    compiled = compiled_sum(kernels.in_sums or kernels, energetic=not _ENERGIES.isdisjoint(rows))
+    if compiled.adhesive:
+        memory = memory._replace(bottom=memory.bottom - adhesion.range)
+    else:
+        memory = no_memory(np.nextafter(separation, np.inf))
+    steps = Steps(separation, int(np.argmin(separation)), memory)
+    prepare = prepare_of(compiled, columns, material)
+    visits = compiled.loop(height, columns, material, adhesion.range, steps, prepare, totals)
+    totals.total[:] += totals.compensation
+    if wanted[DISSIPATED]:
+        cumulative_sum(totals.total[DISSIPATED])
     if visits == _NOT_REPRESENTABLE or not np.isfinite(totals.total).all():
         raise OutOfRange(
             f"the contact of an asperity is not representable: {kernels.name} with "

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from roughmdr.aggregate.detachment import detachment_depths
-from roughmdr.aggregate.loop import count_above, sum_over_asperities
+from roughmdr.aggregate.detachment import detachments
+from roughmdr.aggregate.loop import sum_over_asperities
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels
@@ -29,11 +29,11 @@ def pull_off_of(
     if not any(rise.force[-1] == 0.0 for rise in rises):
         return PullOff()
     closest = float(path.separation.min()) - adhesion.range
-    count = count_above(height, closest) if height.size else 0
+    count = int(np.count_nonzero(height >= closest))
     if not (kernels.adhesive and count):
         return WITHOUT_TENSION
     top, few = height[:count], Columns(*(column[:count] for column in columns))
-    depths = detachment_depths(kernels, few, effective_modulus, adhesion)
+    depths = detachments(kernels, few, effective_modulus, adhesion).depth
 
     def sums(along: LoadingPath, rows: set[int]) -> Floats:
         total, _, _ = sum_over_asperities(

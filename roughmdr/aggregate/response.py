@@ -15,10 +15,12 @@ from roughmdr.aggregate.block import (
     CONTACT_ROWS,
     DEPTH_SCALE,
     FORCE_SCALE,
+    IN_CONTACT,
     RADIUS_SCALE,
     SCALES,
     STIFFNESS,
     STIFFNESS_SCALE,
+    TERM,
     Block,
     law,
 )
@@ -28,7 +30,7 @@ from roughmdr.kernels.interface import Columns, Material
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
-from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
+from roughmdr.numerics.summation import accumulate, sum_by_halves
 
 
 class Response(NamedTuple):
@@ -60,7 +62,7 @@ class Asperities(NamedTuple):
     tried: Floats
     """[group, asperity], where it was tried last."""
     contacts: Floats
-    scratch: Floats
+    """[row, asperity] of the group that is looked at."""
     ready: NDArray[np.int64]
     """How many groups are prepared, -1 where a scale is not representable; and how many asperities were visited."""
     far: Far
@@ -102,7 +104,6 @@ def keep(
         np.zeros((groups, GROUP)),
         np.zeros((groups, GROUP)),
         np.empty((CONTACT_ROWS, GROUP)),
-        np.empty(BLOCK),
         np.zeros(2, dtype=np.int64),
         nothing_known(release),
     )
@@ -124,13 +125,10 @@ def block_at(asperities: Asperities, number: int) -> Block:
         asperities.params[0:1] if shared else asperities.params[start:stop],
         asperities.scales[number],
         asperities.max_scales[number],
-        asperities.tried[number],
-        asperities.in_contact[number],
         asperities.contacts,
-        asperities.scratch,
     )
     if number >= asperities.ready[0]:
-        representable = law.natural_scales(block, asperities.columns, start, asperities.material, False)
+        representable = law.natural_scales(block, asperities.columns, start, asperities.material)
         asperities.ready[0] = number + 1 if representable else -1
     return block
 
@@ -146,7 +144,8 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
     for j in range(count_of_pairs):
         now.bottom[j], now.top[j] = memory.bottom[j] - reach, max(memory.top[j], h)
     if falls or not law.adhesive:
-        now.bottom[count_of_pairs], now.top[count_of_pairs] = h - reach, h
+        now.bottom[count_of_pairs] = h - reach if law.adhesive else np.nextafter(h, math.inf)
+        now.top[count_of_pairs] = h
         count_of_pairs += 1
     lowest = now.bottom[0]
     for j in range(1, count_of_pairs):
@@ -170,15 +169,17 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
         if asperities.ready[0] < 0:
             return Response(math.nan, math.nan, math.nan)
         deepest = block.max_scales[DEPTH_SCALE]
-        count = count_above(block.z, law.lowest_in_contact(h, 0, count_of_pairs, now, deepest))
+        count = count_above(block.z, law.lowest_in_contact(0, count_of_pairs, now, deepest))
         if law.adhesive:
             for i in range(GROUP):
-                block.in_contact[i] = block.in_contact_before[i] if i < count else 0.0
-        if count == 0:
-            continue
-        asperities.ready[1] += count
-        law.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
-        law.add_response(count, block, asperities.material.effective_modulus, total, compensation)
+                asperities.contacts[IN_CONTACT, i] = asperities.in_contact[number, i] if i < count else 0.0
+        if count > 0:
+            asperities.ready[1] += count
+            law.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
+            law.add_response(count, block, asperities.material.effective_modulus, total, compensation)
+        if law.adhesive:
+            for i in range(GROUP):
+                asperities.tried[number, i] = asperities.contacts[IN_CONTACT, i]
     if slot >= 0:
         far.force[slot, groups:] = total[0] + compensation[0]
         far.stiffness[slot, groups:] = total[1] + compensation[1]
@@ -192,26 +193,26 @@ def add_response(count: int, block: Block, modulus: float, total: Floats, compen
     Without adhesion the stiffness is its own bound. Where that of a contact grows with its indentation it bounds
     itself; else 2 E* a does, which only a punch of that radius has.
     """
-    terms, in_contact, contacts, params = block.scratch, block.in_contact, block.contacts, block.params
-    size, load, rigidity = block.scales[RADIUS_SCALE], block.scales[FORCE_SCALE], block.scales[STIFFNESS_SCALE]
-    stiffness = contacts[STIFFNESS]
-    for i in range(count):
-        terms[i] = load[i] * law.force_at(contacts, params, i) if not law.adhesive or in_contact[i] > 0.0 else 0.0
-    accumulate(total, compensation, 0, sum_by_halves(terms, count, GROUP))
-    for i in range(count):
-        k = rigidity[i] * law.stiffness_at(contacts, params, i)
-        terms[i] = k if not law.adhesive or in_contact[i] > 0.0 else 0.0
-    if law.adhesive and law.hardening:
-        for i in range(count):
-            stiffness[i] = terms[i] if terms[i] > 0.0 else 0.0
-    accumulate(total, compensation, 1, sum_by_halves(terms, count, GROUP))
-    if law.adhesive and law.hardening:
-        accumulate(total, compensation, 2, sum_by_halves(stiffness, count, GROUP))
-    elif law.adhesive:
-        for i in range(count):
-            k = 2.0 * modulus * (size[i] * law.radius_at(contacts, params, i))
-            terms[i] = k if in_contact[i] > 0.0 else 0.0
-        accumulate(total, compensation, 2, sum_by_halves(terms, count, GROUP))
+    params, scales, contacts = block.params, block.scales, block.contacts
+    terms = contacts[TERM]
+    for row in range(3 if law.adhesive else 2):
+        if row == 0:
+            for i in range(count):
+                force = scales[FORCE_SCALE, i] * law.force_at(contacts, params, i)
+                terms[i] = force if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+        elif row == 1:
+            for i in range(count):
+                k = scales[STIFFNESS_SCALE, i] * law.stiffness_at(contacts, params, i)
+                terms[i] = k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                contacts[STIFFNESS, i] = terms[i] if terms[i] > 0.0 else 0.0
+        elif law.hardening:
+            for i in range(count):
+                terms[i] = contacts[STIFFNESS, i]
+        else:
+            for i in range(count):
+                k = 2.0 * modulus * (scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i))
+                terms[i] = k if contacts[IN_CONTACT, i] > 0.0 else 0.0
+        total[row], compensation[row] = accumulate(total[row], compensation[row], sum_by_halves(terms, count, GROUP))
 
 
 @njit

@@ -14,33 +14,36 @@ from roughmdr.aggregate.block import (
     law,
 )
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.numerics.summation import block_minimum
 
 _SMALLEST, _LARGEST = np.finfo(np.float64).tiny, np.finfo(np.float64).max
 
 
-def natural_scales(block: Block, columns: Columns, start: int, material: Material, energetic: bool) -> bool:
+def natural_scales(block: Block, columns: Columns, start: int, material: Material) -> bool:
     """Fill the natural scales of a block that begins at ``start``; False where one is not representable.
 
-    That of the energy is 1 unless ``energetic``: unless an energy is asked for.
+    That of the energy, the last one, is left out unless energies can be asked for.
     """
-    scales, params, scratch, count = block.scales, block.params, block.scratch, block.z.size
-    width, rise, modulus, work = columns.width, columns.rise, material.effective_modulus, material.work
+    params, scales, max_scales = block.params, block.scales, block.max_scales
+    count = block.z.size
+    width, rise = columns.width, columns.rise
     for i in range(count):  # nothing but this, so that it becomes vector code
         (depth, _), size, load, rigidity = law.scales(
-            modulus, work, width[start + i], rise[start + i], law.params_of(params, i)
+            material.effective_modulus, material.work, width[start + i], rise[start + i], law.params_of(params, i)
         )
         scales[DEPTH_SCALE, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth
         scales[RADIUS_SCALE, i] = size
         scales[FORCE_SCALE, i] = load
         scales[STIFFNESS_SCALE, i] = rigidity
-    for i in range(count):
-        scales[ENERGY_SCALE, i] = scales[FORCE_SCALE, i] * scales[DEPTH_SCALE, i] if energetic else 1.0
-    unrepresentable = 0
-    for row in range(SCALES):
+    if law.energetic:
         for i in range(count):
-            scratch[i] = -scales[row, i]
-            unrepresentable += not (_SMALLEST <= scales[row, i] <= _LARGEST)
-        block.max_scales[row] = -block_minimum(scratch, count)
+            scales[ENERGY_SCALE, i] = scales[FORCE_SCALE, i] * scales[DEPTH_SCALE, i]
+    unrepresentable, rows = 0, SCALES if law.energetic else ENERGY_SCALE
+    for row in range(rows):
+        max_scales[row] = 0.0
+    for i in range(count):
+        for row in range(rows):  # within, as a maximum waits for that of the asperity before
+            scale = scales[row, i]
+            unrepresentable += not (_SMALLEST <= scale <= _LARGEST)
+            max_scales[row] = scale if scale > max_scales[row] else max_scales[row]
     return unrepresentable == 0

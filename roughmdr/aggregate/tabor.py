@@ -1,17 +1,14 @@
 """The least Tabor number of an ensemble, and the error of JKR there."""
 
 import math
-from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.aggregate.detachment import detachments
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Kernels, Material, law
-from roughmdr.numerics.jit import specialise
-from roughmdr.numerics.summation import BLOCK
+from roughmdr.kernels.interface import Columns
 from roughmdr.shapes import SHAPES
 
 SHIFT, _AT_A_CORNER = 5.0, 2.0
@@ -44,30 +41,6 @@ class JkrValidity(NamedTuple):
     """About the error of JKR's force of one contact [N] while it holds; jumps on before touch are left out."""
 
 
-def _smallest_fold(columns: Columns, material: Material) -> tuple[float, float]:
-    """Return the least radius [m] and the greatest depth [m] of JKR contacts where they detach under fixed grips.
-
-    The radius is not above 0 where a contact is not representable.
-    """
-    smallest, deepest, count = math.inf, 0.0, columns.width.size
-    for start in range(0, count, BLOCK):
-        stop = min(start + BLOCK, count)
-        params = law.prepare(material, columns, start, stop, 0.0)
-        for i in range(start, stop):
-            own = law.params_of(params, i - start)
-            (depth, _), size, _, _ = law.scales(
-                material.effective_modulus, material.work, columns.width[i], columns.rise[i], own
-            )
-            smallest = min(smallest, size * law.radius(law.state(0.0, own), own) if depth > 0.0 else 0.0)
-            deepest = max(deepest, depth)
-    return smallest, deepest
-
-
-@cache
-def _compiled(kernels: Kernels) -> Callable[..., tuple[float, float]]:
-    return specialise(_smallest_fold, kernels)
-
-
 def jkr_validity(
     shape: str, spread: float, columns: Columns, effective_modulus: float, adhesion: Adhesion
 ) -> JkrValidity:
@@ -82,7 +55,8 @@ def jkr_validity(
         usual = Columns(*(np.quantile(column, 0.5, axis=0, method="lower")[None] for column in columns))
         return jkr_validity(shape, spread, usual, effective_modulus, assumed)._replace(tabor=math.inf)
     kernels = choose(shape, Adhesion(adhesion.work), columns.params)
-    radius, depth = _compiled(kernels)(columns, Material(effective_modulus, adhesion.work, math.inf))
+    depths, radii = detachments(kernels, columns, effective_modulus, Adhesion(adhesion.work))
+    radius, depth = float(radii.min(initial=math.inf)), float(depths.max(initial=0.0))
     if not 0.0 < radius < math.inf:
         return JkrValidity(0.0, math.inf, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)

@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.aggregate import machine_stand, response
 from roughmdr.aggregate.block import SumKernels
-from roughmdr.aggregate.detachment import detachment_depths
+from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.loop import compiled_sum
 from roughmdr.aggregate.machine_leg import follow
 from roughmdr.errors import OutOfRange
@@ -27,7 +27,7 @@ def _compiled(kernels: Kernels) -> SumKernels:
     whole = SumKernels(kernels.name)
     of_sum = vars(compiled_sum(kernels, energetic=False))
     vars(whole).update({**of_sum, "__name__": kernels.name, "hardening": kernels.hardening})
-    for part in (response.block_at, response.add_response):
+    for part in (response.block_at, response.add_response, response.response):
         vars(whole)[part.__name__] = specialise(part, whole)
     return whole
 
@@ -52,16 +52,16 @@ def separations_of(
     if not height.size:
         return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
-    touches = detachments = _NONE
+    touches = releases = _NONE
     release = height
     if kernels.adhesive:
-        release = height + detachment_depths(kernels, columns, effective_modulus, adhesion)
-        touches, detachments = np.sort(height + adhesion.range), np.sort(release)
+        release = height + detachments(kernels, columns, effective_modulus, adhesion).depth
+        touches, releases = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
     law = _compiled(kernels)
     law.block_at(asperities, 0)  # its depths are the scale of first steps
     first_touch = float(height[0] + adhesion.range)
-    top = max(float(detachments[-1]) if detachments.size else first_touch, first_touch)
+    top = max(float(releases[-1]) if releases.size else first_touch, first_touch)
     beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
     separation, h = np.empty(demand.size), np.inf
     turns: list[float] = []
@@ -71,9 +71,9 @@ def separations_of(
             asperities.in_contact[:] = 0.0
         else:
             turns.append(h)
-        events = detachments if leg.rises else touches
+        events = releases if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
-        look = as_argument(response.response, law, response.Response(0.0, 0.0, 0.0), h, True, asperities, memory)
+        look = as_argument(law.response, h, True, asperities, memory)
         place = first_touch, top, beside
         search = machine_stand.Search(look, not leg.rises, machine, asperities, memory, events, *place)
         asperities.far.number[:] = 0

@@ -39,8 +39,8 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
     }[shape, adhesive]
     law = _of_module(f"{'jkr' if adhesive else 'elastic'}_{shape}", module, suffix)
     law.adhesive = adhesive
-    heterogeneous = scalar.heterogeneous if shape == "power_law" else scalar.alike
-    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=heterogeneous)
+    law.alike = shape != "power_law"
+    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
     law.hardening = not adhesive or shape != "power_law"  # of JKR power laws only those with n >= 0.768
     law.found_together = "radius_force_stiffness" in vars(law)
     if not law.found_together:

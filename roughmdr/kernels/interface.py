@@ -59,6 +59,8 @@ class Kernels(ModuleType):
     """Whether contacts are solved one at a time, not all of a block step by step."""
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
+    alike = False
+    """Whether no parameter tells two asperities apart, beside width and rise."""
 
     in_sums: Self | None = None
     """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
@@ -69,7 +71,7 @@ class Kernels(ModuleType):
     params_of: Callable[..., Any]
     """(params, i) -> those of asperity i."""
     heterogeneous: Callable[[Any], bool]
-    """params -> whether those of the asperities differ; only where ``found_together`` is false."""
+    """params -> whether those of the asperities differ; only where ``found_together`` and ``alike`` are false."""
     scales: Callable[..., tuple[tuple[float, float], float, float, float]]
     """(effective_modulus, work, width, rise, params) -> depth (hi, lo) [m], radius [m], force [N], stiffness [N/m]."""
     force_scales: Callable[..., tuple[tuple[float, float], float]]

@@ -23,50 +23,37 @@ _NARROW = 4.0  # of that: an interval across a detachment
 
 
 @njit
-def _bound(h: Floats, force: Floats, smooth: Floats, k: int) -> float:
-    """Return how low the force may be in the interval k."""
-    low, high = force[k], force[k + 1]
-    least = min(low, high)
-    before, after = k > 0, k + 2 < h.size
-    from_left, from_right = before and smooth[k - 1] > 0.0, after and smooth[k + 1] > 0.0
-    if smooth[k] > 0.0 and (from_left or from_right):
-        width = h[k + 1] - h[k]
-        left = (low - force[k - 1]) / (h[k] - h[k - 1]) if from_left else 0.0
-        right = (force[k + 2] - high) / (h[k + 2] - h[k + 1]) if from_right else 0.0
-        if not from_right:
-            return float(min(least, low + left * width))
-        if not from_left:
-            return float(min(least, high - right * width))
-        if left < 0.0 < right:
-            return float(min(least, low + left * (high - right * width - low) / (left - right)))
-        return float(least)
-    change = abs(high - low)
-    if before:
-        change = max(change, abs(low - force[k - 1]))
-    if after:
-        change = max(change, abs(force[k + 2] - high))
-    return float(least - _SAFETY * change)
+def _fill_bounds(h: Floats, force: Floats, smooth: NDArray[np.bool_], bounds: Floats) -> None:
+    """Fill in how low the force may be in each interval."""
+    for k in range(bounds.size):
+        low, high, width = force[k], force[k + 1], h[k + 1] - h[k]
+        least, change = min(low, high), abs(high - low)
+        before, after = k > 0, k + 1 < bounds.size
+        from_left, from_right = before and smooth[k - 1], after and smooth[k + 1]
+        if smooth[k] and (from_left or from_right):
+            left = (low - force[k - 1]) / (h[k] - h[k - 1]) if from_left else 0.0
+            right = (force[k + 2] - high) / (h[k + 2] - h[k + 1]) if from_right else 0.0
+            if not from_right:
+                least = min(least, low + left * width)
+            elif not from_left:
+                least = min(least, high - right * width)
+            elif left < 0.0 < right:
+                least = min(least, low + left * (high - right * width - low) / (left - right))
+            bounds[k] = least
+        else:
+            if before:
+                change = max(change, abs(low - force[k - 1]))
+            if after:
+                change = max(change, abs(force[k + 2] - high))
+            bounds[k] = least - _SAFETY * change
 
 
-@njit
 def _lowest_intervals(bounds: Floats, limit: float) -> NDArray[np.int64]:
     """Return the intervals, at most ``_INTERVALS`` and ascending, whose bounds are the lowest, and below a limit."""
-    chosen, size = np.empty(_INTERVALS, dtype=np.int64), 0
-    for k in range(bounds.size):
-        if bounds[k] >= limit:
-            continue
-        if size == _INTERVALS:
-            worst = 0
-            for i in range(1, size):
-                worst = i if bounds[chosen[i]] >= bounds[chosen[worst]] else worst
-            if bounds[chosen[worst]] <= bounds[k]:
-                continue
-            for i in range(worst, size - 1):
-                chosen[i] = chosen[i + 1]
-            size -= 1
-        chosen[size] = k
-        size += 1
-    return chosen[:size]
+    below = np.flatnonzero(bounds < limit)
+    if below.size > _INTERVALS:
+        below = np.sort(below[np.argsort(bounds[below], kind="stable")[:_INTERVALS]])
+    return below
 
 
 def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: float, beside: float) -> Floats:
@@ -74,43 +61,43 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
 
     h [m] ascends with the force there [N], and so do the ``detachments``, which are met ``beside`` [m] them.
     """
-    return _next(h, force, np.searchsorted(detachments, h), detachments, lowest, beside)
+    count = np.searchsorted(detachments, h)
+    wide = h[1:] - h[:-1] > _NARROW * beside  # a slope across a few roundings is none
+    bounds = np.empty(wide.size)
+    _fill_bounds(h, force, wide & (count[1:] == count[:-1]), bounds)
+    bounds[~wide] = math.inf
+    limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * float(np.abs(force).max()))
+    intervals, found = _lowest_intervals(bounds, limit), np.empty(2 * _INTERVALS * _MAX_POINTS)
+    return found[: _fill_points(h, count, detachments, beside, intervals, found)]
 
 
 @njit
-def _next(
-    h: Floats, force: Floats, count: NDArray[np.int64], detachments: Floats, lowest: float, beside: float
-) -> Floats:
-    """Do so; ``count`` says how many detachments lie below each separation."""
-    smooth, bounds, largest = np.empty(h.size - 1), np.empty(h.size - 1), 0.0
-    for k in range(h.size - 1):  # a slope across a few roundings is none
-        smooth[k] = 1.0 if count[k] == count[k + 1] and h[k + 1] - h[k] > _NARROW * beside else 0.0
-    for k in range(h.size):
-        largest = max(largest, abs(force[k]))
-    limit = lowest - max(_TOLERANCE * abs(lowest), _NEGLIGIBLE * largest)
-    for k in range(h.size - 1):
-        wide = h[k + 1] - h[k] > _NARROW * beside
-        bounds[k] = _bound(h, force, smooth, k) if wide else math.inf
-    chosen = _lowest_intervals(bounds, limit)
-    points = min(max(_POINTS // max(chosen.size, 1), _MIN_POINTS), _MAX_POINTS)
-    found, filled = np.empty(2 * points * chosen.size), 0
-    for number in range(chosen.size):
-        k = chosen[number]
+def _fill_points(
+    h: Floats,
+    count: NDArray[np.int64],
+    detachments: Floats,
+    beside: float,
+    intervals: NDArray[np.int64],
+    found: Floats,
+) -> int:
+    """Fill in the points within the intervals, of ``count`` detachments below each separation; return how many."""
+    points = min(max(_POINTS // max(intervals.size, 1), _MIN_POINTS), _MAX_POINTS)
+    filled = 0
+    for number in range(intervals.size):
+        k = intervals[number]
         last, inside = h[k], count[k + 1] - count[k]
         used = min(inside, points) if inside > 0 else points
-        for j in range(used):
-            if inside > 0:
-                at = detachments[count[k] + ((2 * j + 1) * inside) // (2 * used)]
-                sides = (at - beside, at + beside)
+        for j in range(2 * used):
+            if inside > 0:  # before and after a detachment
+                at = detachments[count[k] + ((j - j % 2 + 1) * inside) // (2 * used)]
+                side = at - beside if j % 2 == 0 else at + beside
             else:  # denser towards the end, where a contact may be about to detach
-                part = (used - j) / (used + 1.0)
-                at = h[k + 1] - (h[k + 1] - h[k]) * part * part
-                sides = (at, at)
-            for side in sides:
-                if last < side < h[k + 1]:
-                    found[filled] = last = side
-                    filled += 1
-    return found[:filled]
+                part = (used - j // 2) / (used + 1.0)
+                side = h[k + 1] - (h[k + 1] - h[k]) * part * part
+            if last < side < h[k + 1]:
+                found[filled] = last = side
+                filled += 1
+    return filled
 
 
 def merged(h: Floats, force: Floats, more: Floats, more_force: Floats) -> tuple[Floats, Floats]:

@@ -9,7 +9,6 @@ import inspect
 import os
 import re
 import shutil
-import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -19,6 +18,10 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
+from numba._dispatcher import compute_fingerprint
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.types import FunctionType as FunctionPointer
+from numba.core.types import unliteral
 
 from roughmdr.numerics.compiling import let_collector_rest
 from roughmdr.numerics.fingerprint import COMPILED, fingerprint
@@ -28,10 +31,6 @@ let_collector_rest()
 _config: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-
-_CONFIG = threading.Lock()
-"""For the setting of numba's folder, which is that of the process: a function that is compiled by one thread while
-another one puts the setting back would be kept in the current folder."""
 
 _FOLDER = re.compile(r"[0-9a-f]{16}-[0-9.]+\w*")  # the name of a cache folder
 _UNUSED = 30.0 * 86400.0
@@ -76,13 +75,44 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     take a tenth of the time to compile: ``as_argument`` makes it where it is needed.
     """
     options = {"inline": "always" if inline else "never", "forceinline": small, "no_cfunc_wrapper": True}
-    return cast(_Function, _kept_on_disk(partial(numba.njit, nogil=True, **options), function))
+    decorator = partial(numba.njit, nogil=True, **options)
+    whole: Any = _kept_on_disk(decorator, function)
+    if not _config.DISABLE_JIT and not inline:
+        _let_compiled_code_call(whole, decorator)
+    return cast(_Function, whole)
+
+
+def _let_compiled_code_call(whole: Any, decorator: Callable[..., Any]) -> None:
+    """Give a function of numba a second form, for calls from compiled code, made when it is first needed.
+
+    It lacks the wrapper for calls from Python, which would take a tenth of the time to compile and which most kernels
+    never need.
+    """
+
+    @cache
+    def bare() -> Any:
+        return _kept_on_disk(partial(decorator, no_cpython_wrapper=True), _renamed(whole.py_func, "_bare"))
+
+    def call_template(types: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        return bare().get_call_template(tuple(map(unliteral, types)), keywords)  # not one more form for f(0)
+
+    whole.get_call_template = call_template
+    whole.get_overload = lambda signature: bare().get_overload(signature)
+
+
+def _renamed(function: FunctionType, suffix: str) -> FunctionType:
+    """Return a copy of a function under a name by which the cache on disk tells the two apart."""
+    copy = FunctionType(
+        function.__code__, function.__globals__, function.__name__, function.__defaults__, function.__closure__
+    )
+    copy.__module__, copy.__qualname__ = function.__module__, function.__qualname__ + suffix
+    return copy
 
 
 def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -> Any:
     """Return a function compiled by a decorator of numba, with the options that all have."""
     folder = _cache_folder()
-    with _CONFIG:
+    with global_compiler_lock:  # numba's folder is a setting of the process
         before = _config.CACHE_DIR
         if folder is not None:
             _config.CACHE_DIR = folder
@@ -95,7 +125,7 @@ def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -
 @cache
 def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[..., Any]:
     """Compile a plain function and the plain functions of roughmdr that it calls; ``small`` as in ``njit``."""
-    copy = rebuilt(function, {}, partial(compiled, small=small))
+    copy = rebuilt(function, {}, partial(compiled, small=True))
     copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
     return njit(copy, small=small)
 
@@ -131,29 +161,40 @@ def specialise(
     can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it. Numbers of
     the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
-    return njit(_with_law(loop, law), inline=inline, small=small)
-
-
-def _with_law(loop: Callable[..., Any], law: ModuleType) -> FunctionType:
-    """Return a copy of ``loop`` in which ``law`` stands for a module of kernels."""
     plain = cast(FunctionType, loop)
     copy = FunctionType(_with_literals(plain, law), {**plain.__globals__, "law": law}, loop.__name__)
-    copy.__qualname__ = f"{loop.__qualname__}_{law.__name__}"
-    copy.__module__ = loop.__module__
-    return copy
+    copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{law.__name__}"
+    return njit(copy, inline=inline, small=small)
 
 
-def as_argument(loop: Callable[..., Any], law: ModuleType, result: object, *arguments: object) -> Callable[..., Any]:
-    """Return a specialised copy of ``loop``, as ``specialise`` does, for compiled code to take as an argument.
+class _Addressed:
+    """A compiled function by its address; numba finds its type sooner than that of its own ``CompileResultWAP``."""
 
-    Code that takes it is compiled once for all laws. ``result`` and ``arguments`` are examples that give the types.
+    def __init__(self, compiled: Any) -> None:
+        self._numba_type_ = FunctionPointer(compiled.signature)
+        self._address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+        self._compiled = compiled  # kept for the code
+
+    def __wrapper_address__(self) -> int:
+        return int(self._address)
+
+
+_ARGUMENTS: dict[tuple[Any, bytes], Any] = {}
+"""What ``as_argument`` has returned, for a function and the types of its arguments."""
+
+
+def as_argument(function: Callable[..., Any], *arguments: object) -> Callable[..., Any]:
+    """Return a compiled function for compiled code to take as an argument; ``arguments`` are examples of its own.
+
+    Code that takes it is compiled once for all functions of the same types, and does not hold their machine code.
     """
-    typeof: Callable[[object], Any] = numba.typeof
-    return _as_argument(loop, law, typeof(result)(*map(typeof, arguments)))
-
-
-@cache
-def _as_argument(loop: Callable[..., Any], law: ModuleType, signature: Any) -> Callable[..., Any]:
-    """Return the copy for a signature of numba."""
-    plain = _with_law(loop, law)
-    return plain if _config.DISABLE_JIT else cast(FunctionType, _kept_on_disk(partial(numba.cfunc, signature), plain))
+    if _config.DISABLE_JIT:
+        return function
+    key = function, compute_fingerprint(cast(Any, arguments))  # their types, sooner found than by ``typeof``
+    if key not in _ARGUMENTS:
+        plain = cast(Any, function).py_func
+        called = _kept_on_disk(partial(numba.njit, no_cpython_wrapper=True), _renamed(plain, "_argument"))
+        types = tuple(map(cast(Any, numba.typeof), arguments))
+        called.compile(types)
+        _ARGUMENTS[key] = _Addressed(called.overloads[types])
+    return cast(Callable[..., Any], _ARGUMENTS[key])

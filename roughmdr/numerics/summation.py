@@ -6,8 +6,6 @@ By halves, because the compiler may not reorder a running sum and so cannot make
 
 import math
 
-import numpy as np
-
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -30,14 +28,8 @@ def sum_by_halves(terms: Floats, count: int, size: int) -> float:
 
 
 @njit
-def block_sum(terms: Floats, count: int) -> float:
-    """Return the sum of the first ``count`` terms, by halves over the whole block; the terms are overwritten."""
-    return sum_by_halves(terms, count, BLOCK)
-
-
-@njit
 def block_minimum(terms: Floats, count: int) -> float:
-    """Return the least of the first ``count`` terms, by halves like ``block_sum``; the terms are overwritten."""
+    """Return the least of the first ``count`` terms, by halves like ``sum_by_halves``; the terms are overwritten."""
     for i in range(count, BLOCK):
         terms[i] = math.inf
     half = BLOCK // 2
@@ -49,21 +41,17 @@ def block_minimum(terms: Floats, count: int) -> float:
 
 
 @njit
-def accumulate(total: Floats, compensation: Floats, step: int, term: float) -> None:
-    """Add ``term`` to total[step], and the rounding error of that to compensation[step]."""
-    before = total[step]
-    after = before + term
-    if abs(before) >= abs(term):
-        compensation[step] += (before - after) + term
-    else:
-        compensation[step] += (term - after) + before
-    total[step] = after
+def accumulate(total: float, compensation: float, term: float) -> tuple[float, float]:
+    """Return ``total`` with ``term`` added, and ``compensation`` with the rounding error of that."""
+    after = total + term
+    error = (total - after) + term if abs(total) >= abs(term) else (term - after) + total
+    return after, compensation + error
 
 
 @njit
 def cumulative_sum(terms: Floats) -> None:
     """Replace each term by the sum of itself and all before it."""
-    total, compensation = np.zeros(1), np.zeros(1)
+    total, compensation = 0.0, 0.0
     for i in range(terms.size):
-        accumulate(total, compensation, 0, terms[i])
-        terms[i] = total[0] + compensation[0]
+        total, compensation = accumulate(total, compensation, terms[i])
+        terms[i] = total + compensation

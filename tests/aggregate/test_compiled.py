@@ -42,7 +42,8 @@ pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is com
 
 
 def names(found: list[list[str]]) -> set[str]:
-    return {name for name, _ in found}
+    """The functions, in whichever form: called from Python, from compiled code, or by address."""
+    return {name.removesuffix("_bare").removesuffix("_argument") for name, _ in found}
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +70,16 @@ def test_another_variable_without_energy_compiles_nothing(cold: list[tuple[list[
 def test_no_function_is_compiled_twice(cold: list[tuple[list[list[str]], list[float]]]) -> None:
     found = [tuple(each) for part, _ in cold for each in part if each[0].startswith("roughmdr.")]
     assert len(found) == len(set(found)) > 10
+    assert len({name for name, _ in found}) == len(found), "nor for other types"
+
+
+def test_only_what_python_calls_gets_the_wrapper_for_that(cold: list[tuple[list[list[str]], list[float]]]) -> None:
+    ours = {name for name, _ in cold[0][0] if name.startswith("roughmdr.")}
+    called = {name for name in ours if not name.endswith(("_bare", "_argument"))}
+    assert called == {
+        "roughmdr.aggregate.loop._loop_jkr_paraboloid",
+        "roughmdr.aggregate.detachment._fill_jkr_paraboloid",
+    }
 
 
 def test_the_force_is_the_same_with_energies(cold: list[tuple[list[list[str]], list[float]]]) -> None:

@@ -9,7 +9,7 @@ from types import FunctionType, ModuleType
 import numba
 import pytest
 
-from roughmdr.numerics.jit import njit, specialise
+from roughmdr.numerics.jit import as_argument, njit, specialise
 from roughmdr.numerics.vector_math import expm1
 
 
@@ -64,6 +64,34 @@ def test_a_branch_that_a_law_never_takes_needs_no_kernel() -> None:
     adhesive = _filled("with_jump", _double, 0.0)
     adhesive.adhesive, adhesive.jump = True, _square
     assert specialise(_loop, adhesive)(1.5, 3) == 9.0 - 3.0 * 1.5**2
+
+
+@njit
+def _twice(kernel: Callable[[float], float], x: float) -> float:
+    return kernel(kernel(x))
+
+
+def _overloads(function: object) -> list[object]:
+    """The types for which a function is compiled in the form that Python calls."""
+    return list(getattr(function, "overloads", ()))
+
+
+@pytest.mark.parametrize("x", [0.7, -3.25e-9, 4.5e12])
+def test_code_that_takes_functions_is_compiled_once_for_all(x: float) -> None:
+    doubled, squared = as_argument(_double, x), as_argument(_square, x)
+    assert _twice(doubled, x) == 4.0 * x
+    before = len(_overloads(_twice))
+    assert _twice(squared, x) == (x * x) * (x * x)
+    assert len(_overloads(_twice)) == before
+    assert as_argument(_double, 2.0 * x) is doubled
+
+
+def test_a_function_is_compiled_for_python_only_if_that_calls_it() -> None:
+    kernel = njit(FunctionType(_double.__code__, globals(), "kernel"))
+    assert specialise(_loop, _filled("of_a_kernel", kernel, 0.25))(1.5, 2) == 6.5
+    assert not _overloads(kernel)
+    assert kernel(1.5) == 3.0
+    assert len(_overloads(kernel)) == (0 if numba.config.DISABLE_JIT else 1)  # type: ignore[attr-defined]
 
 
 def test_threads_that_compile_at_once_keep_the_folder_of_the_cache(

@@ -1,5 +1,7 @@
 """Parameters of contacts in closed form: one number per asperity, passed to the kernels unchanged."""
 
+from functools import partial
+
 from roughmdr.kernels.interface import Columns, Material, law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -11,7 +13,7 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
     return columns.params[start:stop]
 
 
-@njit
+@partial(njit, inline=True)
 def params_of(params: Floats, i: int) -> float:
     """Return the parameter of one asperity."""
     return float(params[i])
@@ -24,12 +26,6 @@ def heterogeneous(params: Floats) -> bool:
     for i in range(params.size):
         differing += params[i] != params[0]
     return differing > 0
-
-
-@njit
-def alike(params: Floats) -> bool:
-    """Return False, as ``heterogeneous`` of shapes of which no parameter tells two apart."""
-    return False
 
 
 def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:
