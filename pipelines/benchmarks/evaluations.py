@@ -1,6 +1,7 @@
 """How often the integrals over a cohesive zone are evaluated; to be called where nothing is compiled."""
 
 import cProfile
+import math
 
 import numpy as np
 
@@ -33,7 +34,9 @@ def evaluations(name: str, strength: float, alike: int = 1) -> tuple[int, int, i
     kernels = choose(name, Adhesion(WORK, "dugdale", strength), params)
     with np.errstate(all="ignore"):
         with cProfile.Profile() as preparing:
-            row = kernels.prepare(Material(MODULUS, WORK, strength), Columns(width, rise, params), 0, alike, 0.0)[0]
+            row = kernels.prepare(
+                Material(MODULUS, WORK, strength), Columns(width, rise, params), 0, alike, 0.0, math.inf
+            )[0]
         with cProfile.Profile() as solving:
             for x in np.geomspace(0.1, 1e3, CONTACTS).tolist():
                 kernels.contact_at(x, float(row[COUNT]), row)

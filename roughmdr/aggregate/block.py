@@ -84,7 +84,7 @@ class SumKernels(Kernels):
 
 def prepare_of(kernels: Kernels, columns: Columns, material: Material) -> Callable[..., Any]:
     """Return ``prepare`` of the kernels as an argument: a loop calls it once a block and need not hold its code."""
-    return as_argument(kernels.prepare, material, columns, 0, 0, 0.0)
+    return as_argument(kernels.prepare, material, columns, 0, 0, 0.0, 0.0)
 
 
 law = SumKernels("law")

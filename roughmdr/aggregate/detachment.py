@@ -33,7 +33,7 @@ def _fill(columns: Columns, material: Material, prepare: Callable[..., Any], fou
     depth, radius = found.depth, found.radius
     for start in range(0, depth.size, BLOCK):
         stop = min(start + BLOCK, depth.size)
-        params = prepare(material, columns, start, stop, 0.0)
+        params = prepare(material, columns, start, stop, 0.0, 0.0)
         for i in range(start, stop):
             own = law.params_of(params, i - start)
             (depth[i], _), size, _, _ = law.scales(

@@ -126,13 +126,13 @@ def _loop(
     scales, contacts, max_scales = np.empty((SCALES, BLOCK)), np.empty((CONTACT_ROWS, BLOCK)), np.empty(SCALES)
     total, compensation, wanted = totals.total, totals.compensation, totals.wanted
     if law.shared:
-        params = prepare(material, columns, 0, height.size, 0.0)
+        params = prepare(material, columns, 0, height.size, 0.0, height[0] - separation[turn])
     for start in range(0, height.size, BLOCK):
         z = height[start : min(start + BLOCK, height.size)]
         if z[0] < closest:
             break
         if not law.shared:
-            params = prepare(material, columns, start, start + z.size, 0.0)
+            params = prepare(material, columns, start, start + z.size, 0.0, z[0] - separation[turn])
         block = Block(z, params, scales, max_scales, contacts)
         if not law.natural_scales(block, columns, start, material):
             visits = _NOT_REPRESENTABLE

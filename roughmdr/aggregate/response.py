@@ -91,7 +91,7 @@ def keep(
     ``release`` [m] is the separation above which each is out of contact.
     """
     groups, two = (height.size + GROUP - 1) // GROUP, min(height.size, 2)
-    params = prepare(material, columns, 0, two, 0.0)
+    params = prepare(material, columns, 0, two, 0.0, 0.0)
     size = height.size if params.shape[0] == two else 1
     return Asperities(
         height,
@@ -116,7 +116,7 @@ def block_at(asperities: Asperities, number: int) -> Block:
     shared = asperities.params.shape[0] < asperities.height.size
     if number >= asperities.ready[0] and not (shared and number > 0):
         begin, end = (0, 1) if shared else (start, stop)
-        found = law.prepare(asperities.material, asperities.columns, begin, end, 0.0).reshape(-1)
+        found = law.prepare(asperities.material, asperities.columns, begin, end, 0.0, math.inf).reshape(-1)
         kept = asperities.params[begin:end].reshape(-1)  # one by one, here and below: slices take seconds to compile
         for i in range(kept.size):
             kept[i] = found[i]

@@ -204,4 +204,4 @@ def prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adh
     """Return the params of one contact under a control."""
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
-    return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control), 0)
+    return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control, math.inf), 0)

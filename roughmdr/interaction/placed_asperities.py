@@ -55,13 +55,13 @@ class Placed:
 
     def asperities(self, count: int) -> Asperities:
         """Return the ``count`` highest."""
-        params = self.law.prepare(self._material, self._columns, 0, max(count, 1), 0.0)
+        params = self.law.prepare(self._material, self._columns, 0, max(count, 1), 0.0, math.inf)
         return Asperities(self.height[:count], self.depth[:count], self.size[:count], params)
 
 
 def _natural_scales(kernels: Kernels, columns: Columns, material: Material, count: int) -> tuple[Floats, Floats]:
     """Return natural depths and radii [m]; OutOfRange where one is not representable."""
-    params = kernels.prepare(material, columns, 0, count, 0.0)
+    params = kernels.prepare(material, columns, 0, count, 0.0, 0.0)
     found = np.empty((2, count))
     for i in range(count):
         own = kernels.params_of(params, i)

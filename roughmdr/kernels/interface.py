@@ -65,9 +65,9 @@ class Kernels(ModuleType):
     in_sums: Self | None = None
     """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
 
-    prepare: Callable[[Material, Columns, int, int, float], Any]
-    """(material, columns, start, stop, control) -> params of the asperities from start to stop; control is 0 for fixed
-    grips, 1 for dead load."""
+    prepare: Callable[[Material, Columns, int, int, float, float], Any]
+    """(material, columns, start, stop, control, deepest) -> params of the asperities from start to stop; control is 0
+    for fixed grips, 1 for dead load; no state beyond the indentation ``deepest`` [m] will be asked for."""
     params_of: Callable[..., Any]
     """(params, i) -> those of asperity i."""
     heterogeneous: Callable[[Any], bool]

@@ -40,7 +40,7 @@ def one(shape: Shape) -> tuple[CoupledKernels, Asperities]:
         np.array([width]), np.array([rise]), np.atleast_1d(params)[None] if np.ndim(params) else np.array([params])
     )
     law = coupled_kernels(choose(shape.name, Adhesion(), columns.params))
-    made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, 1, 0.0)
+    made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, 1, 0.0, math.inf)
     (depth, _), size, _, _ = law.scales(1.0, 0.0, width, rise, law.params_of(made, 0))
     return law, Asperities(np.zeros(1), np.array([depth]), np.array([size]), made)
 

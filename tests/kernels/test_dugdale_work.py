@@ -1,5 +1,7 @@
 """How contacts of finite range are found: by how many evaluations of the integrals, and to the state of a search."""
 
+import math
+
 import numba
 import numpy as np
 import pytest
@@ -43,9 +45,11 @@ def test_both_edges_together_are_those_of_the_search(name: str, strength: float)
     width[2] *= 1.3
     kernels = choose(name, Adhesion(WORK, "dugdale", strength), params)
     material = Material(MODULUS, WORK, strength)
-    rows = kernels.prepare(material, Columns(width, rise, params), 0, 3, 0.0)
+    rows = kernels.prepare(material, Columns(width, rise, params), 0, 3, 0.0, math.inf)
     np.testing.assert_array_equal(rows[1], rows[0])
-    np.testing.assert_array_equal(rows[2], kernels.prepare(material, Columns(width, rise, params), 2, 3, 0.0)[0])
+    np.testing.assert_array_equal(
+        rows[2], kernels.prepare(material, Columns(width, rise, params), 2, 3, 0.0, math.inf)[0]
+    )
     search = vars(kernels)["state_by_search"]
     for row in rows[1:]:
         for x in [*np.geomspace(1e-2, 1e3, 25), *np.geomspace(2e4, 1e6, 4)]:

@@ -1,5 +1,6 @@
 """Two steps from the initial guess against a search on the branch: error, order, and for how many they suffice."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ def _prepared(name: str, length: float) -> tuple[Any, Any]:
     adhesion = Adhesion(W * length / 1e-6)
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
     law = choose(name, adhesion, columns.params)
-    return law, law.prepare(Material(E, adhesion.work, adhesion.strength), columns, 0, 1, 0.0)[0]
+    return law, law.prepare(Material(E, adhesion.work, adhesion.strength), columns, 0, 1, 0.0, math.inf)[0]
 
 
 @pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0])

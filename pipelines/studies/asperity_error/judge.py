@@ -59,7 +59,7 @@ class _Subject:
         self.shape, self.effective_modulus, self.adhesion = shape, effective_modulus, Adhesion(work)
         self.columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
         self.law = choose(shape.name, self.adhesion, self.columns.params)
-        prepared = self.law.prepare(Material(effective_modulus, work, math.inf), self.columns, 0, 1, 0.0)
+        prepared = self.law.prepare(Material(effective_modulus, work, math.inf), self.columns, 0, 1, 0.0, math.inf)
         self.params = self.law.params_of(prepared, 0)
         self.solvable = not (self.law.iterative and self.params[COUNT] == 0.0)
         if self.solvable:

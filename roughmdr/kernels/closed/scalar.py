@@ -8,7 +8,7 @@ from roughmdr.numerics.jit import njit
 
 
 @njit
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return the parameters of the asperities from start to stop."""
     return columns.params[start:stop]
 

@@ -39,14 +39,14 @@ def guess_both(x: float, params: Floats) -> tuple[float, float]:
     )
 
 
-def fill_nodes(rows: Floats) -> None:
-    """Fill in the nodes of all rows."""
+def fill_nodes(last: int, rows: Floats) -> None:
+    """Fill in the nodes up to ``last`` of all rows."""
     for i in range(rows.shape[0]):
         if rows[i, COUNT] > 0.0:
-            law.fill_nodes_of(rows[i])
+            law.fill_nodes_of(last, rows[i])
 
 
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return a row for each of the asperities from start to stop; those like the one before are not computed again."""
     rows = np.zeros((stop - start, 2 - law.first_node))
     width, rise, params = columns
@@ -58,17 +58,17 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
         row[0] = params[i]
         law.fill_params(material, width[i], rise[i], control, row)
         if row[COUNT] > 0.0:
-            law.fill_nodes_of(row)
+            law.fill_nodes_of(law.node_beyond(deepest / rise[i], row), row)
     return rows
 
 
-def fill_nodes_of(params: Floats) -> None:
-    """Fill in the nodes of one row, each from the one before."""
+def fill_nodes_of(last: int, params: Floats) -> None:
+    """Fill in the nodes up to ``last`` of one row, each from the one before."""
     first = law.fill_first_node(params)
     at = law.first_node
     m, slope = law.zone_at(params[LAST], params)
     params[at + 2], params[at + 3] = m, slope * params[at + 1]
-    for node in range(1, (law.octaves << law.split) + 1):
+    for node in range(1, last + 1):
         at, y = law.first_node + 4 * node, law.y_of_node(node)
         x, dx = law.x_of_y(y, params)
         s = law.extrapolate_node(node, law.step_to(node, params), params) if node > 1 else first

@@ -43,7 +43,7 @@ def _opening(s: float, params: Floats) -> tuple[float, float, float]:
 
 
 @njit
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return a row for each of the punches from start to stop; COUNT = 0 where the range is so long that contact is
     lost in its roundings.
     """

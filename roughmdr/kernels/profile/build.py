@@ -34,34 +34,40 @@ def fill_params(material: Material, width: float, rise: float, control: float, p
     law.find_branches(params)
 
 
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return a row for each of the asperities from start to stop."""
-    rows = np.zeros((stop - start, 2 - law.first_node))
+    rows, last = np.zeros((stop - start, 2 - law.first_node)), 0
     for i in range(stop - start):
         rows[i, 0] = columns.params[start + i]
         law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-    law.fill_nodes(rows)
+        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
+    law.fill_nodes(last, rows)
     return rows
 
 
-def prepare_tabled(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare_tabled(
+    material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float
+) -> Floats:
     """Return as ``prepare`` where the params of an asperity are a row themselves."""
     size = columns.params.shape[1]
-    rows = np.zeros((stop - start, size - law.first_node))
+    rows, last = np.zeros((stop - start, size - law.first_node)), 0
     for i in range(stop - start):
         rows[i, :size] = columns.params[start + i]
         law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-    law.fill_nodes(rows)
+        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
+    law.fill_nodes(last, rows)
     return rows
 
 
-def prepare_shared(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare_shared(
+    material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float
+) -> Floats:
     """Return the one row of asperities that are all alike."""
     size = columns.params.shape[1]
     rows = np.zeros((1, size - law.first_node))
     rows[0, :size] = columns.params[0]
     law.fill_params(material, columns.width[0], columns.rise[0], control, rows[0])
-    law.fill_nodes(rows)
+    law.fill_nodes(law.node_beyond(deepest / columns.rise[0], rows[0]), rows)
     return rows
 
 

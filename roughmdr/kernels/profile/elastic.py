@@ -13,12 +13,12 @@ from roughmdr.numerics.arguments import Floats
 _PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
 
 
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float) -> Floats:
+def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return the one row of all asperities."""
     rows = np.zeros((1, 2 - law.first_node))
     rows[0, 0] = columns.params[start]
     law.fill_params(material, columns.width[start], columns.rise[start], control, rows[0])
-    law.fill_nodes(rows)
+    law.fill_nodes(law.octaves << law.split, rows)
     return rows
 
 

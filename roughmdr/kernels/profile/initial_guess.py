@@ -20,6 +20,7 @@ _octave = compiled(binade_cell, small=True)
 _PER_DEPTH = 2.0**12  # without adhesion the octaves begin at its inverse of the depth
 _FINE = 4.0  # factor on the root in y: the larger, the more octaves next to the foot
 _MAX_ERROR = 1e-4  # of the distance to the foot: with a larger one a node is solved for by itself
+_BEYOND = 2  # nodes: one at the end of its part, one as a rounding can lead into the next
 _STEPS = 8  # of Newton's method before that
 _CORNER = 1e-6  # of the depth over the foot: a steeper foot is a corner, not a fold
 _BEND = 1e-4  # of the foot: so far from a fold the slope is linear
@@ -117,13 +118,22 @@ def fill_node(node: int, y: float, params: Floats) -> None:
     params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1]
 
 
-def fill_nodes(rows: Floats) -> None:
-    """Fill in the nodes of all rows, each node for all rows at a time, so that no row waits for another."""
+def node_beyond(indentation: float, params: Floats) -> int:
+    """The last node that a guess up to an indentation over rise can need."""
+    if params[COUNT] == 0.0:
+        return 0
+    above_foot = max(indentation + (params[DEPTH] if params[TENSION] > 0.0 else 0.0), 0.0)
+    y = min(max(law.y_of_x(above_foot / params[DEPTH], params), 1.0), math.ldexp(1.0, law.octaves))
+    return int(min(_octave(y, law.split)[0] + _BEYOND, law.octaves << law.split))
+
+
+def fill_nodes(last: int, rows: Floats) -> None:
+    """Fill in the nodes up to ``last`` of all rows, each for all at a time, so that no row waits for another."""
     count = rows.shape[0]
     t, error, per = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
         t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
-    for node in range(1, (law.octaves << law.split) + 1):
+    for node in range(1, last + 1):
         y = law.y_of_node(node)
         if node > 1:
             step = law.step_to(node, rows[0])

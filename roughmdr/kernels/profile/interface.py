@@ -65,7 +65,8 @@ class ProfileKernels(Kernels):
     step_to: Callable[[int, Floats], float]
     fill_first_node: Callable[[Floats], float]
     fill_node: Callable[..., None]
-    fill_nodes: Callable[[Floats], None]
+    node_beyond: Callable[[float, Floats], int]
+    fill_nodes: Callable[[int, Floats], None]
     fill_params: Callable[..., None]
 
     two_steps: Callable[..., tuple[float, float, float]]
@@ -97,7 +98,7 @@ class ProfileKernels(Kernels):
     guess_both: Callable[..., tuple[float, float]]
     edges_at: Callable[..., tuple[bool, float, float]]
     state_by_search: Kernel
-    fill_nodes_of: Callable[[Floats], None]
+    fill_nodes_of: Callable[[int, Floats], None]
     zone_at: Callable[..., tuple[float, float]]
     next_trial: Kernel
     slope_root: Kernel
