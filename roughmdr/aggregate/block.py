@@ -15,9 +15,9 @@ DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE
 SCALES = 6
 # Rows of its contacts. Radius, force and stiffness are filled where the kernels find them together with the state.
 STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
-"""STATE_ERROR is filled where the kernels approach the state by steps. IN_CONTACT is 1 in contact, else 0, with several
-branches the number of the branch. BEFORE is that at the step before. TERM has room for x until the contacts are found,
-then for the terms of a sum.
+"""STATE_ERROR is filled where the kernels approach the state by steps; then it has room for the terms of a sum.
+IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is that at the step before.
+TERM has room for x until the contacts are found, then for the terms of a sum.
 """
 CONTACT_ROWS = 8
 
@@ -70,8 +70,6 @@ class SumKernels(Kernels):
     force_at: Callable[[Floats, Any, int], float]
     stiffness_at: Callable[[Floats, Any, int], float]
     total_error: Callable[..., float]
-    bounded_stiffness: Callable[[Floats, Any, int], float]
-    """(contacts, params, i) -> |k| of one contact as the error bound takes it."""
     error_bound: Callable[..., float]
     jumps: Callable[..., float]
     add_totals: Callable[..., None]

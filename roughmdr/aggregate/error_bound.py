@@ -17,7 +17,6 @@ u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the
 """
 
 import math
-from typing import Any
 
 from roughmdr.aggregate.block import (
     DEPTH_SCALE,
@@ -27,13 +26,13 @@ from roughmdr.aggregate.block import (
     PER_DEPTH,
     RADIUS,
     STATE,
+    STATE_ERROR,
     STIFFNESS,
     STIFFNESS_SCALE,
     TERM,
     Block,
     law,
 )
-from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.summation import BLOCK, block_minimum, sum_by_halves
@@ -56,15 +55,6 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
 def no_terms(t: float, params: object) -> tuple[float, float]:
     """Stand for ``term_sizes`` where no terms cancel."""
     return 0.0, 0.0
-
-
-def bounded_stiffness(contacts: Floats, params: Any, i: int) -> float:
-    """Return |k| of one contact over its natural scale; next to the fold, where k is infinite, a bound of |k| eta."""
-    k = abs(contacts[STIFFNESS, i])
-    if law.adhesive:
-        stretch, pull = law.adhesion_terms(contacts[RADIUS, i], law.params_of(params, i))
-        return float(min(k, pull / stretch / ROUNDING))
-    return float(k)
 
 
 def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
@@ -100,25 +90,24 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
     """Return the bound where P and k were found with the state: one by one, whichever way k goes along the branch."""
     contacts, params = block.contacts, block.params
-    scales, terms = block.scales, contacts[TERM]
-    for i in range(count):
-        k = law.bounded_stiffness(contacts, params, i)
-        terms[i] = scales[STIFFNESS_SCALE, i] * k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
-    stiffness = sum_by_halves(terms, count, BLOCK)
+    scales, terms, stiffness = block.scales, contacts[TERM], contacts[STATE_ERROR]
     for i in range(count):
         own = law.params_of(params, i)
         of_force, of_indentation = law.relative_errors(own)
-        k, force = law.bounded_stiffness(contacts, params, i), abs(contacts[FORCE, i])
+        k, force = abs(contacts[STIFFNESS, i]), abs(contacts[FORCE, i])
         each = of_force * force
         if law.adhesive:
             stretch, pull = law.adhesion_terms(contacts[RADIUS, i], own)
+            k = min(k, pull / stretch / ROUNDING)  # next to the fold, where k is infinite, a bound of |k| eta
             each = of_force * (force + 2.0 * pull) + 2.0 * _NEXT_TO_A_FOLD * of_indentation * k * stretch
         if law.terms_cancel:
             g, size = law.term_sizes(contacts[STATE, i], own)
             each += of_force * size + _NEXT_TO_A_FOLD * of_indentation * k * g
         terms[i] = scales[FORCE_SCALE, i] * each if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+        stiffness[i] = scales[STIFFNESS_SCALE, i] * k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
     error = sum_by_halves(terms, count, BLOCK)
+    sum_of_stiffness = sum_by_halves(stiffness, count, BLOCK)
     for i in range(count):
         of_indentation = law.relative_errors(law.params_of(params, i))[1]
         terms[i] = -of_indentation if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
-    return law.total_error(count, block, h, stiffness, error, -block_minimum(terms, count))
+    return law.total_error(count, block, h, sum_of_stiffness, error, -block_minimum(terms, count))

@@ -40,7 +40,7 @@ from roughmdr.aggregate.contacts import (
     stiffness_of_state,
     update_contact,
 )
-from roughmdr.aggregate.error_bound import bound_block, bound_each, bounded_stiffness, no_terms, total_error
+from roughmdr.aggregate.error_bound import bound_block, bound_each, no_terms, total_error
 from roughmdr.aggregate.scales import natural_scales
 from roughmdr.aggregate.totals import (
     CONDUCTANCE,
@@ -64,7 +64,7 @@ from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 _NOT_REPRESENTABLE = -1
 _ENERGIES = {ENERGY, DISSIPATED}
 # Inlined by LLVM: what numba inlines of them is no vector code.
-_OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at", "bounded_stiffness"}
+_OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at"}
 
 
 class Steps(NamedTuple):
@@ -192,7 +192,6 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "force_at": found_force if together else force_of_state,
         "stiffness_at": found_stiffness if together else stiffness_of_state,
         "total_error": total_error,
-        "bounded_stiffness": bounded_stiffness,
         "error_bound": bound_each if together else bound_block,
         "jumps": jumps_between_branches if kernels.branched else jumps,
         "add_totals": add_totals,
