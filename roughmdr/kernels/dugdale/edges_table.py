@@ -49,16 +49,15 @@ def fill_nodes(last: int, rows: Floats) -> None:
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return a row for each of the asperities from start to stop; those like the one before are not computed again."""
     rows = np.zeros((stop - start, 2 - law.first_node))
-    width, rise, params = columns
     for i in range(start, stop):
         row = rows[i - start]
-        if i > start and width[i] == width[i - 1] and rise[i] == rise[i - 1] and params[i] == params[i - 1]:
+        if i > start and law.repeated(columns, i):
             row[:] = rows[i - start - 1]
             continue
-        row[0] = params[i]
-        law.fill_params(material, width[i], rise[i], control, row)
+        row[0] = columns.params[i]
+        law.fill_params(material, columns.width[i], columns.rise[i], control, row)
         if row[COUNT] > 0.0:
-            law.fill_nodes_of(law.node_beyond(deepest / rise[i], row), row)
+            law.fill_nodes_of(law.node_beyond(deepest / columns.rise[i], row), row)
     return rows
 
 

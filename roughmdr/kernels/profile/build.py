@@ -34,10 +34,20 @@ def fill_params(material: Material, width: float, rise: float, control: float, p
     law.find_branches(params)
 
 
+def repeated(columns: Columns, i: int) -> bool:
+    """Return whether asperity i > 0 is like the one before."""
+    width, rise, params = columns
+    return bool(width[i] == width[i - 1] and rise[i] == rise[i - 1] and params[i] == params[i - 1])
+
+
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return a row for each of the asperities from start to stop."""
     rows, last = np.zeros((stop - start, 2 - law.first_node)), 0
     for i in range(stop - start):
+        if i > 0 and law.repeated(columns, start + i):
+            for j in range(rows.shape[1]):
+                rows[i, j] = rows[i - 1, j]
+            continue
         rows[i, 0] = columns.params[start + i]
         law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
         last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))

@@ -5,7 +5,7 @@ In units of the shape's width and rise; ``params`` is a row as ``layout`` descri
 
 from collections.abc import Callable
 
-from roughmdr.kernels.interface import Kernel, Kernels
+from roughmdr.kernels.interface import Columns, Kernel, Kernels
 from roughmdr.numerics.arguments import Floats
 
 
@@ -65,6 +65,7 @@ class ProfileKernels(Kernels):
     step_to: Callable[[int, Floats], float]
     fill_first_node: Callable[[Floats], float]
     fill_node: Callable[..., None]
+    repeated: Callable[[Columns, int], bool]
     node_beyond: Callable[[float, Floats], int]
     fill_nodes: Callable[[int, Floats], None]
     fill_params: Callable[..., None]
