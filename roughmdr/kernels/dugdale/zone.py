@@ -30,6 +30,7 @@ _UNBOUNDED = 1e100  # stands for infinity
 _FEW_NODES, _FEW_WEIGHTS = unit_gauss(8)
 _FEW_DIGITS = 1e-6  # of g(a) theta: a smaller difference to it has no ten digits
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
+_PIECE_NODES, _PIECE_WEIGHTS = unit_gauss(12)  # for a piece of a table, on which g is a polynomial in q
 
 
 def widest_zone(a: float) -> float:
@@ -45,26 +46,31 @@ def t_along(q: float, base: float, params: Floats) -> float:
 
 
 def zone_panel(
-    low: float, high: float, base: float, g: float, c: float, m: float, thin: bool, params: Floats
+    panel: tuple[float, float, float, bool], g: float, c: float, m: float, thin: bool, params: Floats
 ) -> tuple[float, float, float]:
-    """The integrals from low to high <= c, smooth from ``base`` on; m = sqrt(c^2 - low^2). By parts where ``thin``."""
+    """The integrals over a panel: from low to high <= c, smooth from a base on, and whether it is a piece of a table.
+
+    m = sqrt(c^2 - low^2). By parts where ``thin``.
+    """
+    low, high, base, piece = panel
+    nodes, weights = (_PIECE_NODES, _PIECE_WEIGHTS) if piece else (_NODES, _WEIGHTS)
     reach = math.sqrt((c - base) * (c + base))
     begin = math.atan2(m, math.sqrt((low - base) * (low + base)))
     end = math.atan2(math.sqrt((c - high) * (c + high)), math.sqrt((high - base) * (high + base)))
     j, k, l = 0.0, 0.0, 0.0
-    for i in range(_NODES.size):
-        psi = end + (begin - end) * _NODES[i]
+    for i in range(nodes.size):
+        psi = end + (begin - end) * nodes[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
         _, da, value, dg = law.mdr_profile(law.t_along(q, base, params), params)
-        push = _WEIGHTS[i] * q * dg / da
+        push = weights[i] * q * dg / da
         k += push
         if thin:
             angle = math.atan2(below, x)
             j += push * angle * below / x
             l += 0.5 * push * (c * c * angle - x * below) * below / x
         else:
-            term = _WEIGHTS[i] * (value - g) * q / x
+            term = weights[i] * (value - g) * q / x
             j += term
             l += term * below * below
     return (begin - end) * j, (begin - end) * k, (begin - end) * l
@@ -85,21 +91,22 @@ def zone_quadrature(a: float, g: float, m: float, params: Floats) -> tuple[float
     count = law.breakpoint_count(params)
     for i in range(count + 1):
         begin, after = law.breakpoint(i, params) if i < count else (math.inf, 0.0)
+        piece = law.of_pieces and i < count
         if begin > low:
             high = min(begin, c)
             while base > 0.0 and _PANEL_RATIO * low < high:  # so that g is as smooth on each panel
-                parts = law.zone_panel(low, _PANEL_RATIO * low, base, g, c, beside, thin, params)
+                parts = law.zone_panel((low, _PANEL_RATIO * low, base, piece), g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _PANEL_RATIO * low
                 beside = math.sqrt((c - low) * (c + low))
             if base == 0.0 and not law.flat and high == c:
                 middle = law.rise_begins(low, c, params)
                 if middle > low:
-                    parts = law.zone_panel(low, middle, base, g, c, beside, thin, params)
+                    parts = law.zone_panel((low, middle, base, piece), g, c, beside, thin, params)
                     j, k, l = j + parts[0], k + parts[1], l + parts[2]
                     low, beside = middle, math.sqrt((c - middle) * (c + middle))
             if beside > 0.0 and (base > 0.0 or not law.flat):
-                parts = law.zone_panel(low, high, base, g, c, beside, thin, params)
+                parts = law.zone_panel((low, high, base, piece), g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
             if begin >= c:
                 break

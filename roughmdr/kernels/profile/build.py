@@ -193,6 +193,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         "stride": 2.0 if shape is Paraboloid else math.sqrt(2.0),
         "octaves": octaves,
         "shared": shared,
+        "of_pieces": tabled or shape.shared,
         "split": split,
         "first_node": first_node(octaves, split, node_size),
         "node_size": node_size,

@@ -77,6 +77,8 @@ class ProfileKernels(Kernels):
     """By which factor the search for branches under adhesion with a range goes on."""
     widest_zone: Kernel
     t_along: Kernel
+    of_pieces: bool
+    """Whether the profile has pieces, on each of which g is a polynomial in sqrt(x^2 - y^2), y a breakpoint."""
     zone_panel: Callable[..., tuple[float, float, float]]
     rise_begins: Kernel
     zone_quadrature: Callable[..., tuple[float, float, float]]

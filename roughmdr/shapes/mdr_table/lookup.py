@@ -105,8 +105,7 @@ def _breakpoint_count(params: Params) -> int:
 
 
 def _breakpoint(index: int, params: Params) -> tuple[float, float]:
-    begin = params[1 + PIECE * (index + 1)]
-    return begin, begin
+    return params[1 + PIECE * (index + 1)], 0.0  # beyond it too g is smooth in x
 
 
 def _roundings(params: Params) -> float:
