@@ -102,6 +102,31 @@ def solve_iterative(
     law.evaluate(count, block)
 
 
+def solve_near(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
+) -> None:
+    """Do as ``solve_closed`` from the values at good guesses, as vector code, and by a search for some."""
+    params, contacts = block.params, block.contacts
+    state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
+    error, x = contacts[STATE_ERROR], contacts[TERM]
+    law.place(count, block, h, adhesion_range, memory, begin, end)
+    for i in range(count):
+        state[i] = law.y_of_x(x[i], law.params_of(params, i))
+    for i in range(count):
+        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+    for i in range(count):
+        state[i], a[i], force[i], stiffness[i], error[i] = law.contact_near(state[i], x[i], law.params_of(params, i))
+    unknown = 0
+    for i in range(count):
+        unknown += law.converged(error[i], 1.0, law.params_of(params, i)) < 1
+    if unknown > 0:
+        for i in range(count):
+            own = law.params_of(params, i)
+            if not law.converged(error[i], 1.0, own):
+                state[i] = law.state_on_branch(x[i], 1.0, own)
+                a[i], force[i], stiffness[i] = law.radius_force_stiffness(state[i], own)
+
+
 def solve_each(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:

@@ -36,6 +36,7 @@ from roughmdr.aggregate.contacts import (
     solve_closed,
     solve_each,
     solve_iterative,
+    solve_near,
     solve_refined,
     stiffness_of_state,
     update_contact,
@@ -178,7 +179,7 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together
     whole = SumKernels(name)
     solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
-    solve = solve_each if kernels.one_by_one else solve
+    solve = solve_each if kernels.one_by_one else solve_near if kernels.found_near else solve
     vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name})
     whole.energetic, whole.found_together = energetic, together
     parts: dict[str, Callable[..., object]] = {

@@ -57,6 +57,8 @@ class Kernels(ModuleType):
     """Whether it is certain that k grows with the indentation along a branch."""
     one_by_one = False
     """Whether contacts are solved one at a time, not all of a block step by step."""
+    found_near = False
+    """Whether guesses of the state are so good that a contact is found from its values at the guess."""
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
     alike = False
@@ -127,6 +129,9 @@ class Kernels(ModuleType):
     """(that state, x, params) -> the state after a fixed number of steps, a bound of its error, and d(state)/dx."""
     one_step: Callable[..., tuple[float, float, float]]
     """As ``approach``, after one step."""
+    contact_near: Callable[..., tuple[float, float, float, float, float]]
+    """(guess of the state, x, params) -> the state, what ``radius_force_stiffness`` returns, and a bound of their
+    relative errors; where ``found_near``."""
     converged: Callable[..., bool]
     """(error bound, branch, params) -> whether the state is that on this branch."""
     state_on_branch: Kernel

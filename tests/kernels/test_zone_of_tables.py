@@ -31,7 +31,7 @@ def kernels_of(shape: ProfileShape) -> tuple[ProfileKernels, Floats]:
 
 
 def by_quadrature(law: ProfileKernels, row: Floats, a: float, c: float) -> Floats:
-    """J, K and L, from knot to knot over angles that are packed where a piece begins, as g' begins there like a root."""
+    """J, K and L from knot to knot, over angles packed to where a piece begins: there g' begins like a root."""
     g = law.mdr_profile(a, row)[2]
 
     def term(z: float, kind: int, begin: float, end: float) -> float:
@@ -43,14 +43,11 @@ def by_quadrature(law: ProfileKernels, row: Floats, a: float, c: float) -> Float
 
     knots = [law.breakpoint(i, row)[0] for i in range(law.breakpoint_count(row))]
     angles = [math.asin(x / c) for x in (a, *(knot for knot in knots if a < knot < c), c)]
-    return np.array(
-        [
-            sum(
-                quad(term, 0.0, 1.0, (kind, *ends), epsabs=0.0, epsrel=1e-12, limit=400)[0] for ends in pairwise(angles)
-            )
-            for kind in range(3)
-        ]
-    )
+    found = np.zeros(3)
+    for kind in range(3):
+        for ends in pairwise(angles):
+            found[kind] += quad(term, 0.0, 1.0, (kind, *ends), epsabs=0.0, epsrel=1e-12, limit=400)[0]
+    return found
 
 
 @pytest.mark.parametrize("name", SHAPES)

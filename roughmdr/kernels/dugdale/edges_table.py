@@ -1,6 +1,6 @@
 """The initial guess for Newton's method on both edges: a table of both, as that of ``profile.initial_guess`` of one.
 
-Each node has s, y ds/dy, m and y dm/dy. Notation of ``both_edges``.
+Each node has s and m, each before its slope over the part of an octave that begins there. Notation of ``both_edges``.
 """
 
 import math
@@ -24,18 +24,17 @@ def guess_both(x: float, params: Floats) -> tuple[float, float]:
     y, last = law.y_of_x(x, params), law.octaves << law.split
     node, u = _cell(y, law.split)
     if node >= last:
-        at, beyond = law.first_node + 4 * last, math.log(y) - law.octaves * math.log(2.0)
+        at, beyond = law.first_node + 4 * last, float(1 << law.split) * (math.log(y) - law.octaves * math.log(2.0))
         return (
             params[at] * math.exp(min(beyond * params[at + 1] / params[at], _MOST_LOG)),
             params[at + 2] * math.exp(min(beyond * params[at + 3] / params[at + 2], _MOST_LOG)),
         )
     node = max(node, 0)
     at = law.first_node + 4 * node
-    parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
-    share, next_share = 1.0 / float(parts), 1.0 / float(parts + 1)
+    share = law.shortening(node + 1)
     return (
-        law.cubic(u, params[at], params[at + 1] * share, params[at + 4], params[at + 5] * next_share),
-        law.cubic(u, params[at + 2], params[at + 3] * share, params[at + 6], params[at + 7] * next_share),
+        law.cubic(u, params[at], params[at + 1], params[at + 4], params[at + 5] * share),
+        law.cubic(u, params[at + 2], params[at + 3], params[at + 6], params[at + 7] * share),
     )
 
 
@@ -72,10 +71,12 @@ def fill_nodes_of(last: int, params: Floats) -> None:
         x, dx = law.x_of_y(y, params)
         s = law.extrapolate_node(node, law.step_to(node, params), params) if node > 1 else first
         m_before = params[at - 2]
-        grown = min(params[at - 1] / m_before * math.log(y / law.y_of_node(node - 1)), _MOST_LOG)
+        growth = law.y_over_part(node - 1) * params[at - 1] / m_before
+        grown = min(growth * math.log(y / law.y_of_node(node - 1)), _MOST_LOG)
         found, s, m, s_slope, m_slope = law.both_edges(x, s, m_before * math.exp(grown), params)
         if found:
-            params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * dx, m, m_slope * dx
+            per_part = dx / law.y_over_part(node)
+            params[at], params[at + 1], params[at + 2], params[at + 3] = s, s_slope * per_part, m, m_slope * per_part
         else:
             law.fill_node(node, y, params)
             m, slope = law.zone_at(params[at], params)

@@ -4,6 +4,8 @@ Without adhesion the state is a function of x alone where width and rise say all
 Notation of ``layout``.
 """
 
+import math
+
 import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
@@ -36,6 +38,17 @@ def indentation_at(t: float, params: Floats) -> tuple[float, float]:
     """g and its derivative by t (H 16)."""
     _, _, g, dg = law.mdr_profile(t, params)
     return g, dg
+
+
+def contact_near(t: float, x: float, params: Floats) -> tuple[float, float, float, float, float]:
+    """The state, a, P and k at x to first order from t, where all is evaluated, and a bound of the relative error."""
+    a, da, g, dg = law.mdr_profile(t, params)
+    off = x - g
+    step = off / dg
+    grown = da * step
+    left = max(abs(step) / t, abs(off) / x)
+    load = law.reduced_load(t, params) + (a + 0.5 * grown) * off  # dP/dg is a
+    return t + step, a + grown, load, a + grown, left * left if x > 0.0 else math.inf
 
 
 def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:

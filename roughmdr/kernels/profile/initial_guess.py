@@ -1,8 +1,8 @@
 """The initial guess for Newton's method on the last branch: cubics over octaves of y, or parts of them, and
 power laws beyond.
 
-y = (1 + 4 sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. Notation of
-``layout``.
+y = (1 + 4 sqrt(x - x of the foot))^2, in which t is smooth at a fold; without adhesion a multiple of x. A node has t
+there and its slope over the part of an octave that begins there. Notation of ``layout``.
 """
 
 import math
@@ -32,10 +32,19 @@ def y_of_x(x: float, params: Floats) -> float:
     return side * side if params[TENSION] > 0.0 else x * _PER_DEPTH
 
 
+def y_over_part(node: int) -> float:
+    """y at a node over the length of the part of an octave that begins there."""
+    return float((1 << law.split) + (node & ((1 << law.split) - 1)))
+
+
 def y_of_node(node: int) -> float:
     """y at a node."""
-    parts = 1 << law.split
-    return float(parts + (node & (parts - 1))) / float(parts) * float(1 << (node >> law.split))
+    return law.y_over_part(node) / float(1 << law.split) * float(1 << (node >> law.split))
+
+
+def shortening(node: int) -> float:
+    """The length of the part that ends at a node over that of the next: 1/2 where an octave begins, else 1."""
+    return 0.5 if node & ((1 << law.split) - 1) == 0 else 1.0
 
 
 def cubic(u: float, first: float, slope: float, last: float, last_slope: float) -> float:
@@ -49,8 +58,7 @@ def initial_guess(y: float, params: Floats) -> float:
     node, u = _octave(y, law.split)
     node = min(max(node, 0), (law.octaves << law.split) - 1)
     at = law.first_node + 2 * node
-    parts = (1 << law.split) + (node & ((1 << law.split) - 1))  # y of the node over the width of its part
-    return law.cubic(u, params[at], params[at + 1] / float(parts), params[at + 2], params[at + 3] / float(parts + 1))
+    return law.cubic(u, params[at], params[at + 1], params[at + 2], params[at + 3] * law.shortening(node + 1))
 
 
 def guess_anywhere(x: float, params: Floats) -> float:
@@ -59,7 +67,9 @@ def guess_anywhere(x: float, params: Floats) -> float:
     if 1.0 <= y < largest:
         return law.initial_guess(y, params)
     end = law.first_node if y < 1.0 else law.first_node + 2 * (law.octaves << law.split)
-    return float(params[end] * math.pow(y if y < 1.0 else y / largest, params[end + 1] / params[end]))
+    return float(
+        params[end] * math.pow(y if y < 1.0 else y / largest, float(1 << law.split) * params[end + 1] / params[end])
+    )
 
 
 def x_of_y(y: float, params: Floats) -> tuple[float, float]:
@@ -75,7 +85,7 @@ def extrapolate_node(node: int, step: float, params: Floats) -> float:
     """t at a node, a ``step_to`` it away from the node before: t - foot is about an exponential of such steps."""
     foot, before = params[LAST], law.first_node + law.node_size * (node - 1)
     way = params[before] - foot
-    z = params[before + 1] * step / way if way > 0.0 else 0.0
+    z = law.y_over_part(node - 1) * params[before + 1] * step / way if way > 0.0 else 0.0
     bend = 1.0 + z * z / 12.0
     return float(foot + way * (bend + 0.5 * z) / (bend - 0.5 * z))
 
@@ -104,8 +114,9 @@ def fill_first_node(params: Floats) -> float:
         way = (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
         return float(foot + way / slope if slope > 0.0 else foot)
     bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
-    params[law.first_node + 1] = math.sqrt(0.5 * params[DEPTH] / bent) / _FINE
-    return float(foot + 2.0 * params[law.first_node + 1] * (math.sqrt(y) - 1.0))
+    slope = math.sqrt(0.5 * params[DEPTH] / bent) / _FINE
+    params[law.first_node + 1] = slope / law.y_over_part(0)
+    return float(foot + 2.0 * slope * (math.sqrt(y) - 1.0))
 
 
 def fill_node(node: int, y: float, params: Floats) -> None:
@@ -115,7 +126,7 @@ def fill_node(node: int, y: float, params: Floats) -> None:
     before = params[at - law.node_size] if node > 0 else 0.0
     start = 2.0 * before - foot if before > foot else max(2.0 * foot, 1e-3)
     params[at] = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
-    params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1]
+    params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1] / law.y_over_part(node)
 
 
 def node_beyond(indentation: float, params: Floats) -> int:
@@ -149,7 +160,7 @@ def fill_nodes(last: int, rows: Floats) -> None:
                 break
         for i in range(count):
             rows[i, law.first_node + 2 * node] = t[i]
-            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i]
+            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(node)
         for i in range(count):
             # ``one_step`` is for fixed grips.
             trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)

@@ -57,7 +57,9 @@ class ProfileKernels(Kernels):
     """The place in a row of the first node of the initial guess."""
     node_size: int
     """How many numbers a node has."""
+    y_over_part: Callable[[int], float]
     y_of_node: Callable[[int], float]
+    shortening: Callable[[int], float]
     cubic: Kernel
     guess_anywhere: Kernel
     x_of_y: Callable[..., tuple[float, float]]
