@@ -123,7 +123,8 @@ def solve_near(
         for i in range(count):
             own = law.params_of(params, i)
             if not law.converged(error[i], 1.0, own):
-                state[i] = law.state_on_branch(x[i], 1.0, own)
+                t, left, _ = law.one_step(state[i], x[i], own)
+                state[i] = t if law.converged(left, 1.0, own) else law.state_on_branch(x[i], 1.0, own)
                 a[i], force[i], stiffness[i] = law.radius_force_stiffness(state[i], own)
 
 
