@@ -4,21 +4,42 @@ Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipeli
 about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.elements.refine import first_points
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene import Scene
+from roughmdr.shapes import SHAPES, TabledShape
 
 START_UP = 1.2
 """Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
 _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run; to draw and sort an asperity
 _STRATIFY = 8e-4  # to begin stratified draws
-_VISIT, _VISIT_PROFILE, _VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE = 5e-9, 1.2e-7, 1.5e-7, 4e-5  # of an asperity at a step
-# An expected law: its tables, a step, and for each node of its first rule squared, since it takes more nodes where
-# more parameters are drawn, a step without adhesion and with it; so many times more where each node has its own table.
-_TABLES, _TABLES_DUGDALE_PROFILE, _STEP, _NODE, _NODE_ADHESIVE, _OWN_TABLES = 3e-3, 5e-2, 2e-5, 1e-6, 2e-5, 5.0
-_FIRST_RULE = 8
+_VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # of an asperity at a step
+_VISIT_DUGDALE_PROFILE, _VISIT_DUGDALE_TABLE = 9e-7, 2e-5
+_FIRST_RULE, _MORE_NODES = 8, 1.5  # with the first rule's nodes to this power, an expected law takes longer
+
+
+class _Law(NamedTuple):
+    """Seconds of an expected law, and for each node of its first rule, to the power of _MORE_NODES."""
+
+    begin: float
+    """Its tables."""
+    step: float
+    node: float
+    """The tables of a node."""
+    node_step: float
+
+
+_ELASTIC, _JKR, _DUGDALE = (
+    _Law(3e-3, 1.2e-5, 1.5e-3, 1.5e-6),
+    _Law(1.2e-2, 5e-5, 1.8e-3, 1e-5),
+    _Law(1.5e-2, 1e-4, 5e-2, 2e-4),
+)
+_PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # times as long for each node; paraboloids without a range share its steps
 _REMEMBERED = 5000  # separations that a viscoelastic law is integrated over, of kinked curves
 # Under a curved body: tables of each node, a step on all its rings, and with adhesion each node of the first rule.
 _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
@@ -53,22 +74,39 @@ def law_seconds(cell: Cell, estimator: str) -> float:
         steps *= _MEAN_FIELD_PASSES
     if cell.scene.viscoelastic is not None:
         steps += _REMEMBERED
-    simple = section.shape_name == "paraboloid" or not adhesion.work
-    dugdale = "dugdale" in adhesion.candidates
     if estimator == "expected":
-        nodes = section.node_count(_FIRST_RULE)
-        node = (_NODE_ADHESIVE if adhesion.work else _NODE) * (1.0 if simple else _OWN_TABLES)
-        if cell.scene.nominal is not None:
-            return _CURVED_TABLES * nodes + steps * (_CURVED_STEP + (_CURVED_NODE * nodes if adhesion.work else 0.0))
-        tables = _TABLES_DUGDALE_PROFILE if dugdale and not simple else _TABLES
-        return tables + steps * (_STEP + (nodes * nodes * node if nodes > 1 else 0.0))
-    paraboloid, profile = (_VISIT_DUGDALE, _VISIT_DUGDALE_PROFILE) if dugdale else (_VISIT, _VISIT_PROFILE)
+        return _expected_seconds(cell.scene, steps)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
     if section.shape_name == "mdr_table" and section.is_random:
         begin += section.expected_count * _FIND_HILL
     if cell.scene.needs_positions:
         return begin + section.expected_count * _DRAW + paired_seconds(cell)
-    return begin + section.expected_count * (_DRAW + (paraboloid if simple else profile) * steps)
+    return begin + section.expected_count * (_DRAW + _visit_seconds(adhesion, section.shape_name) * steps)
+
+
+def _visit_seconds(adhesion: Adhesion, shape: str) -> float:
+    """Return about how long an asperity takes at a step [s]."""
+    simple = shape == "paraboloid" or not adhesion.work
+    if "dugdale" not in adhesion.candidates:
+        return _VISIT if simple else _VISIT_PROFILE
+    table = SHAPES[shape].shared or issubclass(SHAPES[shape], TabledShape)
+    return _VISIT_DUGDALE if simple else _VISIT_DUGDALE_TABLE if table else _VISIT_DUGDALE_PROFILE
+
+
+def _expected_seconds(scene: Scene, steps: int) -> float:
+    """Return about how long an expected law takes [s]."""
+    section, adhesion = scene.asperities, scene.adhesion_model
+    nodes = section.node_count(_FIRST_RULE)
+    if scene.nominal is not None:
+        return _CURVED_TABLES * nodes + steps * (_CURVED_STEP + (_CURVED_NODE * nodes if adhesion.work else 0.0))
+    law = (_DUGDALE if "dugdale" in adhesion.candidates else _JKR) if adhesion.work else _ELASTIC
+    weight = nodes**_MORE_NODES if nodes > 1 else 0.0
+    tables, each = law.node, law.node_step
+    if section.heights_depend:
+        tables, each = _HEIGHTS_DEPEND * tables, _HEIGHTS_DEPEND * each
+    elif section.shape_name == "paraboloid" and law is not _DUGDALE:
+        tables, each = _PARABOLOIDS * tables, 0.0
+    return law.begin + weight * tables + steps * (law.step + weight * each)
 
 
 def paired_seconds(cell: Cell) -> float:

@@ -143,6 +143,11 @@ class Source(Section):
         """Return the number of ``nodes`` of a rule with so many scores."""
         raise NotImplementedError
 
+    @property
+    def heights_depend(self) -> bool:
+        """Whether the heights depend on a random shape parameter, so that each of the ``nodes`` has its own."""
+        return False
+
     def nodes(self, *rules: Rule) -> Nodes:
         """Return quadrature nodes that stand for all asperities, at the scores of one rule for all random parameters
         of all populations, or of one for each.

@@ -41,7 +41,7 @@ def test_with_time_the_parts_are_bounded_whatever_the_scene(tmp_path: Any) -> No
 
 
 def test_what_a_state_costs_bounds_the_number_of_states() -> None:
-    """At 1.5e-7 s a state, as ``costs`` has it, a run of the largest part takes 0.7 s."""
+    """At 8e-8 s a state, as ``costs`` has it, a run of the largest part takes 0.4 s."""
     cell = make_plan(read(scene(asperities=LARGE, path=LONG, adhesion=FINITE_RANGE))).cells[0]
     estimate(make_plan(read(scene(adhesion=FINITE_RANGE))), 1, 0.0)  # compiled
     cost = measure(cell, "sampled", ["force"], 0.2)

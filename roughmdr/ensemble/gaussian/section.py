@@ -149,6 +149,10 @@ class NayakAsperities(PatchSource):
     def node_count(self, order: int) -> int:
         return order
 
+    @property
+    def heights_depend(self) -> bool:
+        return True
+
     def nodes(self, *rules: Rule) -> Nodes:
         """Return nodes at products of curvatures of these normal scores."""
         (rule,) = rules

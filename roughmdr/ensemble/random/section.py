@@ -196,6 +196,11 @@ class RandomAsperities(PatchSource):
     def node_count(self, order: int) -> int:
         return sum(order**axes for axes in self.node_axes)
 
+    @property
+    def heights_depend(self) -> bool:
+        populations = self.populations
+        return any(populations.correlated in each.random_parameters for each in populations.members)
+
     def nodes(self, *rules: Rule) -> Nodes:
         return nodes_of(self.populations, *rules)
 
