@@ -15,8 +15,9 @@ DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE
 SCALES = 6
 # Rows of its contacts. Radius, force and stiffness are filled where the kernels find them together with the state.
 STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
-"""STATE_ERROR is filled where the kernels approach the state by steps; then it has room for the terms of a sum.
-IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is that at the step before.
+"""STATE_ERROR is filled where the kernels approach the state by steps; once contacts are found it has room for the
+terms of a sum. IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is IN_CONTACT
+at the step before.
 TERM has room for x until the contacts are found, then for the terms of a sum.
 """
 CONTACT_ROWS = 8
@@ -36,7 +37,7 @@ class Block(NamedTuple):
     scales: Floats
     """Natural scales, [row, asperity] in SI."""
     max_scales: Floats
-    """The largest of each row."""
+    """The largest of each row; that of the energies only where they can be asked for."""
     contacts: Floats
     """[row, asperity], over natural scales."""
 
@@ -64,6 +65,7 @@ class SumKernels(Kernels):
     update_contact: Callable[..., None]
     evaluate: Callable[..., None]
     place: Callable[..., None]
+    guess_states: Callable[..., None]
     solve_contacts: Callable[..., None]
     radius_at: Callable[[Floats, Any, int], float]
     """(contacts, params, i) -> a of one contact over its natural scale; the next two alike P and k."""

@@ -76,17 +76,26 @@ def solve_refined(
     law.evaluate(count, block)
 
 
+def guess_states(
+    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
+) -> None:
+    """Do as ``place``, and guess the states from the tables."""
+    params, contacts = block.params, block.contacts
+    state, x = contacts[STATE], contacts[TERM]
+    law.place(count, block, h, adhesion_range, memory, begin, end)
+    for i in range(count):
+        state[i] = law.y_of_x(x[i], law.params_of(params, i))
+    for i in range(count):
+        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+
+
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
     """Do as ``solve_closed`` by a fixed number of steps for all contacts, as vector code, and a search for some."""
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
-    law.place(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i] = law.y_of_x(x[i], law.params_of(params, i))
-    for i in range(count):
-        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
         state[i], error[i], _ = law.approach(state[i], x[i], law.params_of(params, i))
     unknown = 0
@@ -109,11 +118,7 @@ def solve_near(
     params, contacts = block.params, block.contacts
     state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     error, x = contacts[STATE_ERROR], contacts[TERM]
-    law.place(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i] = law.y_of_x(x[i], law.params_of(params, i))
-    for i in range(count):
-        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
         state[i], a[i], force[i], stiffness[i], error[i] = law.contact_near(state[i], x[i], law.params_of(params, i))
     unknown = 0
@@ -122,7 +127,7 @@ def solve_near(
     if unknown > 0:
         for i in range(count):
             own = law.params_of(params, i)
-            if not law.converged(error[i], 1.0, own):
+            if not law.converged(error[i], 1.0, own):  # such a state may be below 0: then no step converges
                 t, left, _ = law.one_step(state[i], x[i], own)
                 state[i] = t if law.converged(left, 1.0, own) else law.state_on_branch(x[i], 1.0, own)
                 a[i], force[i], stiffness[i] = law.radius_force_stiffness(state[i], own)

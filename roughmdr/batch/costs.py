@@ -24,7 +24,7 @@ _FIRST_RULE, _MORE_NODES = 8, 1.5  # with the first rule's nodes to this power, 
 
 
 class _Law(NamedTuple):
-    """Seconds of an expected law, and for each node of its first rule, to the power of _MORE_NODES."""
+    """Seconds of an expected law: begin, each step, and nodes**_MORE_NODES times node and at each step node_step."""
 
     begin: float
     """Its tables."""
@@ -39,7 +39,7 @@ _ELASTIC, _JKR, _DUGDALE = (
     _Law(1.2e-2, 5e-5, 1.8e-3, 1e-5),
     _Law(1.5e-2, 1e-4, 5e-2, 2e-4),
 )
-_PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # times as long for each node; paraboloids without a range share its steps
+_PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # times as long for a node
 _REMEMBERED = 5000  # separations that a viscoelastic law is integrated over, of kinked curves
 # Under a curved body: tables of each node, a step on all its rings, and with adhesion each node of the first rule.
 _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2

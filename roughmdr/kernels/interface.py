@@ -69,7 +69,8 @@ class Kernels(ModuleType):
 
     prepare: Callable[[Material, Columns, int, int, float, float], Any]
     """(material, columns, start, stop, control, deepest) -> params of the asperities from start to stop; control is 0
-    for fixed grips, 1 for dead load; no state beyond the indentation ``deepest`` [m] will be asked for."""
+    for fixed grips, 1 for dead load; no state beyond the indentation ``deepest`` [m] is asked for,
+    but of asperities out of contact, whose results are dropped."""
     params_of: Callable[..., Any]
     """(params, i) -> those of asperity i."""
     heterogeneous: Callable[[Any], bool]
@@ -130,8 +131,8 @@ class Kernels(ModuleType):
     one_step: Callable[..., tuple[float, float, float]]
     """As ``approach``, after one step."""
     contact_near: Callable[..., tuple[float, float, float, float, float]]
-    """(guess of the state, x, params) -> the state, what ``radius_force_stiffness`` returns, and a bound of their
-    relative errors; where ``found_near``."""
+    """(guess of the state, x, params) -> the state, what ``radius_force_stiffness`` returns, and about the square of
+    their relative distance from the guess, inf next to a kink; where ``found_near``."""
     converged: Callable[..., bool]
     """(error bound, branch, params) -> whether the state is that on this branch."""
     state_on_branch: Kernel

@@ -124,7 +124,7 @@ def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -
 
 @cache
 def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[..., Any]:
-    """Compile a plain function and the plain functions of roughmdr that it calls; ``small`` as in ``njit``."""
+    """Compile a plain function, ``small`` or not, and the plain functions of roughmdr that it calls, which are."""
     copy = rebuilt(function, {}, partial(compiled, small=True))
     copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
     return njit(copy, small=small)

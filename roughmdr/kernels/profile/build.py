@@ -41,7 +41,9 @@ def repeated(columns: Columns, i: int) -> bool:
 
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
-    """Return a row for each of the asperities from start to stop."""
+    """Return a row for each of the asperities from start to stop; the branches of those like the one before are not
+    sought again.
+    """
     rows, last = np.zeros((stop - start, 2 - law.first_node)), 0
     for i in range(stop - start):
         if i > 0 and law.repeated(columns, start + i):

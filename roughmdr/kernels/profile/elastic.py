@@ -13,6 +13,7 @@ from roughmdr.kernels.profile.interface import law
 from roughmdr.numerics.arguments import Floats
 
 _PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
+_REACH = 2.0**15  # times the step: a kink within it, where g may go as the power 3/2, makes the error larger
 
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
@@ -41,14 +42,17 @@ def indentation_at(t: float, params: Floats) -> tuple[float, float]:
 
 
 def contact_near(t: float, x: float, params: Floats) -> tuple[float, float, float, float, float]:
-    """The state, a, P and k at x to first order from t, where all is evaluated, and a bound of the relative error."""
+    """The state, a, P and k at x to first order from t, where all is evaluated, and about the square of their relative
+    distance; inf where there is a kink near.
+    """
     a, da, g, dg = law.mdr_profile(t, params)
     off = x - g
     step = off / dg
-    grown = da * step
+    grown, reach = da * step, _REACH * abs(step)
     left = max(abs(step) / t, abs(off) / x)
+    smooth = law.kink_between(t - reach, t + reach, params) < 1
     load = law.reduced_load(t, params) + (a + 0.5 * grown) * off  # dP/dg is a
-    return t + step, a + grown, load, a + grown, left * left if x > 0.0 else math.inf
+    return t + step, a + grown, load, a + grown, left * left if (x > 0.0) & smooth else math.inf
 
 
 def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:

@@ -80,7 +80,7 @@ class ProfileKernels(Kernels):
     widest_zone: Kernel
     t_along: Kernel
     of_pieces: bool
-    """Whether the profile has pieces, on each of which g is a polynomial in sqrt(x^2 - y^2), y a breakpoint."""
+    """Whether g is, piece by piece, a polynomial in sqrt(x^2 - y^2), y as from ``breakpoint``."""
     zone_panel: Callable[..., tuple[float, float, float]]
     rise_begins: Kernel
     zone_quadrature: Callable[..., tuple[float, float, float]]
