@@ -105,17 +105,18 @@ def _claims(result: xr.Dataset, scene: Scene) -> Claims:
 
 def _claims_on_numbers(result: xr.Dataset) -> Claims:
     """Nothing is infinite; a computed value is a number; a failed run has a reason, one of the package's errors."""
-    status = result.variables["status"].values
+    status = result.variables["status"]
     for name, variable in result.variables.items():
         values = variable.values
         if values.dtype.kind != "f":
             continue
         yield f"{name} is not infinite", ~np.isinf(values)
         if "step" in variable.dims and name != "separation" and not str(name).endswith("_sem"):
-            yield f"{name} is a number", ~np.isnan(values) | (status != DONE)[..., None]
+            failed = (status != DONE).all([dim for dim in status.dims if dim not in variable.dims])
+            yield f"{name} is a number", (variable.notnull() | failed).values
     error = result.variables["numerical_error"].values
-    yield "an error is a number, and not negative", (error >= 0.0) | (status != DONE)
-    for remark in result.variables["remark"].values[status == 1] if "remark" in result.coords else ():
+    yield "an error is a number, and not negative", (error >= 0.0) | (status.values != DONE)
+    for remark in result.variables["remark"].values[status.values == 1] if "remark" in result.coords else ():
         found = (getattr(errors, part, None) for part in str(remark).split(": "))
         kind = next((each for each in found if isinstance(each, type)), object)
         yield f"a run fails for a reason, not with {remark}", issubclass(kind, RoughmdrError)
