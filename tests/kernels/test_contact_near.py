@@ -41,7 +41,7 @@ def test_those_that_are_certain_are_right(name: str) -> None:
     assert certain >= 0.97 * x.size
 
 
-@pytest.mark.parametrize("name", SIMILAR)
+@pytest.mark.parametrize("name", [name for name in SIMILAR if name != "rounded_cone"])  # such steps may pass its kink
 @pytest.mark.parametrize("x", [0.08, 0.6])
 def test_their_errors_are_of_second_order_and_stated(name: str, x: float) -> None:
     law, params = prepared(name)
@@ -54,4 +54,14 @@ def test_their_errors_are_of_second_order_and_stated(name: str, x: float) -> Non
     assert stated[0] / stated[1] == pytest.approx(100.0, rel=0.05)
     above_rounding = errors[1] > 1e-13
     assert above_rounding.any()
-    assert (errors[0] / errors[1])[above_rounding].min() > 80.0
+    assert (errors[0][above_rounding] / errors[1][above_rounding]).min() > 80.0
+
+
+def test_next_to_a_kink_none_is_certain() -> None:
+    law, params = prepared("rounded_cone")
+    kink = law.reduced_control(1.0, params)
+    for way in (*np.geomspace(1e-9, 1e-6, 20), *-np.geomspace(1e-9, 1e-6, 20)):
+        exact = searched(kink * (1.0 + way), law, params)
+        for start in (1.0 - 1e-8, 1.0 + 1e-8):
+            *found, error = law.contact_near(start, kink * (1.0 + way), params)
+            assert error > _RTOL or np.abs(np.array(found) / exact - 1.0).max() < 2e-15
