@@ -17,8 +17,7 @@ SCALES = 6
 STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
 """STATE_ERROR is filled where the kernels approach the state by steps; once contacts are found it has room for the
 terms of a sum. IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is IN_CONTACT
-at the step before.
-TERM has room for x until the contacts are found, then for the terms of a sum.
+at the step before. TERM has room for x until the contacts are found, then for the terms of a sum.
 """
 CONTACT_ROWS = 8
 

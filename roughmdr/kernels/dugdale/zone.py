@@ -48,7 +48,7 @@ def t_along(q: float, base: float, params: Floats) -> float:
 def zone_panel(
     panel: tuple[float, float, float, bool], g: float, c: float, m: float, thin: bool, params: Floats
 ) -> tuple[float, float, float]:
-    """The integrals over a panel: from low to high <= c, smooth from a base on, and whether it is a piece of a table.
+    """The integrals over a panel: low, high <= c, the base from which on g is smooth, whether it is a piece of a table.
 
     m = sqrt(c^2 - low^2). By parts where ``thin``.
     """

@@ -43,7 +43,7 @@ def indentation_at(t: float, params: Floats) -> tuple[float, float]:
 
 def contact_near(t: float, x: float, params: Floats) -> tuple[float, float, float, float, float]:
     """The state, a, P and k at x to first order from t, where all is evaluated, and about the square of their relative
-    distance; inf where there is a kink near.
+    distance, inf where there is a kink near (H 10, 16, 25; units as in ``radius_force_stiffness``).
     """
     a, da, g, dg = law.mdr_profile(t, params)
     off = x - g
