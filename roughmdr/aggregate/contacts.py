@@ -67,9 +67,7 @@ def solve_refined(
     """Do as ``solve_closed`` in several steps, a loop for each, so that no contact waits for another."""
     params, contacts = block.params, block.contacts
     state, x = contacts[STATE], contacts[TERM]
-    law.place(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i] = law.initial_guess(x[i], law.params_of(params, i))
+    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
     for _ in range(law.refinements):
         for i in range(count):
             state[i] = law.refined(state[i], x[i], law.params_of(params, i))
@@ -79,12 +77,12 @@ def solve_refined(
 def guess_states(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``place``, and guess the states from the tables."""
+    """Do as ``place``, and guess the states."""
     params, contacts = block.params, block.contacts
     state, x = contacts[STATE], contacts[TERM]
     law.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
-        state[i] = law.y_of_x(x[i], law.params_of(params, i))
+        state[i] = law.y_of_x(x[i], law.params_of(params, i)) if law.iterative else x[i]
     for i in range(count):
         state[i] = law.initial_guess(state[i], law.params_of(params, i))
 

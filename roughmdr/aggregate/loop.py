@@ -182,7 +182,7 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
     solve = solve_each if kernels.one_by_one else solve_near if kernels.found_near else solve
     vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name})
-    whole.energetic, whole.found_together = energetic, together
+    whole.energetic = energetic
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,

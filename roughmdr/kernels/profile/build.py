@@ -198,6 +198,8 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         "has_t_of_q": profile.t_of_q is not None,
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape in _ONE_BRANCH else math.sqrt(2.0),
+        "iterative": True,
+        "found_together": True,
         "octaves": octaves,
         "shared": shared,
         "found_near": similar,

@@ -12,9 +12,6 @@ from roughmdr.numerics.arguments import Floats
 class ProfileKernels(Kernels):
     """Kernels of a shape that is known by its profile."""
 
-    iterative = True
-    found_together = True
-
     mdr_profile: Callable[..., tuple[float, float, float, float]]
     """As in ``shapes.profile.Profile``, and so what follows down to ``t_of_q``."""
     reduced_load: Kernel
