@@ -58,7 +58,8 @@ def evaluations(name: str, strength: float, alike: int = 1) -> tuple[int, int, i
 
 
 def in_the_sum(name: str, work: float, strength: float) -> tuple[float, float, float]:
-    """Count what the sum over asperities that differ in width calls on loading and unloading.
+    """Count what the sum over asperities that differ in width calls on loading and unloading; work [J/m2], strength
+    [Pa], inf for JKR.
 
     Return searches a contact and step, evaluations of the profile (or of the integrals over the zone) a contact and
     step, and those once an asperity. What is done once is told apart by paths of some steps and of twice as many.
@@ -77,8 +78,8 @@ def in_the_sum(name: str, work: float, strength: float) -> tuple[float, float, f
         with np.errstate(all="ignore"), cProfile.Profile() as profile:
             visits = sum_over_asperities(kernels, height, columns, MODULUS, adhesion, path, memory, {FORCE})[2]
         counts.append([visits, _calls(profile, "solve_on_branch"), _calls(profile, *evaluated)])
-    visits, searches, evaluations = (fine - coarse for coarse, fine in zip(*counts, strict=True))
-    each = evaluations / visits
+    visits, searches, calls = (fine - coarse for coarse, fine in zip(*counts, strict=True))
+    each = calls / visits
     return searches / visits, each, (counts[0][2] - each * counts[0][0]) / _ASPERITIES
 
 

@@ -31,7 +31,7 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
             material.effective_modulus, material.work, width[start + i], rise[start + i], law.params_of(params, i)
         )
         scales[DEPTH_SCALE, i] = depth
-        scales[PER_DEPTH, i] = 1.0 / depth
+        scales[PER_DEPTH, i] = 1.0 / depth if depth > 0.0 else np.inf
         scales[RADIUS_SCALE, i] = size
         scales[FORCE_SCALE, i] = load
         scales[STIFFNESS_SCALE, i] = rigidity

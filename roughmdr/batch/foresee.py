@@ -20,7 +20,7 @@ _MAX_ASPERITIES = 1000
 _MAX_STEPS = 60
 _MAX_PAIRED, _MAX_PAIRED_STEPS = 200, 12  # where asperities feel each other in pairs, which takes longer
 _MAX_CURVED_STEPS, _CURVED_ERROR = 8, 1e-2  # under a curved body, whose law takes longer still
-_MAX_CELLS = 12
+_MAX_CELLS, _MAX_CHECKED = 12, 100  # to foresee, to check before a run
 
 
 class Foreseen(NamedTuple):
@@ -52,7 +52,7 @@ class Prospect(NamedTuple):
 def foresee_cells(plan: Plan) -> Prospect:
     """Foresee some cells of a plan, evenly chosen, the first and the last among them."""
     foreseen, failures = [], []
-    for number in np.unique(np.linspace(0, len(plan.cells) - 1, _MAX_CELLS).astype(int)).tolist():
+    for number in _some_cells(plan, _MAX_CELLS):
         cell = plan.cells[number]
         separation, steps = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
         steps = steps if cell.scene.nominal is None else _MAX_CURVED_STEPS
@@ -77,19 +77,26 @@ def foresee_cells(plan: Plan) -> Prospect:
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction_model)
 
 
-def check_foreseen(plan: Plan) -> None:
-    """Raise TooMuchContact where a run of some cell would have more contact area than its patch.
+def _some_cells(plan: Plan, most: int) -> list[int]:
+    """Return the numbers of ``most`` cells at most, evenly chosen, the first and the last among them."""
+    numbers: list[int] = np.unique(np.linspace(0, len(plan.cells) - 1, most).astype(int)).tolist()
+    return numbers
 
-    Cells without random asperities, and expected laws, have one run, which tells it itself.
+
+def check_foreseen(plan: Plan) -> None:
+    """Raise TooMuchContact where a run of one of some cells would have more contact area than its patch.
+
+    The runs of the others tell it themselves, as do those of cells without random asperities, and expected laws.
     """
+    checked = _some_cells(plan, _MAX_CHECKED)
     refused = [
         (number, reason)
-        for number, cell in enumerate(plan.cells)
+        for number, cell in ((number, plan.cells[number]) for number in checked)
         if cell.scene.asperities.is_random and cell.scene.estimators != ("expected",) and (reason := _reason(cell))
     ]
     if refused:
         number, reason = refused[0]
-        others = f" ({len(refused)} of {len(plan.cells)} cells are refused)" if len(plan.cells) > 1 else ""
+        others = f" ({len(refused)} of {len(checked)} cells that were checked)" if len(plan.cells) > 1 else ""
         raise TooMuchContact(f"{plan.name_of(number, 0)}: {reason}{others}")
 
 

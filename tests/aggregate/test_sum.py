@@ -257,6 +257,15 @@ def test_an_ensemble_may_come_in_other_units() -> None:
     assert float(laws[0].force[0]) == pytest.approx(float(laws[1].force[0]), rel=1e-14)
 
 
+def test_an_attraction_that_reaches_around_a_sphere_is_refused() -> None:
+    """No contact of it has a natural depth, compiled or not."""
+    sphere = ensemble([1e-6], shape="sphere", radius=2e-5)
+    with pytest.raises(rm.OutOfRange, match="not representable: dugdale_sphere"):
+        rm.load_separation(
+            sphere, separation=[0.0], effective_modulus=4e6, work=0.05, adhesion="dugdale", strength=0.05 / 2.4e-5
+        )
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

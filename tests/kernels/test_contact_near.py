@@ -15,7 +15,7 @@ SIMILAR = [name for name, shape in SHAPES.items() if shape.similar]
 
 
 def prepared(name: str) -> tuple[Any, Any]:
-    """Return the kernels of sums and the row of such asperities."""
+    """Return the kernels of sums and the one row that all such asperities share, whatever their parameters."""
     shape = SHAPES[name](**SHAPES[name].example())
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
     law: Any = choose(name, Adhesion(), columns.params).in_sums

@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import tomli_w
 from scenes import SCENE, ensemble, scene
 
 import roughmdr as rm
+from roughmdr.batch import foresee
 
 TRAPS: list[tuple[dict[str, Any], str]] = [
     ({"material": {"modulus": 3, "poisson": 0.49}}, "effective modulus is 3.948 Pa: is kPa, MPa or GPa meant"),
@@ -38,6 +40,25 @@ def test_a_sweep_tells_which_cells_are_refused() -> None:
     table = scene(sweep={"material.modulus": [3e6, 3.0, 30.0]})
     with pytest.raises(rm.OutOfRange, match=r"material.modulus = 3.*2 of 3 cells"):
         rm.run(table)
+
+
+def test_of_a_large_sweep_some_cells_are_checked_and_the_others_fail_with_the_reason() -> None:
+    """So that the check does not take longer than small runs themselves."""
+    modulus = np.geomspace(3e6, 9e6, 250).tolist()
+    sweep = {"mode": "zip", "material.modulus": modulus}
+    asperities = {**SCENE["asperities"], "count": 20}
+    with patch.object(foresee, "_reason", wraps=foresee._reason) as checked:
+        rm.run(scene(sweep=sweep, asperities=asperities))
+    assert checked.call_count == 100
+    modulus[1] = 3.0
+    with pytest.warns(UserWarning, match="failed"):
+        made = rm.run(scene(sweep=sweep, asperities=asperities))
+    failed = (made.status == 1).any("realization")
+    assert np.flatnonzero(failed).tolist() == [1]
+    assert "summed contact area" in str(made.remark.values[1][0])
+    modulus[-1] = 3.0
+    with pytest.raises(rm.OutOfRange, match=r"modulus = 3.*1 of 100 cells"):
+        rm.run(scene(sweep=sweep, asperities=asperities))
 
 
 @pytest.mark.parametrize("estimator", ["expected", "sampled"])
