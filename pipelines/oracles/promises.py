@@ -1,4 +1,4 @@
-"""How far results for one asperity are from those of 60 digits, and what is promised (README, How right, how fast)."""
+"""How far results for one asperity are from those of 60 digits, and what is promised (docs/trust.md)."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
