@@ -1,12 +1,13 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
 # make test-all: the long random searches as well, some 10 minutes more.
+# make docs: build the documentation into docs/_build/html, examples and all.
 # make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
-.PHONY: demo test test-all studies setup lint lock clean
+.PHONY: demo test test-all docs studies setup lint lock release clean
 
 demo: setup
 	@mkdir -p results
@@ -25,6 +26,10 @@ test: setup lint
 test-all: test
 	$(BIN)/python -m pytest -n auto --dist loadfile -m large
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/shapes tests/asperity
+
+docs: setup
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
 
 studies: setup
 	@$(BIN)/python pipelines/all_studies.py -o results/studies
@@ -61,5 +66,9 @@ lock:
 	uv pip compile --universal --generate-hashes --python-version 3.11 --no-header --no-annotate \
 	  --group dev pyproject.toml -o requirements.lock
 
+# Test, tag a version, build its wheel and source archive into dist/; nothing is uploaded: make release VERSION=0.1.0.
+release: test
+	$(BIN)/python .ci/release.py $(VERSION)
+
 clean:
-	rm -rf $(VENV) results .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) results dist docs/_build docs/gallery docs/reference/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis

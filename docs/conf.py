@@ -2,9 +2,11 @@
 
 import sys
 from importlib.metadata import version as installed_version
+from importlib.resources import files
 from pathlib import Path
 
 HERE = Path(__file__).parent
+MATHJAX = "tex-svg.js"  # one file, its glyphs within: equations need no network
 sys.path.insert(0, str(HERE / "extensions"))
 
 project = "roughmdr"
@@ -17,10 +19,10 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
     "sphinx_click",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
-    "mathml",
     "result_reference",
     "scene_reference",
 ]
@@ -30,10 +32,10 @@ default_role = "code"
 
 html_theme = "furo"
 html_title = f"roughmdr {release}"
-html_static_path = ["static"]
+html_static_path = ["static", str(files("sphinx-mathjax-offline") / "static" / "mathjax" / MATHJAX)]
 html_css_files = ["style.css"]
 html_show_sphinx = False
-html_math_renderer = "mathml"
+mathjax_path = MATHJAX
 
 myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 3

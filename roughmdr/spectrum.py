@@ -120,7 +120,7 @@ class SelfAffine(NamedTuple):
         long_wave, short_wave : float or str
             Longest and shortest wavelength [m].
         rms_height, rms_slope : float or str, optional
-            One of sqrt(<h^2>) [m] and sqrt(<|grad h|^2>) [1].
+            One of sqrt(<h^2>) [m] and ``sqrt(<|grad h|^2>)`` [1].
 
         Returns
         -------
@@ -177,7 +177,7 @@ class SelfAffine(NamedTuple):
 
     @property
     def rms_slope(self) -> float:
-        """Root of <|grad h|^2> [1]."""
+        """Root of ``<|grad h|^2>`` [1]."""
         return math.sqrt(2.0 * self.moments.m2)
 
 
@@ -189,5 +189,5 @@ class MapSpectrum(NamedTuple):
 
     @property
     def rms_slope(self) -> float:
-        """Root of <|grad h|^2> [1]."""
+        """Root of ``<|grad h|^2>`` [1]."""
         return math.sqrt(float(np.sum(self.q * self.q * self.variance)))

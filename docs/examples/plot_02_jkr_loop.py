@@ -45,17 +45,14 @@ _ = left.legend(fontsize="small", loc="upper left")
 
 # %%
 # Three forces with a closed form
-# ------------------------------
+# -------------------------------
 # In units of :math:`\pi w R` the JKR theory gives 4/3 after the jump into contact, 3/2 for the largest tension, and
 # 5/6 at detachment under fixed grips.
 
 unit = np.pi * w * R
-rows = {
-    "after the jump into contact": (-jump_in.force / unit, 4 / 3),
-    "largest tension": (-pull_off.force / unit, 3 / 2),
-    "detachment under fixed grips": (-grips.force / unit, 5 / 6),
-}
-pd.DataFrame({key: map(float, row) for key, row in rows.items()}, ["computed", "theory"]).T
+computed = [-float(state.force) / unit for state in (jump_in, pull_off, grips)]
+names = ["after the jump into contact", "largest tension", "detachment under fixed grips"]
+pd.DataFrame({"computed": computed, "theory": [4 / 3, 3 / 2, 5 / 6]}, names)
 
 # %%
 # The work of adhesion from a measured pull-off
@@ -63,8 +60,8 @@ pd.DataFrame({key: map(float, row) for key, row in rows.items()}, ["computed", "
 # Use the **largest tension**: :math:`w = -2 F / (3 \pi R)`. It does not depend on the modulus, nor on the stiffness of
 # the machine. The force just before detachment under fixed grips gives 5/9 of the true work.
 
-print(f"from the largest tension: {-2e3 * float(pull_off.force) / (3 * np.pi * R):.1f} mJ/m²")
-print(f"from the force at detachment: {-2e3 * float(grips.force) / (3 * np.pi * R):.1f} mJ/m²")
+for point, state in (("the largest tension", pull_off), ("the force at detachment", grips)):
+    print(f"from {point}: {-2e3 * float(state.force) / (3 * np.pi * R):.1f} mJ/m²")
 
 # %%
 # Fixed grips against dead load
@@ -75,17 +72,15 @@ print(f"from the force at detachment: {-2e3 * float(grips.force) / (3 * np.pi * 
 # - It detaches at the largest tension (dot), where the contact radius is about twice that at detachment under fixed
 #   grips (square).
 #
-# ``rm.equilibria`` lists every state at one indentation, with its stability under both kinds of control. Between the dot
-# and the square a contact is stable under fixed grips only.
+# ``rm.equilibria`` lists every state at one indentation, with its stability under both kinds of control. Between the
+# dot and the square a contact is stable under fixed grips only.
 
-print(f"contact radius at zero force: {1e6 * float(free.contact_radius):.3f} µm")
-print(f"by the closed form:           {1e6 * (9 * np.pi * w * R**2 / (2 * E)) ** (1 / 3):.3f} µm")
-print(f"contact radius, dot over square: {float(pull_off.contact_radius / grips.contact_radius):.3f}")
+closed_form = (9 * np.pi * w * R**2 / (2 * E)) ** (1 / 3)
+print(f"contact radius at zero force: {1e6 * float(free.contact_radius):.3f} µm, theory {1e6 * closed_form:.3f} µm")
 
 between = float(pull_off.indentation + grips.indentation) / 2
-rm.equilibria(bead, indentation=between, **contact).to_dataframe()[
-    ["contact_radius", "force", "stable_displacement", "stable_force"]
-]
+states = rm.equilibria(bead, indentation=between, **contact)
+states[["contact_radius", "force", "stable_displacement", "stable_force"]].to_dataframe()
 
 # %%
 # The energy that one loop loses
@@ -97,5 +92,4 @@ rm.equilibria(bead, indentation=between, **contact).to_dataframe()[
 radii = np.linspace(float(grips.contact_radius), float(jump_in.contact_radius), 2001)
 branch = rm.indent(bead, contact_radius=radii, **contact)
 lost = -np.trapezoid(branch.force, branch.indentation)
-print(f"lost in the loop: {lost:.4e} J")
-print(f"by similarity:    {7.092 * (w**5 * R**4 / E**2) ** (1 / 3):.4e} J")
+print(f"lost in the loop: {lost:.4e} J, theory {7.092 * (w**5 * R**4 / E**2) ** (1 / 3):.4e} J")

@@ -24,7 +24,7 @@ scene = {
         "radius": "100 um",
         "height": {"distribution": "normal"},
     },
-    "path": {"separation": {"stop": "0 sigma", "steps": 40}, "unload": True},
+    "path": {"separation": {"stop": "0 sigma", "steps": 80}, "unload": True},
     "output": {"variables": ["force", "contact_count"]},
     "batch": {"realizations": 8},
     "sweep": {
@@ -42,16 +42,17 @@ figure = rm.plot(ds, kind="sweep")
 # Select cells by their values
 # ----------------------------
 # The result is an ``xarray.Dataset`` with one dimension for each swept key; the dots become underscores and the
-# coordinates are in SI. Separations differ from cell to cell.
+# coordinates are in SI. ``separation`` depends on the cell, too: each path goes from where nothing touches down to the
+# mean height of the summits, and back. The lower branch is the unloading.
 
-cells = ds.sel(adhesion_work=0.04).sel(asperities_height_std=[0.1e-6, 0.4e-6, 1.6e-6], method="nearest")
+cells = ds.sel(adhesion_work=0.04).sel(asperities_height_std=[0.16e-6, 0.25e-6, 0.4e-6, 0.64e-6], method="nearest")
 
 curves, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for std in cells.asperities_height_std.values:
     cell = cells.sel(asperities_height_std=std)
-    axes.plot(cell.separation * 1e6, cell.force.mean("realization") * 1e3, label=f"σ = {std * 1e6:.1f} µm")
+    axes.plot(cell.separation * 1e6, cell.force.mean("realization") * 1e3, label=f"σ = {std * 1e6:.2f} µm")
 axes.axhline(0, color="k", lw=0.5)
-axes.set(xlabel="separation [µm]", ylabel="mean force [mN]", xlim=(-0.2, 3), ylim=(-3.5, 3), title="40 mJ/m²")
+axes.set(xlabel="separation [µm]", ylabel="mean force [mN]", xlim=(-0.1, 2.2), ylim=(-4, 3), title="40 mJ/m²")
 _ = axes.legend()
 
 # %%
@@ -67,8 +68,9 @@ share = -ds.pull_off_force.mean("realization") / (N * 1.5 * np.pi * work * R)
 stretch = 0.75 * (np.pi**2 * work**2 * R / E**2) ** (1 / 3)
 
 collapse, axes = plt.subplots(figsize=(7, 4), layout="constrained")
-for w in work.values:
-    axes.loglog(std / stretch.sel(adhesion_work=w), share.sel(adhesion_work=w), "o-", label=f"{w * 1e3:.0f} mJ/m²")
+for size, w in zip((11, 8, 5, 2), work.values, strict=True):
+    x, y = std / stretch.sel(adhesion_work=w), share.sel(adhesion_work=w)
+    axes.loglog(x, y, "o", ms=size, mfc="none" if size > 2 else None, label=f"{w * 1e3:.0f} mJ/m²")
 axes.set(xlabel="σ / |δc|", ylabel="pull-off force / (N · 3/2 π w R)")
 _ = axes.legend()
 

@@ -37,12 +37,11 @@ TRUE = {"material.modulus": 3e6, "adhesion.work": 0.02}
 # of the columns. Keep the order of the measurement, loading and then unloading: adhesive contacts remember it.
 
 law = rm.run(SCENE, set=TRUE).isel(realization=0)
-noise = 0.01 * float(law.force.max())
-random = np.random.default_rng(5)
+noise = np.random.default_rng(5).normal(0, 0.01 * float(law.force.max()), law.sizes["step"])
 measured = pd.DataFrame(
     {
         "separation [um]": 1e6 * law.separation.values,
-        "force [mN]": 1e3 * (law.force.values + random.normal(0, noise, law.sizes["step"])),
+        "force [mN]": 1e3 * (law.force.values + noise),
     }
 )
 measured.head()
@@ -77,11 +76,11 @@ figure.set_size_inches(7, 5)
 # %%
 # The residuals are as large as the noise that was put in:
 
-f"residual {1e6 * float(fitted.residual.std()):.2f} uN, noise {1e6 * noise:.2f} uN"
+f"residual {1e6 * float(fitted.residual.std()):.2f} uN, noise {1e6 * noise.std():.2f} uN"
 
 # %%
 # Ask which parameters the curve can tell apart before you free more of them. Errors of the modulus and the work go
 # together, since the correlation is near 1, but the unloading still tells them apart. With the radius free as well it
-# would not: a warning then names the parameters, and what the curve does determine.
+# would not: a warning then names the parameters, and their intervals are not given.
 
 fitted.correlation.to_pandas().set_axis(list(TRUE), axis=0).set_axis(list(TRUE), axis=1).round(3)

@@ -6,7 +6,6 @@ A large batch can run on threads, on processes, or on a dask cluster. Does the c
 one scene on threads and on a cluster of two workers on this machine, and compares them bit by bit.
 """
 
-import pandas as pd
 from dask.distributed import Client, LocalCluster
 
 import roughmdr as rm
@@ -33,8 +32,8 @@ SCENE = {
 threads = rm.run(SCENE, workers=2)
 
 # %%
-# Start the cluster and give its client to ``rm.run``. Bind everything to 127.0.0.1, the dashboard too: unless told
-# otherwise dask listens on every interface, to anyone.
+# Start the cluster and give its client to ``rm.run``. Bind everything to 127.0.0.1, the dashboard too: a scheduler or a
+# dashboard that is not told so may listen on every interface, to anyone.
 #
 # The two workers of this page are threads that talk over TCP (``processes=False``), so that it runs anywhere. Leave
 # that out in a script of your own to have worker processes, and start them below ``if __name__ == "__main__":``.
@@ -57,19 +56,13 @@ print(sorted(threads_of_workers.values()))
 # to a worker, and sums are taken in a fixed order.
 
 same = {name: threads[name].values.tobytes() == on_cluster[name].values.tobytes() for name in threads.data_vars}
-pd.DataFrame(
-    {
-        "variables": pd.Series(same).groupby(same).size().rename({True: "same bits", False: "other bits"}),
-        "for example": {"same bits": "force, stiffness", "other bits": ", ".join(n for n in same if not same[n])},
-    }
-)
+f"{sum(same.values())} of {len(same)} variables have the same bits, all but {[n for n in same if not same[n]]}"
 
 # %%
 # So you can start a batch on a laptop and go on with it on a cluster. Give ``rm.run`` an output file: what is finished
 # is kept beside it, and the same call goes on after an interruption.
 
 figure = rm.plot(on_cluster, variables="force", with_expected=True)
-figure.set_size_inches(7, 4)
 
 # %%
 # On SLURM

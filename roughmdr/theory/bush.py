@@ -125,7 +125,7 @@ def bush_gibson_thomas_asymptote(
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
     rms_slope, **material
-        h' = sqrt(<|grad h|^2>) = sqrt(2 m2) [1], above 0; E* as in ``greenwood_williamson``.
+        h' = ``sqrt(<|grad h|^2>)`` = sqrt(2 m2) [1], above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------

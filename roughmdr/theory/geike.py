@@ -96,7 +96,7 @@ def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: 
     """Generate a periodic line of heights with random phases, at evenly spaced points.
 
     Its spectrum is C1(q) = pi q C(q), so that <h^2> = 2 ∫ C1 dq is that of the surface, whatever the phases. Its
-    <(dh/dx)^2> is <|grad h|^2>, twice that of a profile. Each wave of the line represents the waves nearest to it.
+    <(dh/dx)^2> is ``<|grad h|^2>``, twice that of a profile. Each wave of the line represents the waves nearest to it.
 
     Parameters
     ----------

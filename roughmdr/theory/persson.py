@@ -36,7 +36,7 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
     pressure : array_like, shape () or (n,)
         Force over nominal area p [Pa], at least 0.
     rms_slope, **material
-        h' = sqrt(<|grad h|^2>) [1] over all waves, above 0; E* as in ``greenwood_williamson``.
+        h' = ``sqrt(<|grad h|^2>)`` [1] over all waves, above 0; E* as in ``greenwood_williamson``.
 
     Returns
     -------
