@@ -21,7 +21,7 @@ def scrape(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any])
         _DRAWN.add(figure)
         paths.append(next(block_vars["image_path_iterator"]))
         figure.savefig(paths[-1], dpi=150)
-    return figure_rst(paths, gallery_conf["src_dir"])
+    return str(figure_rst(paths, gallery_conf["src_dir"]))
 
 
 def _get_sg_image_scraper() -> Callable[..., str]:

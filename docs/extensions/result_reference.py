@@ -1,6 +1,6 @@
 """The variables of a result, from where the package declares them, in place of ``{{ ... variables }}`` on a page."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 from roughmdr import variables
 from roughmdr.variables.variable import Variable
 
-_TABLES = {
+_TABLES: dict[str, Mapping[str, Variable]] = {
     "{{ curve variables }}": variables.CURVE_VARIABLES,
     "{{ conductances }}": variables.CONDUCTANCES,
     "{{ tangential variables }}": variables.TANGENTIAL_VARIABLES,

@@ -1,12 +1,17 @@
 """Reading the file of a fit, which anyone may have changed."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
-from roughmdr.storage.result_file import FIT
+from roughmdr.storage.result_file import FIT, is_fit
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _TEXTS = ("title", "scene", "trust", "history")
 _ENDS = ("", "_standard_error", "_low", "_high")
@@ -22,6 +27,18 @@ def read_fit(path: Path) -> Labelled:
         raise StoreError(f"{path}: holds no fit")
     if fault := fit_fault(data):
         raise StoreError(f"{path}: not a fit as roughmdr writes it: {fault}")
+    return data
+
+
+def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
+    """Return a fit that is given by its file or as a Dataset; None where it is none, StoreError where it is broken."""
+    if isinstance(fit, str | os.PathLike):
+        return read_fit(Path(fit)) if is_fit(Path(fit)) else None
+    if getattr(fit, "attrs", {}).get("kind") != FIT:
+        return None
+    data = Labelled.of(fit)
+    if fault := fit_fault(data):
+        raise StoreError(f"fit: not as roughmdr.fit returns it: {fault}")
     return data
 
 

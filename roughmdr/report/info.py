@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roughmdr.fitting.stored import given_fit
+from roughmdr.fitting.words import describe_fit
 from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, describe_origin, describe_result
 from roughmdr.storage.labelled import Labelled
@@ -17,14 +19,14 @@ def info(result: "str | Path | xr.Dataset", *, cells: bool = False) -> str:
     Parameters
     ----------
     result : path or xarray.Dataset
-        A result file, or what ``run`` returned.
+        A result file, or what ``run`` returned; of a fit, what ``fit`` did.
     cells : bool, optional
         Whether to list the cells of the sweep instead: status, time, errors and remarks.
 
     Returns
     -------
     str
-        Lines with sizes, forces, errors, run time, seed, versions and the scene.
+        Lines with sizes, forces, errors, run time, seed, versions and the scene; of a fit its parameters.
 
     Raises
     ------
@@ -44,7 +46,8 @@ def info(result: "str | Path | xr.Dataset", *, cells: bool = False) -> str:
     >>> print(rm.info(result).splitlines()[0])
     computed     One patch: 1 realisation x 2 steps
     """
-    return describe(*given_result(result), cells=cells)
+    fit = given_fit(result)
+    return describe_fit(fit) if fit is not None else describe(*given_result(result), cells=cells)
 
 
 def describe(result: Labelled, file: Path | None, *, cells: bool) -> str:

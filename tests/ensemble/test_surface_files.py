@@ -133,6 +133,19 @@ def test_another_variable_and_its_unit(tmp_path: Path) -> None:
     xr.testing.assert_allclose(found, generate(tmp_path / "map.nc"), rtol=1e-12)
 
 
+@pytest.mark.parametrize("periodic", [False, True])
+def test_what_surface_topography_writes_as_netcdf(tmp_path: Path, *, periodic: bool) -> None:
+    """Its heights, its attribute ``unit`` and its mark of a periodic map are understood."""
+    topography = pytest.importorskip("SurfaceTopography").Topography
+    topography(1e6 * bumps(), (10.0, 30.0), unit="um", periodic=periodic).to_netcdf(str(tmp_path / "theirs.nc"))
+    netcdf(tmp_path / "ours.nc", bumps(), periodic=int(periodic))
+    theirs, ours = (generate(tmp_path / name) for name in ("theirs.nc", "ours.nc"))
+    assert theirs.sizes == ours.sizes
+    for name in ("height", "radius", "x", "y"):
+        np.testing.assert_allclose(theirs[name], ours[name], rtol=1e-9, atol=1e-18)
+    assert theirs.attrs["patch_x"] == approx(1e-5, rel=1e-12)
+
+
 def test_rounding_in_single_precision_is_not_roughness(tmp_path: Path) -> None:
     plane = np.add.outer(np.arange(60.0) / 7.0, np.arange(60.0) / 11.0) * 1e-6
     np.save(tmp_path / "single.npy", plane.astype(np.float32))

@@ -10,6 +10,7 @@ import tomli_w
 import xarray as xr
 from measurements import CASES, noise_of
 
+import roughmdr as rm
 from roughmdr.errors import StoreError
 from roughmdr.fitting.stored import read_fit
 
@@ -134,6 +135,10 @@ def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> No
     told = roughmdr("info", "fit.nc", cwd=folder)
     assert told.returncode == 0
     assert told.stdout.startswith("fitted       adhesion.work")
+    with xr.open_dataset(folder / "fit.nc") as fit:
+        assert rm.info(fit) == rm.info(folder / "fit.nc") == told.stdout.rstrip("\n")
+        with pytest.raises(StoreError, match=r"not as roughmdr\.fit returns it: residual is missing"):
+            rm.info(fit.drop_vars("residual"))
     assert "Johnson" in roughmdr("cite", "fit.nc", cwd=folder).stdout
     refused = roughmdr("report", "fit.nc", "-o", "page.html", cwd=folder)
     assert (refused.returncode, refused.stdout) == (2, "")

@@ -151,9 +151,9 @@ def _refuse_channel(channel: str | None) -> None:
 
 
 def _read_netcdf(path: Path, channel: str | None) -> RawMap:
-    """Read the variable ``channel``, or height; fill values become NaN."""
-    name = channel or "height"
+    """Read the variable ``channel``, or height, or heights as SurfaceTopography writes it; fill values become NaN."""
     with open_dataset(path) as dataset:
+        name = channel or ("heights" if "height" not in dataset and "heights" in dataset else "height")
         if name not in dataset.data_vars or dataset[name].ndim != 2:
             raise RoughmdrError(f"it must hold a variable {name} over two dimensions; it has {list(dataset.data_vars)}")
         height = dataset[name]
@@ -167,11 +167,17 @@ def _read_netcdf(path: Path, channel: str | None) -> RawMap:
         if dims == ("y", "x"):
             values, dims = values.T, dims[::-1]
         dx, dy = (_spacing(dataset, str(dim)) for dim in dims)
-        unit = str(height.attrs.get("units", "")).strip() or None
-        periodic = dataset.attrs.get("periodic")
-        if periodic is not None and (np.ndim(periodic) != 0 or periodic not in (0, 1)):
-            raise RoughmdrError(f"the attribute periodic is {periodic!r}; it must be 0 or 1")
-        return RawMap(values, unit, (dx, dy), None if periodic is None else bool(periodic))
+        holders = [dataset, *(dataset[dim] for dim in dims)]  # SurfaceTopography says it of each coordinate
+        said = [holder.attrs["periodic"] for holder in holders if "periodic" in holder.attrs]
+        for periodic in said:
+            if np.ndim(periodic) != 0 or periodic not in (0, 1):
+                raise RoughmdrError(f"the attribute periodic is {periodic!r}; it must be 0 or 1")
+        return RawMap(values, _unit_of(height) or None, (dx, dy), all(map(bool, said)) if said else None)
+
+
+def _unit_of(variable: "xr.DataArray") -> str:
+    """Return the unit of a variable: its attribute ``units``, or ``unit`` as SurfaceTopography writes it."""
+    return str(variable.attrs.get("units", variable.attrs.get("unit", ""))).strip()
 
 
 def _spacing(dataset: "xr.Dataset", dim: str) -> float:
@@ -182,7 +188,7 @@ def _spacing(dataset: "xr.Dataset", dim: str) -> float:
     if coordinate.dtype.kind not in "iuf":
         raise RoughmdrError(f"the coordinate {dim} is of type {coordinate.dtype}; it must be numbers")
     try:
-        factor = float(unit_factor(str(coordinate.attrs.get("units", "")), "m"))
+        factor = float(unit_factor(_unit_of(coordinate), "m"))
     except RoughmdrError as error:
         raise RoughmdrError(f"units of {dim}: {error}") from None
     with np.errstate(all="ignore"):  # steps that are not finite are not even
