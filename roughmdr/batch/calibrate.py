@@ -5,7 +5,6 @@ import time
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -198,6 +197,4 @@ def _some_of(ensemble: Ensemble, count: int) -> Ensemble:
     stride = max(1, ensemble.height.size // count)
     if stride == 1:
         return ensemble
-    pick: Callable[[np.ndarray], np.ndarray] = partial(np.take, indices=np.arange(0, ensemble.height.size, stride))
-    parameters = {name: pick(column) for name, column in ensemble.parameters.items()}
-    return replace(ensemble, height=pick(ensemble.height), parameters=parameters, positions={})
+    return replace(ensemble.taken(np.arange(0, ensemble.height.size, stride)), positions={})

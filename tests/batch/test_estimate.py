@@ -1,8 +1,11 @@
 """The forecast of a plan: the work that it takes, counted, and whether it comes near the run."""
 
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import xarray as xr
 from scenes import ASPERITIES, scene
 
 from roughmdr.batch.calibrate import measure
@@ -31,6 +34,22 @@ def test_without_time_one_small_part_of_one_cell_is_run(adhesion: dict[str, Any]
 def test_a_scene_is_never_run_beyond_its_own_size() -> None:
     small = {**ASPERITIES, "count": 30}
     assert work(1.0, asperities=small, path={"separation": ["2 um", "1 um", "0 um"]}) == 90
+
+
+def test_of_asperities_with_a_table_each_some_are_run(tmp_path: Path) -> None:
+    """They are a part of the whole, tables and all: a plan is not refused where a run is not."""
+    radius = np.linspace(1e-7, 2e-5, 20)
+    height = 1e-6 * np.random.default_rng(1).normal(size=400)
+    ensemble = {
+        "height": ("asperity", height, {"units": "m"}),
+        "a": (("asperity", "point"), np.tile(radius, (400, 1)), {"units": "m"}),
+        "g": (("asperity", "point"), np.linspace(1.0, 2.0, 400)[:, None] * radius**2 / 5e-5, {"units": "m"}),
+    }
+    attrs = {"shape": "mdr_table", "patch": 1e-3}
+    xr.Dataset(ensemble, attrs=attrs).to_netcdf(tmp_path / "hills.nc")
+    saved = {"source": "file", "file": str(tmp_path / "hills.nc")}
+    path = {"separation": {"start": "3 um", "stop": "0 um", "steps": 60}}
+    assert work(0.0, asperities=saved, path=path, batch=None) == FIRST_PART
 
 
 def test_with_time_the_parts_are_bounded_whatever_the_scene(tmp_path: Any) -> None:
