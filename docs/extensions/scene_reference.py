@@ -10,6 +10,7 @@ from sphinx.application import Sphinx
 from roughmdr.scene.json_schema import scene_schema
 
 _PLACE = "{{ scene keys }}"
+_REPEATED = ("second", "correlation")  # tables whose keys are those of the shape parameters once more
 _Table = dict[str, Any]
 
 
@@ -61,9 +62,13 @@ def _key_table(keys: _Table, sources: dict[str, list[str]]) -> Iterator[str]:
 
 
 def _with_parts(keys: _Table, prefix: str = "") -> Iterator[tuple[str, _Table]]:
-    """Yield every key, and after a table the keys in it, with dots."""
+    """Yield every key, and after a table the keys in it, with dots, unless they stand in another table as well."""
     for key, each in keys.items():
         yield f"{prefix}{key}", each
+        if key in _REPEATED:
+            own = {name: part for name, part in each.get("properties", {}).items() if name not in keys}
+            yield from _with_parts(own, f"{prefix}{key}.")
+            continue
         inner = each.get("items", {}) if "array" in str(each.get("type")) and "properties" not in each else each
         yield from _with_parts(inner.get("properties", {}), f"{prefix}{key}.")
 
