@@ -17,7 +17,6 @@ from roughmdr.schema.wording import escape_controls, short_repr, suggestion
 from roughmdr.storage.files import check_ending, replace_atomically
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 BRANCH_COLOURS = {"loading": "#0072b2", "unloading": "#d55e00"}
@@ -85,12 +84,6 @@ def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
     lines = textwrap.wrap(escape_controls(title), int(0.9 * letters)) or [""]
     lines += [line for note in notes for line in textwrap.wrap(escape_controls(note), letters)]
     figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)
-
-
-def hide_unused(axes: "Sequence[Axes]") -> None:
-    """Hide panels that are left over in the last row."""
-    for ax in axes:
-        ax.set_visible(False)
 
 
 @contextmanager

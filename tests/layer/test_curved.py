@@ -16,7 +16,7 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.ensemble import Source
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.layer import curved
-from roughmdr.layer.curved.bulk import displacement_matrix, line_load
+from roughmdr.layer.curved.bulk import displacement_matrix, row_load
 from roughmdr.layer.curved.pull_off import pull_off_of
 from roughmdr.layer.curved.refine import Layer, solve
 from roughmdr.layer.curved.rings import Rings
@@ -71,7 +71,9 @@ def smooth_error(elements: int) -> float:
     rings = Rings.between(np.linspace(0.0, 4.0, elements + 1))
     r, modulus = rings.radius, 2.0
     p = np.exp(-2.0 * r * r)
-    np.testing.assert_allclose(line_load(rings, p), math.sqrt(0.5 * math.pi) * p, atol=0.2 * (8.0 / elements) ** 3)
+    np.testing.assert_allclose(
+        row_load(rings.radius) @ p, math.sqrt(0.5 * math.pi) * p, atol=0.2 * (8.0 / elements) ** 3
+    )
     exact = math.sqrt(0.5 * math.pi) / modulus * ive(0, r * r)
     return float(np.abs((displacement_matrix(rings, modulus) * p).sum(axis=1) - exact).max() / exact[0])
 
@@ -85,7 +87,7 @@ def test_the_half_space_under_a_smooth_pressure_has_order_three_or_more() -> Non
 def test_the_load_of_the_springs_is_that_of_the_pressure() -> None:
     rings = Rings.between(np.linspace(0.0, 1.0, 40) ** 2)
     p = np.cos(3.0 * rings.radius) * (1.0 - rings.radius**2) ** 2  # of both signs
-    along = 2.0 * float((line_load(rings, p) * rings.weights).sum())
+    along = 2.0 * float((row_load(rings.radius) @ p * rings.weights).sum())
     assert along == pytest.approx(float((rings.area_weights * p).sum()), rel=1e-4)
 
 

@@ -26,14 +26,9 @@ def displacement_matrix(rings: Rings, effective_modulus: float) -> Floats:
 
     E* [Pa]; the displacement is positive into the half-space.
     """
-    matrix = _product(_row_displacement(rings.radius), _row_load(rings.radius))
+    matrix = _product(_row_displacement(rings.radius), row_load(rings.radius))
     matrix *= 2.0 / (math.pi * effective_modulus)
     return matrix
-
-
-def line_load(rings: Rings, pressure: Floats) -> Floats:
-    """Return q(x) [N/m] of a pressure [Pa], at x equal to the radius of each ring."""
-    return np.asarray((_row_load(rings.radius) * pressure).sum(axis=1))
 
 
 @njit
@@ -46,8 +41,8 @@ def _add_parabola(row: Floats, radius: Floats, element: int, r: float, weight: f
 
 
 @njit
-def _row_load(radius: Floats) -> Floats:
-    """Return the matrix [m] of q from the pressure."""
+def row_load(radius: Floats) -> Floats:
+    """Return the matrix [m] that takes the pressure on each ring to q(x) [N/m], at x equal to the radius of each."""
     matrix = np.zeros((radius.size, radius.size))
     for i in range(radius.size):
         x = radius[i]
