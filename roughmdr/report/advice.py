@@ -25,19 +25,33 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
     asperities = table.get("asperities", {})
     if not isinstance(asperities, dict) or asperities.get("source") not in _OF_MAPS:
         return
-    source = asperities["source"]
-    model = asperities.get("model", "summits" if source == "surface" else "hills")
+    model = asperities.get("model", "summits" if asperities["source"] == "surface" else "hills")
     coupled = table.get("interaction", {}).get("model") == "pairwise"
     which = _which(table, model, coupled)
     if resolution_error <= MAX_HILLS_ERROR:
         yield "advice", which
         return
-    finer = "raise asperities.points" if source == "spectrum" else "a finer map or a cutoff of known noise helps"
-    coarse = f"the map is too coarse or noisy for summits, hills and boundary elements alike: {finer}"
-    if resolution_error > _USELESS:
-        yield "advice", f"believe none of them as they are; {coarse}"
-        return
-    yield "advice", f"{coarse}; as far as it goes, {which}"
+    finer = _finer(asperities)
+    if model == "summits":
+        noisy = f"the map is too coarse or noisy for its summits: {finer}"
+        yield (
+            "advice",
+            f"do not believe the summits; {noisy}; {which}" if resolution_error > _USELESS else f"{noisy}; {which}",
+        )
+    elif resolution_error > _USELESS:
+        yield "advice", f"believe neither hills nor boundary elements; the map is too coarse for both: {finer}"
+    else:
+        yield (
+            "advice",
+            f"the map is too coarse for hills and boundary elements alike: {finer}; as far as it goes, {which}",
+        )
+
+
+def _finer(asperities: dict[str, Any]) -> str:
+    """Return what helps a map that is too coarse or noisy."""
+    if asperities["source"] == "spectrum":
+        return "raise asperities.points"
+    return "a finer map helps" if "cutoff" in asperities else "a finer map or a cutoff of known noise helps"
 
 
 def _which(table: dict[str, Any], model: object, coupled: bool) -> str:

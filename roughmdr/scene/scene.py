@@ -123,7 +123,8 @@ class Scene(Sections):
         if self.work > 0.0:
             raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
         if self.path.control != "separation":
-            raise mismatch("reference", f"goes with path.separation, not with path.{self.path.key}")
+            instead = "path.separation = { stop = { pressure = ... } } loads to a pressure"
+            raise mismatch("reference", f"goes with path.separation, not with path.{self.path.key}; {instead}")
 
     def _check_accuracy(self, accuracy: Accuracy) -> None:
         if not self.asperities.is_random:

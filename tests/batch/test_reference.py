@@ -117,7 +117,10 @@ def test_a_result_without_its_reference_is_extended(tmp_path: Path) -> None:
     ("changes", "message"),
     [
         ({"adhesion": {"model": "jkr", "work": 1e-3}}, "reference: does not go with adhesion"),
-        ({"path": {"force": {"stop": "1 uN", "steps": 3}}}, "goes with path.separation, not with path.force"),
+        (
+            {"path": {"force": {"stop": "1 uN", "steps": 3}}},
+            "path.separation = { stop = { pressure = ... } } loads to a",
+        ),
         ({"reference": {"model": "boundary_elements", "error": 0.0}}, "at least 0.001"),
         ({"reference": {}}, "reference.model"),
         (
@@ -183,9 +186,10 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
             "believe hills in pairs as far as they have values",
         ),
         ({"reference": None, "adhesion": {"model": "jkr", "work": "0 mJ/m^2"}}, "believe boundary elements most"),
+        ({"asperities": {**SURFACE, "hurst": 0.3, "points": 2.5}}, "the map is too coarse for hills and boundary"),
         (
-            {"asperities": {**SURFACE, "hurst": 0.3, "points": 2.5}},
-            "too coarse or noisy for summits, hills and",
+            {"asperities": {**SURFACE, "hurst": 0.3, "points": 2.5, "model": "summits"}},
+            "the map is too coarse or noisy for its summits",
         ),
     ],
 )
