@@ -8,6 +8,7 @@ import numpy as np
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.conduction import conduction_lines
+from roughmdr.report.contact_pressure import contact_pressure_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
@@ -113,6 +114,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield from _avalanches(result)
     yield from _contacts_at_ends(result)
     yield from trust_of_result(result)
+    yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
     yield from _indent("slip", attrs.get("slip", "").splitlines())
     yield from advice_lines(attrs["scene"], resolution_error(result))

@@ -1,0 +1,36 @@
+"""The mean pressure in the contacts of a result, in words: by it a reader tells whether the bodies would yield."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+from roughmdr.result.means import holds, mean_of
+from roughmdr.schema.units import format_quantity
+from roughmdr.storage.labelled import Labelled
+
+
+def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield mean force over mean contact area where that area is largest; nothing without both, or under tension."""
+    if not holds(result, "force") or (area := _mean_area(result)) is None:
+        return
+    force = mean_of(result, "force")[0]
+    known = np.where(np.isfinite(area) & np.isfinite(force), area, 0.0)
+    closest = known.argmax(axis=-1)[..., None]
+    largest, there = (np.take_along_axis(each, closest, -1)[..., 0] for each in (known, force))
+    pressed = (largest > 0.0) & (there > 0.0)
+    if not pressed.any():
+        return
+    pressure = there[pressed] / largest[pressed]
+    low, high = float(pressure.min()), float(pressure.max())
+    shown = format_quantity(low, "Pa", to=high if high > 1.01 * low else None)
+    yield "pressure", f"{shown} on average in the contacts at closest approach; plastic flow is left out"
+
+
+def _mean_area(result: Labelled) -> Floats | None:
+    """Return the mean contact area [m2] over swept keys and step; None where a result does not have it."""
+    if holds(result, "contact_area"):
+        return mean_of(result, "contact_area")[0]
+    if holds(result, "contact_fraction") and "nominal_area" in result.variables:
+        return np.asarray(mean_of(result, "contact_fraction")[0] * result.variables["nominal_area"].values[..., None])
+    return None
