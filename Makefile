@@ -1,4 +1,4 @@
-# make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check.
+# make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check, build the docs.
 # make test-all: the long random searches as well, some 10 minutes more.
 # make docs: build the documentation into docs/_build/html, examples and all.
 # make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
@@ -21,6 +21,7 @@ test: setup lint
 	  tests/interaction/test_jkr_parts.py tests/aggregate/test_machine.py \
 	  --deselect tests/aggregate/test_machine.py::test_asperities_that_feel_each_other_are_loaded_to_the_same_preload \
 	  --ignore tests/numerics/test_fingerprint.py
+	@$(MAKE) --no-print-directory docs
 
 # The long forms of the random searches, benchmarks, every shape compiled, and more of it uncompiled.
 test-all: test
