@@ -245,7 +245,8 @@ def _left_out(scene: Scene) -> Iterator[str]:
     elif scene.work == 0.0:
         yield "adhesion: adhesion.work is 0"
     if scene.adhesion_model.model == "auto":
-        yield f"range of the adhesion: where JKR is off by less than {scene.adhesion_model.error:g}, see tabor_number"
+        least = f"{scene.adhesion_model.error:g} along the path, jumps into contact included"
+        yield f"range of the adhesion: where JKR is off by less than {least}; adhesion_law tells where that is"
     elif scene.work > 0.0 and not scene.adhesion_model.cohesive:
         yield "range of the adhesion: adhesion.model is 'jkr'"
     if scene.work == 0.0 and scene.viscoelastic is None:

@@ -23,7 +23,11 @@ from roughmdr.report.terminal import Command, print_note, print_text
 @click.option("--units", default="", metavar="NAMES", help='Length, force and stress, as "mm,N,MPa". Default: SI.')
 @click.option("--branch", default="loading", show_default=True, metavar="BRANCH", help="loading or unloading.")
 @click.option(
-    "--error", type=float, default=1e-3, show_default=True, help="Of lines between the points, over the largest value."
+    "--error",
+    type=float,
+    default=1e-3,
+    show_default=True,
+    help="Of lines between the points: over the value, below a tenth of the largest over that tenth.",
 )
 @click.option("--select", "selected", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one cell; repeatable.")
 @fresh_option

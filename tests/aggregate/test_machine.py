@@ -9,9 +9,9 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from oracles.machine_path import BruteForce
 
 import roughmdr as rm
-from pipelines.oracles.machine_path import BruteForce
 
 UNITS = [(1.0, 1.0, 1.0 / (2.0 * math.pi)), (2e-5, 3e6, 0.05), (3.0, 2e9, 40.0)]
 """R [m], E* [Pa] and w [J/m2]; the first makes a0 = d0 = 1."""

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles.pairwise import periodic_green
 from scenes import ASPERITIES, ensemble, scene
 from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
 import roughmdr as rm
-from pipelines.oracles.pairwise import periodic_green
 from roughmdr.ensemble.source import HEXAGONAL_CONSTANT
 from roughmdr.interaction import Interaction
 from roughmdr.interaction.mean_field import coupling_of, mean_inverse_distance, shift

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles.gaussian_maps import gaussian_map
 from pydantic import TypeAdapter
 from scenes import ASPERITIES
 from scipy.spatial import cKDTree
 
 import roughmdr as rm
-from pipelines.oracles.gaussian_maps import gaussian_map
 from roughmdr.ensemble import Asperities, Source
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap

@@ -192,6 +192,9 @@ def test_conductances_are_over_the_pressure(files: Path, variable: str, option: 
     keyword, p, k = of_abaqus(exported(file, "k.inp", to="abaqus", **asked))
     primary, *table = of_ansys(exported(file, "k.mac", to="ansys", **asked))
     assert keyword == option
+    assert f"{variable} per nominal area in {'W/mm^2/K' if variable[0] == 't' else 'S/mm^2'}" in header_of(
+        files / "k.inp"
+    )
     assert primary == "PRESSURE"
     np.testing.assert_allclose(table, [p, k], rtol=1e-12)
     assert f"ROUGH_{ansys}(1,0)" in (files / "k.mac").read_text()

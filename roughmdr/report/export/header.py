@@ -6,7 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.report.conduction import conduction_lines
-from roughmdr.report.export.law import Quantity
+from roughmdr.report.contact_pressure import contact_pressure_lines
+from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import Table
 from roughmdr.report.export.thin import RELATIVE_FROM
 from roughmdr.report.export.units import UnitSystem
@@ -27,13 +28,15 @@ def origin_lines(cell: Labelled, words: str) -> Iterator[tuple[str, str]]:
 
 
 def table_lines(
-    cell: Labelled, table: Table, quantity: Quantity, variable: str, units: UnitSystem
+    cell: Labelled, table: Table, quantity: Quantity, source: Source, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
     """Yield what the numbers of a table are, and their errors."""
     runs = realizations_of(cell)
     yield "law", "expected law" if estimator_of(cell) == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
     yield "branch", table.law.rule
-    yield "quantity", f"{variable} per nominal area" if variable not in ("pressure", "contact_fraction") else variable
+    variable, unit = source.variable, units.of(source.dimension).name
+    per_area = "" if variable in ("pressure", "contact_fraction") else " per nominal area"
+    yield "quantity", f"{variable}{per_area}{f' in {unit}' if unit != '1' else ''}"
     length, pressure = units.length, units.stress
     yield "units", units.names
     if "nominal_area" in cell.variables:
@@ -62,6 +65,7 @@ def table_lines(
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
+    yield from contact_pressure_lines(cell)
     if variable in CONDUCTANCES:
         yield from conduction_lines(cell)
     if TIME.name in cell.coordinates:

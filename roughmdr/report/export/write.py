@@ -150,7 +150,7 @@ def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Doc
     argument, other = (pressure, overclosure) if quantity.over_pressure else (overclosure, pressure)
     columns = (argument, value, separation, *([] if value is pressure else [other]), error)
     _check_fit(table, quantity, units, asked)
-    header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source.variable, units))
+    header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source, units))
     if note := asked.format.quantities[asked.quantity]:
         header["use"] = note
     friction = _friction(result, asked) if quantity.name == "tangential" else None
