@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import law_seconds, reference_bytes, reference_seconds
+from roughmdr.batch.costs import law_seconds, reference_bytes, reference_seconds, search_factor
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
@@ -57,7 +57,8 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     that of a reference. RoughmdrError where the cell cannot be computed.
     """
     cost = _measure_law(cell, estimator, variables, budget)
-    return cost._replace(seconds=cost.seconds + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
+    law = cost.seconds * search_factor(cell, estimator)  # parts are run along separations
+    return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
 
 
 def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:

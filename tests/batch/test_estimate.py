@@ -68,6 +68,19 @@ def test_what_a_state_costs_bounds_the_number_of_states() -> None:
     assert 0.1 < cost.seconds / seconds(cell, "sampled") < 10.0
 
 
+@pytest.mark.parametrize(("adhesion", "times"), [(None, 17.0), ({"model": "jkr", "work": "1 mJ/m^2"}, 3.6)])
+def test_separations_that_are_sought_take_longer(adhesion: dict[str, Any] | None, times: float) -> None:
+    """Pairs that no time is left to run, so that constants tell: in as many steps to the same pressure."""
+    asperities = {**ASPERITIES, "count": 200, "placement": "random"}
+
+    def foreseen(path: dict[str, Any]) -> float:
+        made = read(scene(adhesion=adhesion, asperities=asperities, interaction={"model": "pairwise"}, path=path))
+        return measure(make_plan(made).cells[0], "sampled", ["force"], 0.0).seconds
+
+    given = foreseen({"separation": {"stop": {"pressure": "10 Pa"}, "steps": 30}})
+    assert foreseen({"pressure": {"stop": "10 Pa", "steps": 30}}) == pytest.approx(times * given, rel=1e-9)
+
+
 def test_an_expected_law_that_takes_too_long_is_not_run() -> None:
     asperities = {**ASPERITIES, "shape": "rounded_cone", "slope": ASPERITIES["radius"] | {"mean": 0.1, "std": 0.01}}
     asperities["blend_radius"] = asperities.pop("radius")
