@@ -24,7 +24,7 @@ def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:
     pressure = there[pressed] / largest[pressed]
     low, high = float(pressure.min()), float(pressure.max())
     shown = format_quantity(low, "Pa", to=high if high > 1.01 * low else None)
-    yield "pressure", f"{shown} on average in the contacts at closest approach; plastic flow is left out"
+    yield "pressure", f"{shown} on average in the contacts at closest approach; plastic flow is not modelled"
 
 
 def _mean_area(result: Labelled) -> Floats | None:
