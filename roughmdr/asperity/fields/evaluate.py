@@ -173,7 +173,7 @@ def axis_stress(
     Returns
     -------
     xarray.Dataset
-        Over z: sigma_zz [Pa], sigma_rr [Pa] and shear = |sigma_zz - sigma_rr|/2 [Pa]. Without dimension: largest_shear
+        Over z: sigma_zz, sigma_rr and shear = ``|sigma_zz - sigma_rr|/2`` [Pa]. Without dimension: largest_shear
         [Pa] of all depths, and largest_shear_depth [m] (0 on the surface), left out where the profile is sharp,
         f'(0+) > 0: there the shear grows without bound towards the tip, as (1/2 - poisson) ln(1/z) for a cone.
 
