@@ -12,6 +12,7 @@ _USELESS = 0.3
 """Error by the resolution of a map beyond which no model of it is to be believed."""
 _HILLS = "hills in pairs are within 3 % r.m.s. of them from 0.3 to 20 % contact, 6 % where waves are four times as long"
 _SUMMITS = "summits are 14 % off in pairs and 32 % alone, since their flanks are no paraboloids"
+_TOO_COARSE = 'asperities.model = "hills" tells whether it is too coarse for hills and boundary elements too'
 _TO_HILLS = 'take asperities.model = "hills" with [interaction] model = "pairwise"'
 
 
@@ -31,20 +32,16 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
     if resolution_error <= MAX_HILLS_ERROR:
         yield "advice", which
         return
-    finer = _finer(asperities)
+    finer, useless = _finer(asperities), resolution_error > _USELESS
     if model == "summits":
-        noisy = f"the map is too coarse or noisy for its summits: {finer}"
-        yield (
-            "advice",
-            f"do not believe the summits; {noisy}; {which}" if resolution_error > _USELESS else f"{noisy}; {which}",
-        )
-    elif resolution_error > _USELESS:
-        yield "advice", f"believe neither hills nor boundary elements; the map is too coarse for both: {finer}"
+        opening = "do not believe the summits; " if useless else ""
+        coarse = f"{opening}the map is too coarse or noisy for its summits: {finer}"
+        advice = f"{coarse}; as far as it goes, {which}; {_TOO_COARSE}"
+    elif useless:
+        advice = f"believe neither hills nor boundary elements; the map is too coarse for both: {finer}"
     else:
-        yield (
-            "advice",
-            f"the map is too coarse for hills and boundary elements alike: {finer}; as far as it goes, {which}",
-        )
+        advice = f"the map is too coarse for hills and boundary elements alike: {finer}; as far as it goes, {which}"
+    yield "advice", advice
 
 
 def _finer(asperities: dict[str, Any]) -> str:
