@@ -42,6 +42,14 @@ def test_run_and_plot(small: Path) -> None:
     assert (small / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_folder_beside_the_clone_does_not_hide_the_package(tmp_path: Path) -> None:
+    """Python takes a folder called as the package for a package of its own unless it finds a real one."""
+    (tmp_path / "roughmdr").mkdir()
+    code = "import roughmdr as rm; print(rm.run.__module__)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.strip()) == (0, "roughmdr.runner.run"), done.stderr
+
+
 def test_quiet_says_nothing(small: Path) -> None:
     done = roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", "--workers", 1, cwd=small)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

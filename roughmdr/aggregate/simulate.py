@@ -20,10 +20,10 @@ from roughmdr.loading import smooth_passage
 from roughmdr.loading.machine import FIXED_GRIPS, Jump, MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import LOSSES
 
 OF_MACHINE = {"separation", "remote"}
 """Variables that the machine gives."""
-_LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
 
 
 def simulate(
@@ -65,13 +65,13 @@ def simulate(
                 ensemble, path, effective_modulus, adhesion, interaction, of_contacts, clear
             )
             return _with_place(law, separation, path).only(names)
-        lossy = not _LOSSES.isdisjoint(names)
+        lossy = not LOSSES.isdisjoint(names)
         separation, jumps = _separations(ensemble, path, effective_modulus, adhesion, interaction, jumps=lossy)
         way = np.where(np.isinf(separation), clear, separation)
         law = _with_place(along(_way(way, path), of_contacts), separation, path)
         if jumps and lossy:
             lost = machine_loss(path.machine, jumps, way, clear, lambda h, names: along(_way(h, path), names))
-            variables = {name: law.variables[name] + lost for name in _LOSSES.intersection(names)}
+            variables = {name: law.variables[name] + lost for name in LOSSES.intersection(names)}
             law = law._replace(variables=law.variables | variables)
         return law.only(names)
 

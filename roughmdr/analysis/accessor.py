@@ -94,15 +94,14 @@ class Analysis:
 
         Examples
         --------
-        >>> loop = result.roughmdr.hysteresis()
-        >>> bool((loop.energy_lost > 0.0).all()), loop.energy_lost.dims
-        (True, ('realization',))
+        >>> bool((result.roughmdr.hysteresis().energy_lost > 0.0).all())
+        True
         """
         from roughmdr.analysis.hysteresis import hysteresis
 
         return hysteresis(self._dataset)
 
-    def at_force(self, force: ArrayLike, *, branch: str = "loading") -> "xr.Dataset":
+    def at_force(self, force: ArrayLike, *, branch: str = "loading", reference: bool = False) -> "xr.Dataset":
         """Return all curves, and the separation, where the force first reaches values on a branch.
 
         Parameters
@@ -111,6 +110,8 @@ class Analysis:
             [N]. An array makes a dimension ``force``.
         branch : {"loading", "unloading"}, optional
             The branch on which it is reached: on the first leg that reaches it.
+        reference : bool, optional
+            Whether the reference by boundary elements is to reach them; the new dimension is ``reference_force``.
 
         Returns
         -------
@@ -133,9 +134,9 @@ class Analysis:
         >>> dict(there.separation.sizes), there.separation_interpolation_error.attrs["units"]
         ({'realization': 4, 'force': 2}, 'm')
         """
-        return self._at("force", force, branch)
+        return self._at("force", force, branch, reference)
 
-    def at_pressure(self, pressure: ArrayLike, *, branch: str = "loading") -> "xr.Dataset":
+    def at_pressure(self, pressure: ArrayLike, *, branch: str = "loading", reference: bool = False) -> "xr.Dataset":
         """Return all curves where the pressure [Pa] first reaches values; else as ``at_force``.
 
         Examples
@@ -143,9 +144,11 @@ class Analysis:
         >>> result.roughmdr.at_pressure("10 Pa").force.dims
         ('realization',)
         """
-        return self._at("pressure", pressure, branch)
+        return self._at("pressure", pressure, branch, reference)
 
-    def at_contact_fraction(self, contact_fraction: ArrayLike, *, branch: str = "loading") -> "xr.Dataset":
+    def at_contact_fraction(
+        self, contact_fraction: ArrayLike, *, branch: str = "loading", reference: bool = False
+    ) -> "xr.Dataset":
         """Return all curves where the contact fraction [1] first reaches values; else as ``at_force``.
 
         Examples
@@ -153,23 +156,22 @@ class Analysis:
         >>> result.roughmdr.at_contact_fraction([1e-3, 2e-3], branch="unloading").force.dims
         ('realization', 'contact_fraction')
         """
-        return self._at("contact_fraction", contact_fraction, branch)
+        return self._at("contact_fraction", contact_fraction, branch, reference)
 
     def at_separation(self, separation: ArrayLike, *, branch: str = "loading") -> "xr.Dataset":
         """Return all curves where the flat first stands at separations [m]; else as ``at_force``.
 
         Examples
         --------
-        >>> here = result.roughmdr.at_separation("2 um")
-        >>> bool((here.force_interpolation_error < 1e-4).all())
+        >>> bool((result.roughmdr.at_separation("2 um").force_interpolation_error < 1e-4).all())
         True
         """
         return self._at("separation", separation, branch)
 
-    def _at(self, name: str, values: ArrayLike, branch: str) -> "xr.Dataset":
+    def _at(self, name: str, values: ArrayLike, branch: str, reference: bool = False) -> "xr.Dataset":
         from roughmdr.analysis.interpolation import at_value
 
-        return at_value(self._dataset, name, values, branch)
+        return at_value(self._dataset, f"reference_{name}" if reference else name, values, branch)
 
     def normalise(self, theory: str) -> "xr.Dataset":
         """Return the result without dimensions, by the scales of a theory.
@@ -194,9 +196,8 @@ class Analysis:
 
         Examples
         --------
-        >>> scaled = result.roughmdr.normalise("gw")
-        >>> scaled.force.attrs["units"], round(float(scaled.separation[-1] - scaled.separation[0]), 3)
-        ('1', 0.0)
+        >>> result.roughmdr.normalise("gw").force.attrs["units"]
+        '1'
         """
         from roughmdr.analysis.normalise import normalise
 

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BRANCHES = ("loading", "unloading")
-PER_AREA = {OVER_AREA[total]: total for total in ("force", "contact_area")}
+PER_AREA = {
+    f"{of}{OVER_AREA[total]}": f"{of}{total}" for of in ("", "reference_") for total in ("force", "contact_area")
+}
 """Curves that follow from others and the nominal area."""
 _NEEDED = "ds.roughmdr needs a result as roughmdr.run or load_separation returns it"
 
@@ -72,7 +74,7 @@ def curve(dataset: "xr.Dataset", name: str, asked: str) -> "xr.DataArray":
             return alone(whole(dataset[held]))
     if name in PER_AREA and "nominal_area" in dataset:
         total = curve(dataset, PER_AREA[name], asked)
-        return (total / alone(dataset["nominal_area"])).assign_attrs(CURVE_VARIABLES[name].attrs)
+        return (total / alone(dataset["nominal_area"])).assign_attrs(LAW_VARIABLES[name].attrs)
     if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
         total = curve(dataset, "pressure", asked) * alone(dataset["nominal_area"])
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)

@@ -37,8 +37,8 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     check_result(dataset)
     units = (LAW_VARIABLES | {SEPARATION.name: SEPARATION})[name].units
     wanted = check_values(name, values, units)
-    if name == "contact_fraction" and np.max(wanted) > 1.0:
-        raise OutOfRange(f"contact_fraction is {np.max(wanted):g}; it must be at most 1")
+    if name.endswith("contact_fraction") and np.max(wanted) > 1.0:
+        raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
     legs = Legs(dataset, branch)
     reached = alone(curve(dataset, name, f"at_{name} needs"))
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import law_seconds, reference_bytes, reference_seconds, search_factor
+from roughmdr.batch.costs import jump_seconds, law_seconds, reference_bytes, reference_seconds, search_factor
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
@@ -58,6 +58,7 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     """
     cost = _measure_law(cell, estimator, variables, budget)
     law = cost.seconds * search_factor(cell, estimator)  # parts are run along separations
+    law += jump_seconds(cell, variables)
     return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
 
 
@@ -110,10 +111,16 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
     if _MARGIN * foreseen[0] > budget:
         return Cost(foreseen[-1], 0.0)
 
+    def run_drawn(part: Cell, asperities: int) -> None:
+        simulate_ensemble(cell.scene, part.usual, _drawn(cell.scene, asperities, estimator), variables)
+
+    if drawn:
+        run_drawn(_thinned(cell, 1), 1)  # what is loaded at its first use does not count
+
     def run(size: int) -> _Time:
         started = time.thread_time()
         if drawn:
-            simulate_ensemble(cell.scene, parts[size].usual, _drawn(cell.scene, sizes[size][0], estimator), variables)
+            run_drawn(parts[size], sizes[size][0])
         else:
             simulate_realization(cell.scene, parts[size].usual, 0, variables, estimator)
         return _Time(0.0, time.thread_time() - started)

@@ -4,15 +4,17 @@ Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipeli
 about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
-from roughmdr.elements.refine import first_points
+from roughmdr.elements.refine import LARGEST_GRID, first_points
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, TabledShape
+from roughmdr.variables import LOSSES
 
 START_UP = 1.2
 """Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
@@ -46,6 +48,7 @@ _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
+_JUMP = 1e-4  # an asperity whose jumps on a machine are located: 0.4e-4 to 2.7e-4, where they detach one by one
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
@@ -96,6 +99,12 @@ def search_factor(cell: Cell, estimator: str) -> float:
     return _SOUGHT_ADHERING if cell.scene.work > 0.0 else _SOUGHT_PAIRS
 
 
+def jump_seconds(cell: Cell, variables: Iterable[str]) -> float:
+    """Return about how long it takes to locate the jumps of a run [s], whose energies are among the ``variables``."""
+    jumps = cell.scene.work > 0.0 and not cell.fixed_grips and not cell.scene.needs_positions
+    return _JUMP * cell.scene.asperities.expected_count if jumps and not LOSSES.isdisjoint(variables) else 0.0
+
+
 def _visit_seconds(adhesion: Adhesion, shape: str) -> float:
     """Return about how long an asperity takes at a step [s]."""
     simple = shape == "paraboloid" or not adhesion.work
@@ -135,11 +144,15 @@ def paired_seconds(cell: Cell) -> float:
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
-def reference_seconds(cell: Cell) -> float:
-    """Return about how long the reference of a realisation takes [s]; 0 where none is asked for."""
+def reference_seconds(cell: Cell, *, finest: bool = False) -> float:
+    """Return about how long the reference of a realisation takes [s]; 0 where none is asked for.
+
+    That is on the grid it begins with, or on the ``finest``, which few and small contacts may need.
+    """
     if cell.scene.reference is None:
         return 0.0
-    return np.unique(cell.path.separation).size * (_REFERENCE_STEP + _REFERENCE_POINT * _reference_points(cell))
+    points = _reference_points(cell, finest=finest)
+    return np.unique(cell.path.separation).size * (_REFERENCE_STEP + _REFERENCE_POINT * points)
 
 
 def reference_bytes(cell: Cell) -> float:
@@ -147,10 +160,11 @@ def reference_bytes(cell: Cell) -> float:
     return 0.0 if cell.scene.reference is None else _REFERENCE_BYTES * _reference_points(cell)
 
 
-def _reference_points(cell: Cell) -> float:
+def _reference_points(cell: Cell, *, finest: bool = False) -> float:
     """Return the points of a grid of the error asked for, with those around a surface that stands alone."""
     assert cell.scene.reference is not None
-    points = first_points(cell.scene.asperities.expected_count, cell.scene.reference.error) ** 2
+    first = first_points(cell.scene.asperities.expected_count, cell.scene.reference.error)
+    points = LARGEST_GRID**2 if finest else first**2
     return points if cell.scene.repeats else _ALONE * points
 
 

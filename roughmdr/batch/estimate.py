@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.calibrate import Cost, measure
-from roughmdr.batch.costs import START_UP, file_bytes, result_bytes, seconds
+from roughmdr.batch.costs import START_UP, file_bytes, reference_seconds, result_bytes, seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
@@ -29,6 +29,7 @@ class Estimate(NamedTuple):
     runs: int
     tasks: int
     seconds: float  # in all
+    longest: float  # in all, should references need the finest grids; as ``seconds`` where there are none
     start_up: float  # until the first asperity is made
     memory: float  # peak, in all
     resident: float  # of Python and its packages; 0 where the system does not tell
@@ -62,10 +63,16 @@ def estimate(plan: Plan, workers: int, budget: float = BUDGET) -> Estimate:
     if plan.keeps_statistics:
         memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
     computing = correction * foreseen_total / busy
+    whole = START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps
+    finer = sum(
+        (each.last - each.first) * (reference_seconds(each.cell, finest=True) - reference_seconds(each.cell))
+        for each in first
+    )
     return Estimate(
         runs=runs,
         tasks=tasks,
-        seconds=START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps,
+        seconds=whole,
+        longest=whole + finer / busy,
         start_up=START_UP,
         memory=resident + memory + busy * max(cost.memory for cost in costs.values()),
         resident=resident,

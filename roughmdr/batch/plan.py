@@ -136,9 +136,7 @@ class Plan(NamedTuple):
     @property
     def map_lines(self) -> list[str]:
         """Lines on the maps of the asperities, with the number of cells where not of all."""
-        return count_by_cell(
-            (text for cell in self.cells for text in cell.scene.asperities.description), len(self.cells)
-        )
+        return count_by_cell((text for cell in self.cells for text in cell.scene.map_lines), len(self.cells))
 
     def name_of(self, cell: int, realization: int) -> str:
         """Describe a run: the swept values of its cell, and its realisation."""

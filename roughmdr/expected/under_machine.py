@@ -16,9 +16,9 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.loading.smooth_passage import separations_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import LOSSES
 
 _CHANCE = 1e-9  # that an asperity is higher than where the search begins
-_LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
 
 
 def compute_under_machine(
@@ -35,7 +35,7 @@ def compute_under_machine(
     SceneError for an energy that jumps lose: the jumps of a mean law are not those of patches.
     """
     names = list(variables)
-    if path.machine != FIXED_GRIPS and (lost := sorted(_LOSSES.intersection(names))):
+    if path.machine != FIXED_GRIPS and (lost := sorted(LOSSES.intersection(names))):
         raise SceneError(f"variables: {', '.join(lost)} of an expected law under a machine are not available")
     extreme = source.extremes(_CHANCE)
     first_touch = float(extreme.height.max()) + (adhesion.range if adhesion.cohesive else 0.0)

@@ -29,7 +29,8 @@ def first_reached(law: Law, value: float, start: float, distance: float, rtol: f
         raise OutOfReach(f"is reached above the start, {start:.4g} m; start must be higher")
     above, below, most = start, start - distance, 0.0
     for _ in range(_MAX_DOUBLINGS):
-        h, values = _between(law, above, below)
+        h = _positions(above, below)
+        values = _until(law, h, value)
         if (values >= value).any():
             break
         most = max(most, float(values.max()))
@@ -42,13 +43,25 @@ def first_reached(law: Law, value: float, start: float, distance: float, rtol: f
         resolution = max(rtol * (start - below), float(np.spacing(max(abs(above), abs(below)))))
         if above - below <= resolution:
             return below
-        h, values = _between(law, above, below)
+        h = _positions(above, below)
+        values = _capped(law, h)
 
 
-def _between(law: Law, above: float, below: float) -> tuple[Floats, Floats]:
-    """Return positions [m] from next to ``above`` to ``below``, and the law there."""
-    h = np.linspace(above, below, _POINTS + 1)[1:]
-    return h, _capped(law, h)
+def _positions(above: float, below: float) -> Floats:
+    """Return positions [m] from next to ``above`` to ``below``."""
+    return np.linspace(above, below, _POINTS + 1)[1:]
+
+
+def _until(law: Law, positions: Floats, value: float) -> Floats:
+    """Return the law at falling positions [m]; inf, uncomputed, in those halves of the rest that lie beyond ``value``.
+
+    Far beyond it most asperities may be in contact, which takes long where they feel each other.
+    """
+    half = (positions.size + 1) // 2
+    first, rest = _capped(law, positions[:half]), positions[half:]
+    if rest.size == 0 or (first >= value).any():
+        return np.concatenate([first, np.full(rest.size, np.inf)])
+    return np.concatenate([first, _until(law, rest, value)])
 
 
 def _capped(law: Law, positions: Floats) -> Floats:

@@ -37,8 +37,9 @@ def plan_of_result(file: Path | None, result: Labelled) -> Plan:
     SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
     """
     if control_of(result) != "separation":
-        where = "on a lateral path" if control_of(result) == LATERAL.name else "under a machine"
-        raise StoreError(f"{file or 'result'}: theories and the expected law are over separation, not {where}")
+        lateral = control_of(result) == LATERAL.name
+        where = "a lateral path" if lateral else "a path of loads, of a preload or behind a spring"
+        raise StoreError(f"{file or 'result'}: theories and the expected law need path.separation; this is {where}")
     plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), controlled_values(result)
     planned = np.array([cell.values for cell in plan.cells])
     if (

@@ -9,28 +9,37 @@ from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 
+_ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body, contacts flow and are larger"
+
 
 def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:
     """Yield mean force over mean contact area where that area is largest; nothing without both, or under tension."""
-    if not holds(result, "force") or (area := _mean_area(result)) is None:
-        return
-    force = mean_of(result, "force")[0]
+    asperities, elements = _range(result, ""), _range(result, "reference_")
+    if asperities:
+        beside = f", {elements} by boundary elements," if elements else ""
+        yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach; {_ELASTIC}"
+
+
+def _range(result: Labelled, of: str) -> str:
+    """Return the pressures of all cells; ``of`` is what the names of the variables begin with."""
+    if not holds(result, f"{of}force") or (area := _mean_area(result, of)) is None:
+        return ""
+    force = mean_of(result, f"{of}force")[0]
     known = np.where(np.isfinite(area) & np.isfinite(force), area, 0.0)
     closest = known.argmax(axis=-1)[..., None]
     largest, there = (np.take_along_axis(each, closest, -1)[..., 0] for each in (known, force))
     pressed = (largest > 0.0) & (there > 0.0)
     if not pressed.any():
-        return
+        return ""
     pressure = there[pressed] / largest[pressed]
     low, high = float(pressure.min()), float(pressure.max())
-    shown = format_quantity(low, "Pa", to=high if high > 1.01 * low else None)
-    yield "pressure", f"{shown} on average in the contacts at closest approach; plastic flow is not modelled"
+    return format_quantity(low, "Pa", to=high if high > 1.01 * low else None)
 
 
-def _mean_area(result: Labelled) -> Floats | None:
+def _mean_area(result: Labelled, of: str) -> Floats | None:
     """Return the mean contact area [m2] over swept keys and step; None where a result does not have it."""
-    if holds(result, "contact_area"):
-        return mean_of(result, "contact_area")[0]
-    if holds(result, "contact_fraction") and "nominal_area" in result.variables:
-        return np.asarray(mean_of(result, "contact_fraction")[0] * result.variables["nominal_area"].values[..., None])
+    if holds(result, f"{of}contact_area"):
+        return mean_of(result, f"{of}contact_area")[0]
+    if holds(result, fraction := f"{of}contact_fraction") and "nominal_area" in result.variables:
+        return np.asarray(mean_of(result, fraction)[0] * result.variables["nominal_area"].values[..., None])
     return None

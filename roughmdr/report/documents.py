@@ -132,7 +132,7 @@ class PlanTable(TypedDict):
     runs: int
     tasks: int
     workers: int
-    time: dict[str, float]  # "total", "start_up" [s]
+    time: dict[str, float]  # "total", "longest" (with the finest grids of a reference), "start_up" [s]
     memory: dict[str, float]  # "total", "resident", "available" [bytes]
     file_size: float  # bytes
     accuracy: dict[str, float | str] | None  # "relative", "max_realizations", "method"

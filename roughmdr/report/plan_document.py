@@ -27,7 +27,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "runs": estimate.runs,
         "tasks": estimate.tasks,
         "workers": workers,
-        "time": {"total": estimate.seconds, "start_up": estimate.start_up},
+        "time": {"total": estimate.seconds, "longest": estimate.longest, "start_up": estimate.start_up},
         "memory": {
             "total": estimate.memory,
             "resident": estimate.resident,

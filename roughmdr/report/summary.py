@@ -43,7 +43,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *prospect_lines(prospect),
         *_indent("slip", plan.slip_notes),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
-        *_reference(plan),
+        *_reference(plan, estimate),
         *_motion(plan.coordinates()),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
@@ -68,12 +68,13 @@ def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "", "time, memory and tasks are those of the runs above"
 
 
-def _reference(plan: "Plan") -> Iterator[tuple[str, str]]:
-    """Yield what [reference] adds."""
+def _reference(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
+    """Yield what [reference] adds, and how long it may take."""
     reference = plan.scene.reference
     if reference is not None:
         yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g};"
-        yield "", "where contacts are few and small it is finer, and takes longer, than was foreseen here"
+        longest = format_seconds(estimate.longest)
+        yield "", f"where contacts are few and small the grid becomes finer: in all that may take up to {longest}"
 
 
 def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
@@ -210,8 +211,10 @@ def describe_failed(result: Labelled) -> str:
         return ""
     counted = "runs" if "realization" in result.sizes else "cells"
     if "remark" in result.coordinates:
-        reason = f" ({printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
-    return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; the same command computes them again"
+        first = f"realisation {np.argwhere(failed)[0][-1]}: " if "realization" in result.sizes else ""
+        reason = f" ({first}{printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
+    again = "the same command tries them again, which helps where a worker or its memory failed"
+    return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; {again}"
 
 
 def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:

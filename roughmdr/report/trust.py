@@ -146,14 +146,27 @@ def _coupling(known: dict[str, Floats]) -> str:
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if not known["overlap_fraction"].size:  # of hills it has no meaning
         return f"hills of a map are coupled in pairs: force at closest approach within {_percent(error)}"
-    independent = _interaction(float(known["largest_contact_fraction"].max()), ASPERITIES)
+    fraction = float(known["largest_contact_fraction"].max())
+    of_summits = _of_summits(known)
+    independent = _interaction(fraction, SUMMITS if of_summits else ASPERITIES)
     on_grid = int((known["grid_points"] > 0.0).sum())
     paired = known["grid_points"].size - on_grid
     carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 and paired else ""
     how = "asperities are coupled in pairs" if paired else "computed by boundary elements"
     also = f", in {on_grid} of {on_grid + paired} by boundary elements" if on_grid and paired else ""
     within = f"within {_percent(max(error, _TINY))}{carried}" if error > 0.0 else "as right as the grid"
+    if of_summits:
+        flanks = float(summits_error(np.array(fraction), "summits"))
+        within += f", {_percent(min(flanks, error))} of it since flanks of summits are no paraboloids"
     return f"{how}{also}: force at closest approach {within}; with independent asperities off by {independent}"
+
+
+def _of_summits(known: dict[str, Floats]) -> bool:
+    """Return whether asperities that are coupled in pairs stand for the summits of a surface, as their error tells."""
+    error, fraction, overlap = (
+        known[name].max(initial=0.0) for name in ("interaction_error", "largest_contact_fraction", "overlap_fraction")
+    )
+    return bool(error > _MORE * coupling_error(np.array(fraction), np.array(overlap)))
 
 
 def _trust_coupled(known: dict[str, Floats]) -> str:
@@ -162,7 +175,8 @@ def _trust_coupled(known: dict[str, Floats]) -> str:
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size:
         lowest = format_quantity(float(beyond.max()), "m")
-        rest = f"; the part by interaction stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
+        by = "interaction and flanks of summits" if _of_summits(known) else "interaction"
+        rest = f"; the part by {by} stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
     if whole >= 1.0:
         return "none: the force may be off by all of it"
     return f"force within about {_percent(whole)} along the whole path{rest}"

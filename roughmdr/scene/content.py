@@ -129,3 +129,12 @@ class Sections(Section):
     def repeats(self) -> bool:
         """Whether the surface repeats beyond its patch: as the interaction says, or else as its map says."""
         return self.asperities.repeats if self.interaction is None else self.interaction.boundary == "periodic"
+
+    @property
+    def map_lines(self) -> tuple[str, ...]:
+        """Lines on the map of the asperities and, where that matters, on how it is continued; none without a map."""
+        lines = self.asperities.description
+        if not lines or (self.interaction is None and self.reference is None):
+            return lines
+        joined = "" if self.asperities.repeats else ", opposite edges joined, though the map is not periodic"
+        return (*lines, f"pressed as a patch that repeats{joined}" if self.repeats else "pressed alone on a half-space")

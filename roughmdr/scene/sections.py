@@ -11,7 +11,7 @@ from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Bound
 from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
 from roughmdr.schema.material import check_one_body
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.variables import DEFAULT_VARIABLES, OUTPUT_VARIABLES
+from roughmdr.variables import DEFAULT_VARIABLES, LAW_VARIABLES, OUTPUT_VARIABLES, RUN_DIAGNOSTICS
 
 _MAX_REALIZATIONS = 1_000_000_000
 _REFERENCE_ERRORS = 1e-3, 0.5
@@ -108,6 +108,8 @@ class ReferenceSection(Section):
 
 
 def _check_variable(value: object) -> object:
+    if isinstance(value, str) and value in (LAW_VARIABLES | RUN_DIAGNOSTICS).keys() - OUTPUT_VARIABLES.keys():
+        raise RoughmdrError("not to be asked for: every result that can have it holds it")
     if not isinstance(value, str) or value not in OUTPUT_VARIABLES:
         raise RoughmdrError(f"no such variable; there are {', '.join(OUTPUT_VARIABLES)}")
     return value

@@ -94,6 +94,9 @@ PRELOADS = {
 }
 """Preloads that a path can lead to: the quantity that loading goes on to, and its unit."""
 
+LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
+"""Energies that jumps lose; under a machine each jump is located for them."""
+
 DEFAULT_STEPS = 200
 """Of the loading to a preload."""
 

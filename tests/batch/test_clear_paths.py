@@ -13,6 +13,8 @@ from scenes import ASPERITIES, ensemble, scene
 import roughmdr as rm
 from roughmdr.batch.clear_start import clear_start
 from roughmdr.errors import SceneError
+from roughmdr.loading.first_reached import first_reached
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
 from roughmdr.schema.units import format_quantity
 
@@ -163,6 +165,19 @@ def test_the_stop_is_where_the_expected_law_has_the_target(adhesion: Any, target
     np.testing.assert_array_equal(drawn.separation, result.separation)
     assert "stop" in drawn.attrs["path"]
     assert format_quantity(float(drawn.separation[29]), "m") in drawn.attrs["path"]
+
+
+@pytest.mark.parametrize("share", [0.03, 0.3, 0.55, 0.7, 0.97])
+def test_a_target_is_not_looked_for_far_beyond_it(share: float) -> None:
+    """Far beyond most asperities are in contact, which takes long where they feel each other."""
+    asked: list[float] = []
+
+    def law(positions: Floats) -> Floats:
+        asked.extend(positions.tolist())
+        return (1.0 - positions) ** 3
+
+    assert first_reached(law, share**3, 1.0, 1.0, 1e-12, "force") == pytest.approx(1.0 - share, abs=1e-11)
+    assert 1.0 - min(asked) <= max(0.5, share + 0.25)
 
 
 def test_in_other_units_the_path_scales() -> None:

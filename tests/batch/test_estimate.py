@@ -1,12 +1,15 @@
 """The forecast of a plan: the work that it takes, counted, and whether it comes near the run."""
 
+import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 import xarray as xr
 from scenes import ASPERITIES, scene
+from test_cli import roughmdr
 
 from roughmdr.batch.calibrate import measure
 from roughmdr.batch.costs import seconds
@@ -79,6 +82,35 @@ def test_separations_that_are_sought_take_longer(adhesion: dict[str, Any] | None
 
     given = foreseen({"separation": {"stop": {"pressure": "10 Pa"}, "steps": 30}})
     assert foreseen({"pressure": {"stop": "10 Pa", "steps": 30}}) == pytest.approx(times * given, rel=1e-9)
+
+
+def test_jumps_that_are_located_take_longer() -> None:
+    """The more asperities there are, where a spring and not the flat itself lets them jump."""
+    jkr = {"model": "jkr", "work": "50 mJ/m^2"}
+
+    def foreseen(count: int, variables: list[str], **machine: str) -> float:
+        path = {"preload": "1 mN", "unload": True, **machine}
+        asperities = {**ASPERITIES, "count": count}
+        made = read(scene(adhesion=jkr, asperities=asperities, path=path, output={"variables": variables}))
+        return min(measure(make_plan(made).cells[0], "sampled", variables, 0.05).seconds for _ in range(3))
+
+    spring, lost = {"machine_stiffness": "100 N/m"}, ["force", "dissipated_energy"]
+    assert foreseen(2000, lost, **spring) - foreseen(2000, ["force"], **spring) > 0.1
+    assert foreseen(2000, lost) < 0.1
+
+
+def test_what_is_loaded_at_its_first_use_is_not_taken_for_the_cost(tmp_path: Path) -> None:
+    """In a process of its own: stratified summits of a Gaussian surface, in pairs."""
+    asperities = {"source": "nayak", "patch": "1 mm", "m0": "4.5 um^2", "m2": 0.0144, "m4": 3.93e9}
+    path = {"separation": {"start": "10 um", "stop": "5 um", "steps": 140}}
+    changes = {"batch": None, "accuracy": {"relative": 1e-2}, "interaction": {"model": "pairwise"}}
+    (tmp_path / "scene.toml").write_text(
+        tomli_w.dumps(scene(adhesion=None, asperities=asperities, path=path, **changes))
+    )
+    done = roughmdr("plan", "scene.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    memory = json.loads(done.stdout)["plan"]["memory"]
+    assert memory["total"] - memory["resident"] < 1e9  # 0.13 GB in two workers
 
 
 def test_an_expected_law_that_takes_too_long_is_not_run() -> None:

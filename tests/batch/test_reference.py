@@ -1,5 +1,7 @@
 """[reference]: boundary elements beside the law of a scene, in results, statistics, lines and pictures."""
 
+import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +94,44 @@ def test_asperities_on_a_plane_are_pressed_as_the_surface_that_they_make(boundar
     assert (abs(off) <= found["reference_error"] + 0.02).where(loaded, other=True).all()
 
 
+def test_where_the_reference_reaches_a_pressure(result: xr.Dataset) -> None:
+    steps = np.array([0.3, 0.8]) * float(result["reference_force"].max("step").min())
+    there = result.roughmdr.at_pressure(steps / 1e-8, reference=True)
+    assert there.sizes == {"realization": 2, "reference_pressure": 2}
+    for realization in (0, 1):
+        one, found = result.isel(realization=realization), there.isel(realization=realization)
+        for name in ("separation", "force", "reference_contact_area"):
+            values = np.broadcast_to(one[name].values, one.reference_force.shape)
+            np.testing.assert_allclose(found[name], np.interp(steps, one.reference_force, values), rtol=1e-9)
+    np.testing.assert_allclose(result.roughmdr.at_force(steps, reference=True).separation, there.separation, rtol=1e-9)
+    with pytest.raises(rm.OutOfRange, match="reference_contact_fraction is 2; it must be at most 1"):
+        result.roughmdr.at_contact_fraction(2.0, reference=True)
+    with pytest.raises(rm.StoreError, match="'reference_force', which this result does not hold"):
+        result.drop_vars("reference_force").roughmdr.at_force(1e-6, reference=True)
+
+
+@pytest.mark.parametrize(
+    ("periodic", "interaction", "line"),
+    [
+        (False, {"model": "pairwise"}, "a patch that repeats, opposite edges joined, though the map is not periodic"),
+        (False, {"model": "pairwise", "boundary": "free"}, "pressed alone on a half-space"),
+        (False, None, "pressed alone on a half-space"),
+        (True, None, "pressed as a patch that repeats"),
+    ],
+)
+def test_what_is_pressed_beyond_the_border_of_a_map_is_said(
+    tmp_path: Path, periodic: bool, interaction: dict[str, str] | None, line: str
+) -> None:
+    x = np.arange(0.0, 40e-6, 1e-6)
+    waves = 1e-7 * np.cos(2 * np.pi * x / 2e-5)[:, None] * np.cos(2 * np.pi * x / 2e-5)
+    xr.Dataset({"height": (("x", "y"), waves, {"units": "m"})}, {"x": x, "y": x}).to_netcdf(tmp_path / "map.nc")
+    asperities = {"source": "surface", "file": str(tmp_path / "map.nc"), "model": "hills", "periodic": periodic}
+    table = of_spectrum(asperities=asperities, interaction=interaction, batch=None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        assert rm.run(table).attrs["map"].endswith(line)
+
+
 def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
     without = rm.run(of_spectrum(reference=None))
     np.testing.assert_array_equal(result["force"], without["force"])
@@ -164,9 +204,11 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
 
     planned = command("plan", str(file))
     assert "boundary elements beside each realisation, their grid right to 0.02;" in planned
+    assert "the grid becomes finer: in all that may take up to" in planned
     ran = command("run", str(file), "-o", str(out), "--quiet") + command("info", str(out))
     assert "reference    boundary elements on up to" in ran
-    assert "advice       believe boundary elements, which press the map itself; hills in pairs" in ran
+    assert "advice       believe boundary elements, which press the map itself, and asperities as far as they" in ran
+    assert re.search(r"pressure     \S+ kPa, \S+ kPa by boundary elements, on average in the contacts", ran)
     assert "reference    drawn" in command("plot", str(out), "-o", str(picture), "--with-reference")
     assert picture.stat().st_size > 10_000
     plain = tmp_path / "plain.nc"

@@ -1,6 +1,7 @@
 """The error of coupled asperities: it grows with crowding, and says so from certain shares on."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -51,3 +52,11 @@ def test_warnings_come_from_their_limits_on() -> None:
     assert len(coupling_warnings(1.1 * WARNED_FRACTION, 0.0, 0.0)) == 1
     assert len(coupling_warnings(0.0, 1.1 * WARNED_SHARE, 0.0)) == 1
     assert "3 steps" in coupling_warnings(0.0, 0.0, 3.0)[0]
+
+
+@pytest.mark.parametrize(("fraction", "overlap"), [(0.0, 0.0), (0.2, 0.0), (0.0, 0.3), (0.2, 0.3)])
+def test_of_marked_steps_only_causes_that_may_be_are_told(fraction: float, overlap: float) -> None:
+    *_, line = coupling_warnings(fraction, overlap, 3.0)
+    assert ("of the area in contact" in line) == (fraction > 0.0)
+    assert ("of the force in overlapping contacts" in line) == (overlap > 0.0)
+    assert "without an equilibrium" in line

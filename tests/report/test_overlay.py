@@ -308,6 +308,14 @@ def test_asperities_that_are_not_drawn_have_no_expected_law(tmp_path: Path) -> N
     assert f"theory       {FT}: not drawn: asperities.source is 'file', not 'random' or 'surface'\n" in done.output
 
 
+@pytest.mark.parametrize("path", [{"preload": "1 mN", "unload": True}, {"force": {"stop": "1 mN", "steps": 5}}])
+def test_over_loads_there_is_no_theory(tmp_path: Path, path: dict[str, Any]) -> None:
+    rm.run(scene(asperities=SUMMITS, batch=None, path=path), tmp_path / "out.nc")
+    done = roughmdr("plot", str(tmp_path / "out.nc"), "-o", str(tmp_path / "out.png"), "--with-theory")
+    assert done.exit_code == 2
+    assert "need path.separation; this is a path of loads, of a preload or behind a spring" in done.output
+
+
 @pytest.mark.parametrize(
     "change", [lambda ds: ds.isel(step=slice(5)), lambda ds: ds.assign_coords(separation=ds.separation + 1e-8)]
 )

@@ -13,6 +13,7 @@ from scenes import SCENE, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
+from roughmdr.model_error.coupling import coupling_error, summits_error
 from roughmdr.report.trust import trust_lines
 
 NUMBERS = {
@@ -43,16 +44,21 @@ def test_coupled_asperities_say_how_they_are_coupled() -> None:
     """In pairs, on a grid, or some runs so and some so; a mean field leaves the rest of the interaction out."""
 
     def told(*grid_points: float, **changes: float) -> str:
-        numbers = NUMBERS | changes | {"grid_points": np.array(grid_points)}
+        numbers = NUMBERS | {"interaction_error": 7e-3, **changes, "grid_points": np.array(grid_points)}
         return dict(trust_lines(numbers, interaction="pairwise"))["model error"]
 
     rest = "with independent asperities off by about 16 % (9.4 to 30)"
-    pairs = f"force at closest approach within 28 %, 5 % of it in contacts that overlap; {rest}"
+    pairs = f"force at closest approach within 0.7 %, 5 % of it in contacts that overlap; {rest}"
     assert told(0.0, math.nan) == f"asperities are coupled in pairs: {pairs}"
     assert told(0.0, 0.0, 64.0) == f"asperities are coupled in pairs, in 1 of 3 by boundary elements: {pairs}"
-    assert told(64.0) == f"computed by boundary elements: force at closest approach within 28 %; {rest}"
+    assert told(64.0) == f"computed by boundary elements: force at closest approach within 0.7 %; {rest}"
     on_grid = "computed by boundary elements: force at closest approach as right as the grid"
     assert told(64.0, interaction_error=0.0) == f"{on_grid}; {rest}"
+    own = float(coupling_error(np.array(0.035), np.array(0.05)))
+    of_summits = told(0.0, interaction_error=own + float(summits_error(np.array(0.035), "summits")))
+    assert "within 25 %, 5 % of it in contacts that overlap, 24 % of it since flanks of summits are no" in of_summits
+    assert of_summits.endswith("with independent asperities off by about 36 % (28 to 41)")
+    assert "flanks" not in told(0.0, interaction_error=own)
     mean = dict(trust_lines(NUMBERS, interaction="mean_field"))
     assert mean["model error"].startswith("asperities feel each other's mean displacement only: force at given")
     assert "leaves out" not in mean["trust"]

@@ -40,11 +40,11 @@ def table_lines(
     length, pressure = units.length, units.stress
     yield "units", units.names
     if "nominal_area" in cell.variables:
-        yield "nominal area", f"{cell.variables['nominal_area'].values.item() / length.size**2!r} {length.name}^2"
+        yield "nominal area", f"{cell.variables['nominal_area'].values.item() / length.size**2:.15g} {length.name}^2"
     datum = table.law.datum / length.size
     yield (
         "datum",
-        f"overclosure is {datum!r} {length.name} minus the separation of the flat from the datum plane of the heights",
+        f"overclosure is {datum:.15g} {length.name} minus the separation of the flat from the datum plane of heights",
     )
     yield "points", f"{table.law.overclosure.size}, of {table.steps} steps"
     over = "the pressure" if quantity.over_pressure else "the overclosure"
