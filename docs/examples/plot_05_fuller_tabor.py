@@ -43,7 +43,8 @@ figure = rm.plot(patches, kind="sweep")
 # the way back each contact holds until it is stretched by :math:`|\delta_c|`, where a JKR contact detaches under fixed
 # grips. High summits still push when low ones pull, so the tension is less than the sum of what each contact can bear,
 # :math:`N \cdot \tfrac{3}{2} \pi w R`. The result depends on :math:`\sigma / |\delta_c|` alone. Only the summits above
-# their mean height come into contact, so a nearly smooth surface keeps one half.
+# their mean height come into contact, so a nearly smooth surface keeps one half. A preload that brings all of them into
+# contact has its turning point far below, at :math:`-6\sigma`, and the nearly smooth surface then keeps all.
 #
 # ``rm.theory.fuller_tabor`` gives the pressure at given separations. Its largest tension is found by a minimiser.
 

@@ -36,7 +36,9 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     else:
         yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
     if all("pressure" in cell.law.variables for cell in cells):
-        yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, as expected"
+        paired = prospect.interaction is not None and prospect.interaction.model == "pairwise"
+        told = "as a small part of the asperities tells" if paired else "as expected"
+        yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, {told}"
         if any(largest_tension(cell) > 0.0 for cell in cells):
             yield "", f"{over_cells('Pa', largest_tension)} is about the largest tension"
     tabor = min(cell.law.tabor for cell in cells)

@@ -10,7 +10,7 @@ from roughmdr.result import layout
 from roughmdr.result.means import mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import LATERAL
+from roughmdr.variables import LATERAL, TRAVEL
 
 _FEW = 10.0
 """Contacts: the number of fewer that carry the tension of a patch scatters by more than a third of itself."""
@@ -50,7 +50,8 @@ def _definition(result: Labelled) -> str:
         return "largest tension of the expected law; realisations detach contact by contact and go deeper"
     if layout.realizations_of(result) == 1:
         return "largest tension during unloading; one realisation has no standard error"
-    return "largest tension of each realisation during unloading: mean ± standard error; that of the mean law is less"
+    mean = "" if layout.control_of(result) == TRAVEL.name else "; that of the mean law is less"
+    return f"largest tension of each realisation during unloading: mean ± standard error{mean}"
 
 
 def _describe_cell(result: Labelled, cell: tuple[int, ...]) -> str:
@@ -69,7 +70,7 @@ def _describe_cell(result: Labelled, cell: tuple[int, ...]) -> str:
     if "pull_off_pressure_of_mean" in result.variables:
         text += f", {format_quantity(float(mean_of(result, 'pull_off_pressure')[0][cell]), 'Pa')}"
     of_mean = float(result.variables["pull_off_force_of_mean"].values[cell])
-    if runs > 1:
+    if runs > 1 and layout.control_of(result) != TRAVEL.name:  # at equal travel realisations stand at different places
         text += (
             "; the mean law has none" if math.isnan(of_mean) else f"; of the mean law {format_quantity(of_mean, 'N')}"
         )
