@@ -71,7 +71,15 @@ def test_of_a_lattice_the_mean_field_is_the_field_of_all_sites() -> None:
     assert coupling_of(PERIODIC, E, (1e-3, 1e-3), distance) == pytest.approx(green[0].sum() / 56, rel=1e-3)
 
 
-@pytest.mark.parametrize(("spacings", "within"), [(0.0, 0.0), (0.3, 0.1), (0.5, 0.15), (0.7, 0.35)])
+@pytest.mark.parametrize(
+    ("spacings", "within"),
+    [
+        (0.0, 0.0),
+        pytest.param(0.3, 0.1, marks=pytest.mark.large),
+        (0.5, 0.15),
+        pytest.param(0.7, 0.35, marks=pytest.mark.large),
+    ],
+)
 def test_of_a_hard_core_the_mean_field_is_the_mean_over_the_others(spacings: float, within: float) -> None:
     count, found = 300, []
     for seed in range(20):

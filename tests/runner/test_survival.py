@@ -72,7 +72,9 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("keep", "kills"), [("curves", 14), ("statistics", 6)])
+@pytest.mark.parametrize(
+    ("keep", "kills"), [("curves", 6), pytest.param("curves", 14, marks=pytest.mark.large), ("statistics", 6)]
+)
 def test_killed_again_and_again_it_comes_to_the_same_bits(
     tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
 ) -> None:
