@@ -36,7 +36,9 @@ class Problem(NamedTuple):
     @property
     def judged(self) -> tuple[int, ...]:
         """The first rows, whose errors count: not the stiffness, which is infinite at detachment."""
-        return tuple(row for row in self.rows if row not in (STIFFNESS, *self.unjudged))
+        judged = tuple(row for row in self.rows if row not in (STIFFNESS, *self.unjudged))
+        assert judged == self.rows[: len(judged)]  # they share the first curves of the nodes
+        return judged
 
     @property
     def law(self) -> Kernels:

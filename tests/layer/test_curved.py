@@ -231,6 +231,16 @@ def test_pull_off_lies_between_those_of_jkr_and_of_a_rigid_bulk() -> None:
     assert found.separation > STD
 
 
+@pytest.mark.parametrize("work", [0.0, 0.05])
+def test_a_drawn_radius_takes_few_nodes(work: float) -> None:
+    """Gauss's rule as of a flat layer, whose pressure depends smoothly on the radius; and far fewer than its panels."""
+    radius = {"distribution": "lognormal", "mean": RADIUS, "std": 0.1 * RADIUS}
+    layer = Layer(source(radius=radius), E, Adhesion(work))
+    solution = solve(layer, Paraboloid(radius=R), np.array([1.0, 0.0]) * STD, 1e-4)
+    assert len(solution.body.half.law.nodes) <= 27
+    assert solution.rule_error < 1e-6
+
+
 def test_adhesion_has_hysteresis_and_detaches() -> None:
     found = law(np.linspace(6.0, -3.0, 25) * STD, modulus=1e7, work=0.05, error=1e-3, unload=True)
     force = found.variables["force"]

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
+from roughmdr.aggregate.totals import STIFFNESS
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
@@ -25,6 +26,7 @@ _AT_AN_END = 1e-6  # of the last ring: a kink so close to the axis or to the las
 _MAX_ELEMENTS = 256  # with more of them a step takes a second
 _MAX_PASSES = 16
 _RULE_STEPS = 32  # of a path over all separations, for which the rule over the shape parameters is chosen
+_ROWS_OF_RULE = tuple(sorted(ROWS, key=lambda row: row == STIFFNESS))  # which is not judged, and so the last
 _DEEPER, _WIDER = 2.0, 1.25  # factors by which tables reach deeper, and rings farther out, where they do not suffice
 _MAX_TRIALS = 60
 _NO_PRESSURE = 1e-12  # of the largest
@@ -65,9 +67,9 @@ def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solut
         deepest = closest - margin
         some = np.linspace(max(float(separation.max()), deepest + scale), deepest, _RULE_STEPS)
         path = LoadingPath.along(some, unload=hysteretic, adhesive=adhesive)
-        problem = Problem(source, path, layer.effective_modulus, layer.adhesion, ROWS)
+        problem = Problem(source, path, layer.effective_modulus, layer.adhesion, _ROWS_OF_RULE)
         rule = converge(problem, None, dissipating=False)
-        law = LocalLaw.of(set_up_apart(problem, *rule.rules), density, scale, deepest)
+        law = LocalLaw.of(set_up_apart(problem._replace(rows=ROWS), *rule.rules), density, scale, deepest)
         body, places, change = _on_wide_rings(law, shape, layer.effective_modulus, separation, error)
         if not adhesive or min(float(place.state.s.min()) for place in places) >= deepest:
             return Solution(body, places, change, rule.error)
