@@ -14,6 +14,7 @@ from roughmdr.analysis.curves import (
     control_of,
     curve,
     curves_of,
+    is_reference,
     keeps_statistics,
     separation_of,
     whole,
@@ -40,7 +41,8 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     if name.endswith("contact_fraction") and np.max(wanted) > 1.0:
         raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
     legs = Legs(dataset, branch)
-    reached = alone(curve(dataset, name, f"at_{name} needs"))
+    own, beside = name.removeprefix("reference_"), " with reference=True" if is_reference(name) else ""
+    reached = alone(curve(dataset, name, f"at_{own}{beside} needs"))
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
     brackets = xr.apply_ufunc(
         find_brackets,

@@ -27,6 +27,7 @@ _PARTS = (
 _RIGHT_TO = 3.0  # factor to which the costs of ``costs`` are right: small parts may be lost in the noise of the clock
 _LONG = 0.5  # seconds of a first run that is not repeated for the sake of the clock
 _REPEATS = 10  # of the last part
+_HEIGHTS = 1000  # of which a share touches
 _MARGIN = 2.5  # runs of a part for which there must be time left: one with the memory traced
 
 
@@ -58,7 +59,9 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     """
     cost = _measure_law(cell, estimator, variables, budget)
     law = cost.seconds * search_factor(cell, estimator)  # parts are run along separations
-    law += jump_seconds(cell, variables)
+    if estimator != "expected":
+        heights = _drawn(cell.scene, _HEIGHTS, estimator).height
+        law += jump_seconds(cell, variables, float(np.mean(heights > cell.path.separation.min())))
     return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
 
 

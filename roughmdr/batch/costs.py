@@ -48,7 +48,7 @@ _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
-_JUMP = 1e-4  # an asperity whose jumps on a machine are located: 0.4e-4 to 2.7e-4, where they detach one by one
+_JUMP = 1e-4  # of a contact whose loss on a machine is located: 0.4e-4 s, and 2.7e-4 s where each is lost by itself
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
@@ -99,10 +99,14 @@ def search_factor(cell: Cell, estimator: str) -> float:
     return _SOUGHT_ADHERING if cell.scene.work > 0.0 else _SOUGHT_PAIRS
 
 
-def jump_seconds(cell: Cell, variables: Iterable[str]) -> float:
-    """Return about how long it takes to locate the jumps of a run [s], whose energies are among the ``variables``."""
-    jumps = cell.scene.work > 0.0 and not cell.fixed_grips and not cell.scene.needs_positions
-    return _JUMP * cell.scene.asperities.expected_count if jumps and not LOSSES.isdisjoint(variables) else 0.0
+def jump_seconds(cell: Cell, variables: Iterable[str], touching: float) -> float:
+    """Return about how long it takes to locate the jumps of a run [s], where ``variables`` has the energy they lose.
+
+    ``touching`` is the share of the asperities that the flat reaches.
+    """
+    pulled = cell.machine is not None and not cell.fixed_grips and bool((np.diff(cell.machine.demand) > 0.0).any())
+    located = pulled and cell.scene.work > 0.0 and not cell.scene.needs_positions and not LOSSES.isdisjoint(variables)
+    return _JUMP * touching * cell.scene.asperities.expected_count if located else 0.0
 
 
 def _visit_seconds(adhesion: Adhesion, shape: str) -> float:
@@ -155,9 +159,9 @@ def reference_seconds(cell: Cell, *, finest: bool = False) -> float:
     return np.unique(cell.path.separation).size * (_REFERENCE_STEP + _REFERENCE_POINT * points)
 
 
-def reference_bytes(cell: Cell) -> float:
-    """Return the memory [byte] of the reference of a realisation; 0 where none is asked for."""
-    return 0.0 if cell.scene.reference is None else _REFERENCE_BYTES * _reference_points(cell)
+def reference_bytes(cell: Cell, *, finest: bool = False) -> float:
+    """Return the memory [byte] of the reference of a realisation, as ``reference_seconds``."""
+    return 0.0 if cell.scene.reference is None else _REFERENCE_BYTES * _reference_points(cell, finest=finest)
 
 
 def _reference_points(cell: Cell, *, finest: bool = False) -> float:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.calibrate import Cost, measure
-from roughmdr.batch.costs import START_UP, file_bytes, reference_seconds, result_bytes, seconds
+from roughmdr.batch.costs import START_UP, file_bytes, reference_bytes, reference_seconds, result_bytes, seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
@@ -30,6 +30,7 @@ class Estimate(NamedTuple):
     tasks: int
     seconds: float  # in all
     longest: float  # in all, should references need the finest grids; as ``seconds`` where there are none
+    finest: float  # bytes of the finest grids of references at a time; 0 where there are none
     start_up: float  # until the first asperity is made
     memory: float  # peak, in all
     resident: float  # of Python and its packages; 0 where the system does not tell
@@ -73,6 +74,7 @@ def estimate(plan: Plan, workers: int, budget: float = BUDGET) -> Estimate:
         tasks=tasks,
         seconds=whole,
         longest=whole + finer / busy,
+        finest=busy * max(reference_bytes(cell, finest=True) for cell in plan.cells),
         start_up=START_UP,
         memory=resident + memory + busy * max(cost.memory for cost in costs.values()),
         resident=resident,

@@ -34,6 +34,8 @@ class Foreseen(NamedTuple):
     """NaN where there is none, or no nominal area."""
     cell: int = 0
     """Number of the cell in its plan."""
+    summits: bool = False
+    """Whether its asperities are summits of a surface."""
 
 
 class Prospect(NamedTuple):
@@ -126,7 +128,7 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
     law = simulate_ensemble(scene.without_grid, path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    return Foreseen(path, law, law.pull_off.contact_area / area)
+    return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
 
 
 def _foreseen_curved(scene: Scene, path: LoadingPath) -> Foreseen:

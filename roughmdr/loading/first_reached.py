@@ -53,9 +53,8 @@ def _positions(above: float, below: float) -> Floats:
 
 
 def _until(law: Law, positions: Floats, value: float) -> Floats:
-    """Return the law at falling positions [m]; inf, uncomputed, in those halves of the rest that lie beyond ``value``.
-
-    Far beyond it most asperities may be in contact, which takes long where they feel each other.
+    """Return the law at falling positions [m], in halves: after the first that holds ``value`` it is not computed, but
+    inf. Far beyond, most asperities may be in contact, which takes long where they feel each other.
     """
     half = (positions.size + 1) // 2
     first, rest = _capped(law, positions[:half]), positions[half:]
@@ -73,4 +72,4 @@ def _capped(law: Law, positions: Floats) -> Floats:
             return np.array([np.inf])
         half = positions.size // 2
         first, rest = _capped(law, positions[:half]), np.full(positions.size - half, np.inf)
-        return np.concatenate([first, _capped(law, positions[half:]) if np.isfinite(first[-1]) else rest])
+        return np.concatenate([first, _capped(law, positions[half:]) if not np.isposinf(first[-1]) else rest])

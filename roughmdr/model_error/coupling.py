@@ -58,11 +58,13 @@ def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *,
             f"{WARNED_SHARE:g} of the force)"
         )
     if marked > 0:
-        causes = ["without an equilibrium, so that they have no value", "not at rest to the error asked for"]
+        causes = [
+            "without an equilibrium, so that they have no value",
+            "not at rest to the error asked for",
+            f"with more than {MARKED_SHARE:g} of the force in overlapping contacts",
+        ]
         if contact_fraction > MARKED_FRACTION:
             area = f"{MARKED_FRACTION:g} of the area in contact (of hills {HILLS_MARKED_FRACTION:g})"
             causes.insert(0, f"with more than {area}")
-        if overlap > MARKED_SHARE:
-            causes.insert(0, f"with more than {MARKED_SHARE:g} of the force in overlapping contacts")
         lines.append(f"up to {marked:.0f} steps of a realisation are marked: {', or '.join(causes)}")
     return lines

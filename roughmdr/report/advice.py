@@ -62,7 +62,7 @@ def _which(table: dict[str, Any], model: object, coupled: bool) -> str:
             return f"{believed} without it {_SUMMITS}"
         return f"{believed} without it {_SUMMITS}; {_TO_HILLS}"
     if "reference" in table:
-        return "believe boundary elements, which press the map itself, and asperities as far as they agree with them"
+        return "believe boundary elements, which press the map itself; the asperities are right as far as they agree"
     ask = "ask for them with --set reference.model=boundary_elements"
     if model == "hills" and coupled:
         return f"believe boundary elements most, which press the map itself ({ask}); {_HILLS}"

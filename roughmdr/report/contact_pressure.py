@@ -9,7 +9,7 @@ from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 
-_ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body, contacts flow and are larger"
+_ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
 
 
 def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:

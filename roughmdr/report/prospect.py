@@ -37,7 +37,7 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         yield "path", f"from h = {start} down to {closest}{f', and back to {end}' if returns else ''}"
     if all("pressure" in cell.law.variables for cell in cells):
         paired = prospect.interaction is not None and prospect.interaction.model == "pairwise"
-        told = "as a small part of the asperities tells" if paired else "as expected"
+        told = "estimated from a small part of the asperities" if paired else "as expected"
         yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, {told}"
         if any(largest_tension(cell) > 0.0 for cell in cells):
             yield "", f"{over_cells('Pa', largest_tension)} is about the largest tension"
@@ -51,7 +51,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     advise = prospect.coupled_seconds < math.inf
     curved = all("nominal_contact_radius" in cell.law.variables for cell in cells)
     at_pull_off = [cell.fraction_at_pull_off for cell in cells]
-    yield from trust_lines(numbers, at_pull_off, interaction=model, advise=advise, curved=curved)
+    summits = all(cell.summits for cell in cells)
+    yield from trust_lines(numbers, at_pull_off, interaction=model, advise=advise, curved=curved, summits=summits)
     marked = sum(cell.law.marked_steps > 0.0 for cell in cells)
     if marked and prospect.interaction is not None:
         on_grid = prospect.interaction.beyond == "boundary_elements"

@@ -73,8 +73,8 @@ def _reference(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
     reference = plan.scene.reference
     if reference is not None:
         yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g};"
-        longest = format_seconds(estimate.longest)
-        yield "", f"where contacts are few and small the grid becomes finer: in all that may take up to {longest}"
+        longest, finest = format_seconds(estimate.longest), format_bytes(estimate.finest)
+        yield "", f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
 
 
 def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
@@ -204,15 +204,19 @@ def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
 
 
 def describe_failed(result: Labelled) -> str:
-    """Return how many runs failed, and why the first did; empty if none did."""
+    """Return how many runs failed, which was the first, and why; empty if none did."""
     status = _values(result, "status")
     failed, reason = status == FAILED, ""
     if not failed.any():
         return ""
-    counted = "runs" if "realization" in result.sizes else "cells"
+    of_runs = "realization" in result.variables["status"].dims
     if "remark" in result.coordinates:
-        first = f"realisation {np.argwhere(failed)[0][-1]}: " if "realization" in result.sizes else ""
-        reason = f" ({first}{printable(str(result.coordinates['remark'].values[failed][0]).split(chr(10))[0])})"
+        first = tuple(map(int, np.argwhere(failed)[0]))
+        label = layout.cell_label(result, first[:-1] if of_runs else first)
+        names = [each for each in (label, f"realisation {first[-1]}" if of_runs else "") if each]
+        said = str(result.coordinates["remark"].values[failed][0]).split("\n")[0]
+        reason = f" ({': '.join(filter(None, [', '.join(names), printable(said)]))})"
+    counted = "runs" if of_runs else "cells"
     again = "the same command tries them again, which helps where a worker or its memory failed"
     return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; {again}"
 

@@ -47,13 +47,14 @@ def trust_lines(
     interaction: str | None = None,
     advise: bool = True,
     curved: bool = False,
+    summits: bool = False,
 ) -> Iterator[tuple[str, str]]:
     """Yield the lines "contact", "model error" and "trust" of one run or several.
 
     ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``interaction``
     is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too.
     ``advise`` says whether they could feel each other where they do not. Under a ``curved`` body the numbers are those
-    of the layer where it is pressed most.
+    of the layer where it is pressed most. ``summits`` says whether the asperities are those of a surface.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -79,9 +80,9 @@ def trust_lines(
         yield "trust", "no contact along the whole path"
         return
     if interaction == "pairwise":
-        yield "model error", _coupling(known)
+        yield "model error", _coupling(known, summits)
         yield from _several("", others)
-        yield "trust", _trust_coupled(known)
+        yield "trust", _trust_coupled(known, summits)
         return
     errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
     yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
@@ -103,9 +104,23 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
         alone = {"viscoelastic", "nominal"} & table.keys()
         advise = LATERAL.name not in result.coordinates and not alone
         curved = "nominal" in result.attrs
-        yield from trust_lines(numbers, _at_pull_off(result), interaction=interaction, advise=advise, curved=curved)
+        yield from trust_lines(
+            numbers,
+            _at_pull_off(result),
+            interaction=interaction,
+            advise=advise,
+            curved=curved,
+            summits=_has_summits(table),
+        )
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
+
+
+def _has_summits(table: dict[str, Any]) -> bool:
+    """Return whether the asperities of a scene are summits of a surface, as far as it says so itself."""
+    asperities = table.get("asperities", {})
+    source, model = asperities.get("source"), asperities.get("model", "")
+    return source == "nayak" or (source == "surface" and model != "hills") or (source, model) == ("spectrum", "summits")
 
 
 def pull_off_error_of(result: Labelled) -> str:
@@ -141,41 +156,32 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: st
     return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
 
 
-def _coupling(known: dict[str, Floats]) -> str:
+def _coupling(known: dict[str, Floats], summits: bool) -> str:
     """Return how asperities are coupled, the error, and that of independent ones in their place."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if not known["overlap_fraction"].size:  # of hills it has no meaning
         return f"hills of a map are coupled in pairs: force at closest approach within {_percent(error)}"
     fraction = float(known["largest_contact_fraction"].max())
-    of_summits = _of_summits(known)
-    independent = _interaction(fraction, SUMMITS if of_summits else ASPERITIES)
+    independent = _interaction(fraction, SUMMITS if summits else ASPERITIES)
     on_grid = int((known["grid_points"] > 0.0).sum())
     paired = known["grid_points"].size - on_grid
     carried = f", {_percent(overlap)} of it in contacts that overlap" if overlap > 0.0 and paired else ""
     how = "asperities are coupled in pairs" if paired else "computed by boundary elements"
     also = f", in {on_grid} of {on_grid + paired} by boundary elements" if on_grid and paired else ""
     within = f"within {_percent(max(error, _TINY))}{carried}" if error > 0.0 else "as right as the grid"
-    if of_summits:
+    if summits and error > 0.0:
         flanks = float(summits_error(np.array(fraction), "summits"))
-        within += f", {_percent(min(flanks, error))} of it since flanks of summits are no paraboloids"
+        within += f", of which {_percent(min(flanks, error))} because flanks of summits are no paraboloids"
     return f"{how}{also}: force at closest approach {within}; with independent asperities off by {independent}"
 
 
-def _of_summits(known: dict[str, Floats]) -> bool:
-    """Return whether asperities that are coupled in pairs stand for the summits of a surface, as their error tells."""
-    error, fraction, overlap = (
-        known[name].max(initial=0.0) for name in ("interaction_error", "largest_contact_fraction", "overlap_fraction")
-    )
-    return bool(error > _MORE * coupling_error(np.array(fraction), np.array(overlap)))
-
-
-def _trust_coupled(known: dict[str, Floats]) -> str:
+def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
     """Return within which error the force of coupled asperities holds, and up to where."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size:
         lowest = format_quantity(float(beyond.max()), "m")
-        by = "interaction and flanks of summits" if _of_summits(known) else "interaction"
+        by = "interaction and flanks of summits" if summits else "interaction"
         rest = f"; the part by {by} stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
     if whole >= 1.0:
         return "none: the force may be off by all of it"

@@ -134,7 +134,7 @@ class Sections(Section):
     def map_lines(self) -> tuple[str, ...]:
         """Lines on the map of the asperities and, where that matters, on how it is continued; none without a map."""
         lines = self.asperities.description
-        if not lines or (self.interaction is None and self.reference is None):
+        if not lines or not (self.needs_positions or self.reference is not None):
             return lines
         joined = "" if self.asperities.repeats else ", opposite edges joined, though the map is not periodic"
         return (*lines, f"pressed as a patch that repeats{joined}" if self.repeats else "pressed alone on a half-space")

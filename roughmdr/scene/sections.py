@@ -11,7 +11,14 @@ from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Bound
 from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
 from roughmdr.schema.material import check_one_body
 from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
-from roughmdr.variables import DEFAULT_VARIABLES, LAW_VARIABLES, OUTPUT_VARIABLES, RUN_DIAGNOSTICS
+from roughmdr.variables import (
+    DEFAULT_VARIABLES,
+    LAW_VARIABLES,
+    OUTPUT_VARIABLES,
+    PULL_OFF,
+    RUN_DIAGNOSTICS,
+    STEP_COORDINATES,
+)
 
 _MAX_REALIZATIONS = 1_000_000_000
 _REFERENCE_ERRORS = 1e-3, 0.5
@@ -108,8 +115,11 @@ class ReferenceSection(Section):
 
 
 def _check_variable(value: object) -> object:
-    if isinstance(value, str) and value in (LAW_VARIABLES | RUN_DIAGNOSTICS).keys() - OUTPUT_VARIABLES.keys():
-        raise RoughmdrError("not to be asked for: every result that can have it holds it")
+    if isinstance(value, str) and value not in OUTPUT_VARIABLES:
+        if value.removeprefix("reference_") in OUTPUT_VARIABLES:
+            raise RoughmdrError(f"not to be asked for: [reference] adds it to {value.removeprefix('reference_')}")
+        if value in LAW_VARIABLES | RUN_DIAGNOSTICS | PULL_OFF or value in STEP_COORDINATES:
+            raise RoughmdrError("not to be asked for: every result that can have it holds it")
     if not isinstance(value, str) or value not in OUTPUT_VARIABLES:
         raise RoughmdrError(f"no such variable; there are {', '.join(OUTPUT_VARIABLES)}")
     return value

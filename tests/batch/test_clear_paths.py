@@ -12,7 +12,7 @@ from scenes import ASPERITIES, ensemble, scene
 
 import roughmdr as rm
 from roughmdr.batch.clear_start import clear_start
-from roughmdr.errors import SceneError
+from roughmdr.errors import SceneError, TooMuchContact
 from roughmdr.loading.first_reached import first_reached
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
@@ -167,7 +167,7 @@ def test_the_stop_is_where_the_expected_law_has_the_target(adhesion: Any, target
     assert format_quantity(float(drawn.separation[29]), "m") in drawn.attrs["path"]
 
 
-@pytest.mark.parametrize("share", [0.03, 0.3, 0.55, 0.7, 0.97])
+@pytest.mark.parametrize("share", [0.03, 0.3, 0.55, 0.7])
 def test_a_target_is_not_looked_for_far_beyond_it(share: float) -> None:
     """Far beyond most asperities are in contact, which takes long where they feel each other."""
     asked: list[float] = []
@@ -178,6 +178,17 @@ def test_a_target_is_not_looked_for_far_beyond_it(share: float) -> None:
 
     assert first_reached(law, share**3, 1.0, 1.0, 1e-12, "force") == pytest.approx(1.0 - share, abs=1e-11)
     assert 1.0 - min(asked) <= max(0.5, share + 0.25)
+
+
+def test_a_target_is_found_beyond_steps_without_a_value() -> None:
+    """Too much contact further down leaves them apart from those that have none yet."""
+
+    def law(positions: Floats) -> Floats:
+        if (positions < 0.27).any():
+            raise TooMuchContact("more contact than patch")
+        return np.where(abs(positions - 0.375) < 0.02, math.nan, 1.0 - positions)
+
+    assert first_reached(law, 0.7, 1.0, 1.0, 1e-12, "force") == pytest.approx(0.3, abs=1e-11)
 
 
 def test_in_other_units_the_path_scales() -> None:

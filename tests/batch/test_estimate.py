@@ -12,7 +12,7 @@ from scenes import ASPERITIES, scene
 from test_cli import roughmdr
 
 from roughmdr.batch.calibrate import measure
-from roughmdr.batch.costs import seconds
+from roughmdr.batch.costs import jump_seconds, seconds
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
@@ -85,18 +85,22 @@ def test_separations_that_are_sought_take_longer(adhesion: dict[str, Any] | None
 
 
 def test_jumps_that_are_located_take_longer() -> None:
-    """The more asperities there are, where a spring and not the flat itself lets them jump."""
-    jkr = {"model": "jkr", "work": "50 mJ/m^2"}
+    """The more contacts there are, where a spring and not the flat itself lets them jump on the way back."""
+    jkr, lost = {"model": "jkr", "work": "50 mJ/m^2"}, ["force", "dissipated_energy"]
 
-    def foreseen(count: int, variables: list[str], **machine: str) -> float:
-        path = {"preload": "1 mN", "unload": True, **machine}
-        asperities = {**ASPERITIES, "count": count}
-        made = read(scene(adhesion=jkr, asperities=asperities, path=path, output={"variables": variables}))
-        return min(measure(make_plan(made).cells[0], "sampled", variables, 0.05).seconds for _ in range(3))
+    def foreseen(stop: str, *, unload: bool = True, variables: list[str] = lost, **spring: str) -> float:
+        path = {"remote" if spring else "separation": {"start": "clear", "stop": stop, "steps": 9}, "unload": unload}
+        made = read(scene(adhesion=jkr, path={**path, **spring}, output={"variables": variables}))
+        (cell,) = make_plan(made).cells
+        heights = cell.scene.asperities.ensemble(1, 0).height
+        return jump_seconds(cell, variables, float(np.mean(heights > cell.path.separation.min())))
 
-    spring, lost = {"machine_stiffness": "100 N/m"}, ["force", "dissipated_energy"]
-    assert foreseen(2000, lost, **spring) - foreseen(2000, ["force"], **spring) > 0.1
-    assert foreseen(2000, lost) < 0.1
+    spring = {"machine_stiffness": "1 kN/m"}
+    few, many = foreseen("3 um", **spring), foreseen("-5 um", **spring)
+    assert 0.0 < few < 0.2 * many
+    assert foreseen("-5 um", unload=False, **spring) == 0.0
+    assert foreseen("-5 um") == 0.0
+    assert foreseen("-5 um", variables=["force"], **spring) == 0.0
 
 
 def test_what_is_loaded_at_its_first_use_is_not_taken_for_the_cost(tmp_path: Path) -> None:
@@ -107,7 +111,7 @@ def test_what_is_loaded_at_its_first_use_is_not_taken_for_the_cost(tmp_path: Pat
     (tmp_path / "scene.toml").write_text(
         tomli_w.dumps(scene(adhesion=None, asperities=asperities, path=path, **changes))
     )
-    done = roughmdr("plan", "scene.toml", "--json", cwd=tmp_path)
+    done = roughmdr("plan", "scene.toml", "--workers", 2, "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     memory = json.loads(done.stdout)["plan"]["memory"]
     assert memory["total"] - memory["resident"] < 1e9  # 0.13 GB in two workers

@@ -54,9 +54,10 @@ def test_warnings_come_from_their_limits_on() -> None:
     assert "3 steps" in coupling_warnings(0.0, 0.0, 3.0)[0]
 
 
-@pytest.mark.parametrize(("fraction", "overlap"), [(0.0, 0.0), (0.2, 0.0), (0.0, 0.3), (0.2, 0.3)])
-def test_of_marked_steps_only_causes_that_may_be_are_told(fraction: float, overlap: float) -> None:
-    *_, line = coupling_warnings(fraction, overlap, 3.0)
-    assert ("of the area in contact" in line) == (fraction > 0.0)
-    assert ("of the force in overlapping contacts" in line) == (overlap > 0.0)
+@pytest.mark.parametrize("fraction", [0.1, 0.2])
+def test_of_marked_steps_only_causes_that_may_be_are_told(fraction: float) -> None:
+    """The contact fraction is the largest one; the overlap is that at closest approach, and may have been larger."""
+    *_, line = coupling_warnings(fraction, 0.0, 3.0)
+    assert ("of the area in contact" in line) == (fraction > 0.15)
+    assert "of the force in overlapping contacts" in line
     assert "without an equilibrium" in line

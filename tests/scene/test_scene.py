@@ -127,6 +127,8 @@ def test_all_faults_are_found_at_once_with_their_lines(tmp_path: Path) -> None:
         ({"path": {"separation": [0], "unload": "maybe"}}, "path.unload"),
         ({"output": {"variables": ["forc"]}}, r"output.variables\[0\] = 'forc': no such variable; there are force"),
         ({"output": {"variables": ["separation"]}}, r"output.variables\[0\] = 'separation': not to be asked for"),
+        ({"output": {"variables": ["reference_stiffness"]}}, r"\[reference\] adds it to stiffness"),
+        ({"output": {"variables": ["pull_off_force"]}}, "not to be asked for: every result that can have it holds it"),
         ({"output": {"variables": ["avalanche_count"]}}, "not to be asked for: every result that can have it holds it"),
         ({"output": {"variables": []}}, "output.variables"),
         ({"output": {"keep": "curve"}}, "output.keep = 'curve': not available; did you mean 'curves'"),
