@@ -106,7 +106,7 @@ def test_where_the_reference_reaches_a_pressure(result: xr.Dataset) -> None:
     np.testing.assert_allclose(result.roughmdr.at_force(steps, reference=True).separation, there.separation, rtol=1e-9)
     with pytest.raises(rm.OutOfRange, match="reference_contact_fraction is 2; it must be at most 1"):
         result.roughmdr.at_contact_fraction(2.0, reference=True)
-    with pytest.raises(rm.StoreError, match="'reference_force', which this result does not hold"):
+    with pytest.raises(rm.StoreError, match="at_force with reference=True needs 'reference_force', which"):
         result.drop_vars("reference_force").roughmdr.at_force(1e-6, reference=True)
 
 
@@ -127,9 +127,11 @@ def test_what_is_pressed_beyond_the_border_of_a_map_is_said(
     xr.Dataset({"height": (("x", "y"), waves, {"units": "m"})}, {"x": x, "y": x}).to_netcdf(tmp_path / "map.nc")
     asperities = {"source": "surface", "file": str(tmp_path / "map.nc"), "model": "hills", "periodic": periodic}
     table = of_spectrum(asperities=asperities, interaction=interaction, batch=None)
+    mean_field = {**table, "interaction": {"model": "mean_field"}, "reference": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
         assert rm.run(table).attrs["map"].endswith(line)
+        assert "pressed" not in rm.run(mean_field).attrs["map"]
 
 
 def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:

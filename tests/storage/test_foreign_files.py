@@ -2,6 +2,7 @@
 
 import copy
 import os
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -114,6 +115,11 @@ def test_what_is_wrong_is_said(
     done = checked(command.format(name))
     assert done.exit_code == 2
     assert says in done.output
+
+
+def test_the_first_run_that_failed_is_named(folder: Path) -> None:
+    said = checked("info sweep.nc").output
+    assert re.search(r"4 of 8 runs failed \(adhesion_work = 10 mJ/m\^2, .*, realisation 0: OutOfRange: ", said)
 
 
 @pytest.mark.parametrize("name", RESULTS)
