@@ -10,7 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import jump_seconds, law_seconds, reference_bytes, reference_seconds, search_factor
+from roughmdr.batch.costs import (
+    jump_seconds,
+    law_seconds,
+    locates_jumps,
+    reference_bytes,
+    reference_seconds,
+    search_factor,
+)
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
@@ -59,10 +66,16 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     """
     cost = _measure_law(cell, estimator, variables, budget)
     law = cost.seconds * search_factor(cell, estimator)  # parts are run along separations
-    if estimator != "expected":
-        heights = _drawn(cell.scene, _HEIGHTS, estimator).height
-        law += jump_seconds(cell, variables, float(np.mean(heights > cell.path.separation.min())))
+    if locates_jumps(cell, variables):
+        law += jump_seconds(touching(cell, estimator))
     return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
+
+
+def touching(cell: Cell, estimator: str) -> float:
+    """Return about how many asperities the flat reaches."""
+    heights = _drawn(cell.scene, _HEIGHTS, estimator).height
+    reached = np.count_nonzero(heights > cell.path.separation.min())
+    return cell.scene.asperities.expected_count * reached / max(heights.size, 1)
 
 
 def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:

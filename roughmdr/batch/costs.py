@@ -99,14 +99,15 @@ def search_factor(cell: Cell, estimator: str) -> float:
     return _SOUGHT_ADHERING if cell.scene.work > 0.0 else _SOUGHT_PAIRS
 
 
-def jump_seconds(cell: Cell, variables: Iterable[str], touching: float) -> float:
-    """Return about how long it takes to locate the jumps of a run [s], where ``variables`` has the energy they lose.
-
-    ``touching`` is the share of the asperities that the flat reaches.
-    """
+def locates_jumps(cell: Cell, variables: Iterable[str]) -> bool:
+    """Return whether jumps of the flat are located, since ``variables`` has the energy that they lose."""
     pulled = cell.machine is not None and not cell.fixed_grips and bool((np.diff(cell.machine.demand) > 0.0).any())
-    located = pulled and cell.scene.work > 0.0 and not cell.scene.needs_positions and not LOSSES.isdisjoint(variables)
-    return _JUMP * touching * cell.scene.asperities.expected_count if located else 0.0
+    return pulled and cell.scene.work > 0.0 and not cell.scene.needs_positions and not LOSSES.isdisjoint(variables)
+
+
+def jump_seconds(contacts: float) -> float:
+    """Return about how long it takes to locate the jumps by which so many contacts are lost [s]."""
+    return _JUMP * contacts
 
 
 def _visit_seconds(adhesion: Adhesion, shape: str) -> float:

@@ -133,7 +133,7 @@ class PlanTable(TypedDict):
     tasks: int
     workers: int
     time: dict[str, float]  # "total", "longest" (with the finest grids of a reference), "start_up" [s]
-    memory: dict[str, float]  # "total", "resident", "available" [bytes]
+    memory: dict[str, float]  # "total", "resident", "finest" (grids of a reference), "available" [bytes]
     file_size: float  # bytes
     accuracy: dict[str, float | str] | None  # "relative", "max_realizations", "method"
     cells: list[ForeseenTable]  # those that were tried

@@ -31,6 +31,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "memory": {
             "total": estimate.memory,
             "resident": estimate.resident,
+            "finest": estimate.finest,
             "available": estimate.available_memory,
         },
         "file_size": estimate.file,

@@ -11,8 +11,8 @@ import xarray as xr
 from scenes import ASPERITIES, scene
 from test_cli import roughmdr
 
-from roughmdr.batch.calibrate import measure
-from roughmdr.batch.costs import jump_seconds, seconds
+from roughmdr.batch.calibrate import measure, touching
+from roughmdr.batch.costs import jump_seconds, locates_jumps, seconds
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
@@ -92,8 +92,7 @@ def test_jumps_that_are_located_take_longer() -> None:
         path = {"remote" if spring else "separation": {"start": "clear", "stop": stop, "steps": 9}, "unload": unload}
         made = read(scene(adhesion=jkr, path={**path, **spring}, output={"variables": variables}))
         (cell,) = make_plan(made).cells
-        heights = cell.scene.asperities.ensemble(1, 0).height
-        return jump_seconds(cell, variables, float(np.mean(heights > cell.path.separation.min())))
+        return jump_seconds(touching(cell, "sampled")) if locates_jumps(cell, variables) else 0.0
 
     spring = {"machine_stiffness": "1 kN/m"}
     few, many = foreseen("3 um", **spring), foreseen("-5 um", **spring)

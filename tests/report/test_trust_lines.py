@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,28 @@ def test_coupled_asperities_say_how_they_are_coupled() -> None:
     mean = dict(trust_lines(NUMBERS, interaction="mean_field"))
     assert mean["model error"].startswith("asperities feel each other's mean displacement only: force at given")
     assert "leaves out" not in mean["trust"]
+
+
+@pytest.mark.parametrize("summits", [True, False])
+def test_flanks_are_those_of_summits_in_plan_and_result(tmp_path: Path, summits: bool) -> None:
+    """Asperities at random overlap, some more on the way than at closest approach: that makes no summits of them."""
+    crowd = {
+        "source": "random", "shape": "paraboloid", "count": 400, "patch": "0.3 mm", "radius": "50 um",
+        "height": {"distribution": "normal", "std": "1 um"}, "placement": "random",
+    }  # fmt: skip
+    gaussian = {"source": "nayak", "patch": "0.2 mm", "m0": "4.5 um^2", "m2": 0.0144, "m4": 3.93e9}
+    path = {"separation": {"start": "4 sigma", "stop": "1.5 sigma" if summits else "1 sigma", "steps": 25}}
+    table = scene(
+        adhesion=None, asperities=gaussian if summits else crowd, interaction={"model": "pairwise"}, path=path,
+        seed=3, batch={"realizations": 2},
+    )  # fmt: skip
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
+    planned = CliRunner().invoke(main, ["plan", str(tmp_path / "scene.toml")], catch_exceptions=False).output
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        told = rm.info(rm.run(table))
+    for text in (planned, told):
+        assert ("flanks of summits" in text) == summits
 
 
 def test_where_no_unloading_ends_out_of_contact_there_is_no_line_on_pull_off() -> None:

@@ -133,6 +133,14 @@ def test_unloadings_that_end_in_contact_do_not_enter(keep: str) -> None:
     assert "none: all 16 unloadings end in contact" in describe_result(Labelled.of(pressed))
 
 
+def test_after_a_preload_nothing_is_said_of_a_mean_law() -> None:
+    """At equal travel realisations stand at different separations."""
+    found = kept("curves", path={"preload": "1 mN", "steps": 10, "unload": True})
+    assert int(found.pull_off_count) == 16
+    assert "mean law" not in describe_result(Labelled.of(found))
+    assert "mean law" in describe_result(Labelled.of(kept("curves", path={"separation": ["3 um", "0 um", "9 um"]})))
+
+
 def test_a_path_without_unloading_has_no_pull_off() -> None:
     found = kept("curves", path={"separation": ["3 um", "0 um"]})
     assert not [name for name in found if str(name).startswith("pull_off")]
