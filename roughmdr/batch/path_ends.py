@@ -5,6 +5,7 @@ from typing import NamedTuple
 from roughmdr.errors import Fault, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
+from roughmdr.scene.identity import Digests
 from roughmdr.scene.separation import CLEAR
 from roughmdr.schema.units import format_quantity
 
@@ -17,21 +18,17 @@ class PathEnds(NamedTuple):
 
 
 class PathFinder:
-    """Finds the steps of cells; ends that follow from equal asperities and materials are found once."""
+    """Finds the steps of the cells of a sweep; the ends that follow from equal scenes are found once."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[object, ...], PathEnds] = {}
+        self._digests, self._found = Digests(), dict[str, PathEnds]()
 
     def values(self, cell: Scene) -> Floats:
         """Return the controlled quantity at each step in SI; SceneError where the path cannot be laid out."""
         path, sigma = cell.path, cell.asperities.sigma if cell.path.uses_sigma else 0.0
         if not path.starts_clear and path.target is None:
             return path.whole(path.values(sigma))
-        # Sections that cells of a sweep have in common are the same objects.
-        key = (
-            *(cell.effective_modulus, cell.adhesion_model, cell.interaction_model),
-            *(id(section) for section in (cell.asperities, path, cell.viscoelastic)),
-        )
+        key = self._digests.of(cell)
         if key not in self._found:
             self._found[key] = _find(cell, *path.given(sigma))
         return path.whole(path.values(sigma, *self._found[key]))

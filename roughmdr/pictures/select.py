@@ -11,7 +11,7 @@ from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.units import dimension_of
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import AUXILIARY_COORDINATES
+from roughmdr.variables import AUXILIARY_COORDINATES, swept_name
 
 _NEAR = 0.01  # of the value asked for, so that values of a logspace can be typed
 
@@ -58,7 +58,7 @@ def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]
     }
     places: dict[str, NDArray[np.bool_]] = {}
     for key, value in chosen.items():
-        name = key.replace(".", "_")
+        name = swept_name(key)
         if not swept:
             raise StoreError(f"select: {key!r} is not swept: the result has no sweep")
         if name not in swept:

@@ -13,6 +13,7 @@ from roughmdr.report.trust import pull_off_error_of, trust_of_result
 from roughmdr.result.layout import cells_of, done_of, realizations_of, swept_sizes, swept_values
 from roughmdr.schema.wording import escape_controls, suggestion
 from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.variables import swept_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,7 +122,7 @@ def _axes(result: Labelled, asked: str | None) -> list[Axis]:
     together = sizes.keys() == {"cell"}
     names = _swept_keys(result)
     if asked is not None:
-        first = asked.replace(".", "_")
+        first = swept_name(asked)
         if first not in names:
             raise StoreError(f"x is {asked!r}, which is not swept{suggestion(first, names)}")
         names = [first, *(name for name in names if name != first)]

@@ -16,7 +16,7 @@ from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, spelled_in_results
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CONTROLS, PRELOADS
+from roughmdr.variables import CONTROLS, PRELOADS, swept_name
 
 SECTIONS = (
     "material",
@@ -59,7 +59,7 @@ class Axis(NamedTuple):
     @property
     def name(self) -> str:
         """Name of the coordinate."""
-        return self.key.replace(".", "_")
+        return swept_name(self.key)
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ from roughmdr.variables.run import (
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
     STATUSES,
+    swept_name,
 )
 from roughmdr.variables.variable import Diagnostic, Variable
 
@@ -76,4 +77,5 @@ __all__ = [
     "TRAVEL",
     "Diagnostic",
     "Variable",
+    "swept_name",
 ]

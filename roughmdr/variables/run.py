@@ -179,3 +179,9 @@ AUXILIARY_COORDINATES = (
     *(row.name for row in RUN_DIAGNOSTICS.values() if row.dtype is str),
 )
 """Coordinates of a result, other than its swept keys; the separation is one unless a machine moves the flat."""
+
+
+def swept_name(key: str) -> str:
+    """Return the name of a swept key in a result: with underscores for dots, and "swept_" if a variable is so named."""
+    name = key.replace(".", "_")
+    return f"swept_{name}" if name in RUN_VARIABLES else name

@@ -13,14 +13,13 @@ from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.task_result import TaskResult, complete
 from roughmdr.errors import StoreError
+from roughmdr.scene.identity import LAYOUT
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
 
 _MAX_CHANGES = 5  # in a message
-_LAYOUT_PARTS = ("title", "output", "batch", "accuracy", "sweep")
-"""Parts of a scene that decide the layout of a result and how many realisations it has."""
 _REMEDY = "give another output, or --fresh (resume=False) to replace it"
 
 
@@ -42,7 +41,7 @@ def is_finished(old: Labelled, plan: Plan, keys: Sequence[set[str]]) -> bool:
     new_scene, old_scene = (parse_toml(text) for text in (plan.scene.toml, old.attrs["scene"]))
     old_keys = _keys(old)
     return (
-        all(new_scene.get(part) == old_scene.get(part) for part in _LAYOUT_PARTS)
+        all(new_scene.get(part) == old_scene.get(part) for part in LAYOUT)
         and list(new_scene.get("sweep", ())) == list(old_scene.get("sweep", ()))  # the order of its dimensions
         and len(old_keys) == len(keys)
         and all(key in each for key, each in zip(old_keys, keys, strict=True))

@@ -8,16 +8,14 @@ from typing import Any
 
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.errors import RoughmdrError
-from roughmdr.layer.tangential import tangential_of
 from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
+from roughmdr.scene.identity import LAYOUT, Digests
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
 _MAX_LETTERS = 1000  # of a value in a message, such as a path or a list of numbers
-_IGNORED = ("title", "output", "batch", "accuracy", "sweep.mode")
-"""Parts of a scene that do not change the numbers of a realisation; its estimator is in the key itself."""
-_NOT_IGNORED = ("batch.estimator", "accuracy.method")
+_DECISIVE = ("batch.estimator", "accuracy.method")  # in sections that decide no number else
 
 
 @cache
@@ -35,33 +33,13 @@ def check_versions(asked: str) -> None:
 
 def keys_of(plan: Plan, estimator: str) -> list[str]:
     """Return the key of each cell of a plan under an estimator."""
-    sections: dict[int, str] = {}  # cells of a sweep have sections in common
-    return [_key(cell, estimator, sections) for cell in plan.cells]
+    digests = Digests()
+    return [_key(digests.of(cell.scene), cell, estimator) for cell in plan.cells]
 
 
-def _key(cell: Cell, estimator: str, sections: dict[int, str]) -> str:
-    scene = cell.scene
-    section = scene.asperities
-    if id(section) not in sections:  # a file counts by its content, not by its name
-        section_by_content = section.model_copy(update={"file": section.content_hash}) if section.inputs else section
-        sections[id(section)] = repr(section_by_content)
-    parts = (
-        scene.effective_modulus,
-        tuple(scene.adhesion_model),
-        scene.interaction_model,
-        None if scene.reference is None else scene.reference.error,
-        repr(scene.viscoelastic),
-        *(() if scene.nominal is None else (repr(scene.nominal),)),
-        sections[id(section)],
-        hashlib.sha256(cell.values.tobytes()).hexdigest(),
-        *(() if cell.machine is None else (cell.machine.control, tuple(cell.machine.machine), cell.machine.preload)),
-        *scene.conductance_factors.items(),
-        *(() if cell.lateral is None else (cell.lateral.held_value,)),
-        *(() if (tangential := tangential_of(scene)) is None else tangential),
-        scene.seed,
-        estimator,
-        versions(),
-    )
+def _key(scene: str, cell: Cell, estimator: str) -> str:
+    """Return the key of a cell whose scene has a digest; "clear" depends on how many realisations there may be."""
+    parts = scene, hashlib.sha256(cell.values.tobytes()).hexdigest(), estimator, versions()
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -69,9 +47,9 @@ def changes(old: str, new: str) -> Iterator[str]:
     """Yield which decisive values of a scene are others in a new one, old and new; both scenes are TOML."""
     before, after = (_flat(parse_toml(text)) for text in (old, new))
     for key in dict.fromkeys([*before, *after]):
-        if key.startswith(_IGNORED) and key not in _NOT_IGNORED:
-            continue
-        if before.get(key) != after.get(key):
+        section, _, inner = key.partition(".")
+        undecisive = section in LAYOUT and key not in _DECISIVE and (section != "sweep" or inner == "mode")
+        if not undecisive and before.get(key) != after.get(key):
             was, now = (short_repr(side[key], _MAX_LETTERS) if key in side else "not given" for side in (before, after))
             yield f"{key} was {was}, is {now}"
 
