@@ -1,6 +1,7 @@
 """All variables of datasets and files, declared once: name, unit and description."""
 
 from roughmdr.variables.asperity import ASPERITY, FIELDS
+from roughmdr.variables.attributes import FIT_ATTRIBUTES, RESULT_ATTRIBUTES, STATED, Attribute
 from roughmdr.variables.law import (
     CONDUCTANCES,
     CONTROLS,
@@ -27,14 +28,18 @@ from roughmdr.variables.law import (
 from roughmdr.variables.run import (
     ADHESION_CODES,
     AUXILIARY_COORDINATES,
+    CELL_VARIABLES,
     DONE,
     ESTIMATORS,
     FAILED,
     NOT_RUN,
     PULL_OFF,
     PULL_OFF_NUMBERS,
+    PULL_OFF_OF_CELLS,
+    PULL_OFF_PER_AREA,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
+    STATISTICS,
     STATUSES,
 )
 from roughmdr.variables.variable import Diagnostic, Variable
@@ -43,6 +48,7 @@ __all__ = [
     "ADHESION_CODES",
     "ASPERITY",
     "AUXILIARY_COORDINATES",
+    "CELL_VARIABLES",
     "CONDUCTANCES",
     "CONTROLS",
     "COORDINATES",
@@ -54,6 +60,7 @@ __all__ = [
     "ESTIMATORS",
     "FAILED",
     "FIELDS",
+    "FIT_ATTRIBUTES",
     "LATERAL",
     "LAW_VARIABLES",
     "LOSSES",
@@ -64,16 +71,22 @@ __all__ = [
     "PRELOADS",
     "PULL_OFF",
     "PULL_OFF_NUMBERS",
+    "PULL_OFF_OF_CELLS",
+    "PULL_OFF_PER_AREA",
     "REFERENCE_VARIABLES",
     "REMOTE",
+    "RESULT_ATTRIBUTES",
     "RUN_DIAGNOSTICS",
     "RUN_VARIABLES",
     "SEPARATION",
+    "STATED",
+    "STATISTICS",
     "STATUSES",
     "STEP_COORDINATES",
     "TANGENTIAL_VARIABLES",
     "TIME",
     "TRAVEL",
+    "Attribute",
     "Diagnostic",
     "Variable",
 ]
