@@ -49,7 +49,7 @@ def value_faults(data: Labelled) -> Iterator[str]:
         yield f"branch must be {' or '.join(_BRANCHES)}"
     for name, array in data.coordinates.items():
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
-            yield f"{name} must be at least 0, and finite"
+            yield f"{name} is not finite"
     yield from _computed(data)
     yield from _magnitudes(data)
     yield from _statistics(data)
