@@ -111,13 +111,15 @@ def put(content: Content, *, believed: bool) -> bool:
 def all_failed(content: Content) -> None:
     runs = content.variables["status"].dims
     content.variables["status"].values[...] = 1
+    if "pull_off_count" in content.variables:
+        content.variables["pull_off_count"].values[...] = 0.0
     for name, (dims, values, _) in content.variables.items():
         if (
             dims in (runs, (*runs, "step"))
             and values.dtype.kind == "f"
-            and name not in ("separation", "realization_count")
+            and name not in ("separation", "realization_count", "pull_off_count")
         ):
-            values[...] = 0.0 if name == "pull_off_count" else np.nan
+            values[...] = np.nan
 
 
 def remarked(content: Content) -> None:

@@ -29,7 +29,9 @@ def cite(result: Path, bibtex: bool) -> None:
     if is_fit(result):
         from roughmdr.fitting.stored import read_fit
 
-        print_text(describe_papers(read_fit(result).attrs["scene"], None, bibtex=bibtex))
+        fit = read_fit(result)
+        warn_of(result, fit.integrity_fault())
+        print_text(describe_papers(fit.attrs["scene"], None, bibtex=bibtex))
         return
     data = read_result(result)
     warn_of(result, data.integrity_fault())

@@ -38,7 +38,9 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         from roughmdr.fitting.stored import read_fit
         from roughmdr.fitting.words import describe_fit
 
-        print_text(describe_fit(read_fit(result)))
+        fit = read_fit(result)
+        warn_of(result, fit.integrity_fault())
+        print_text(describe_fit(fit))
         return
 
     data = read_result(result)

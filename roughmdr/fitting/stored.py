@@ -1,20 +1,28 @@
 """Reading the file of a fit, which anyone may have changed."""
 
 import os
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.fitting.words import is_open
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT, is_fit
+from roughmdr.storage.result_form import Form, attribute_faults, is_text, with_units
+from roughmdr.storage.result_scene import scene_faults
+from roughmdr.variables import FIT_ATTRIBUTES, MEASURED
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_TEXTS = ("title", "scene", "trust", "history")
 _ENDS = ("", "_standard_error", "_low", "_high")
+_CONTROLS = ("remote", "separation")
+_BRANCHES = ("loading", "unloading")
 
 
 def read_fit(path: Path) -> Labelled:
@@ -25,41 +33,103 @@ def read_fit(path: Path) -> Labelled:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") != FIT:
         raise StoreError(f"{path}: holds no fit")
-    if fault := fit_fault(data):
-        raise StoreError(f"{path}: not a fit as roughmdr writes it: {fault}")
-    return data
+    try:
+        return as_fit(data)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: not a fit as roughmdr writes it: {error}") from None
 
 
 def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
-    """Return a fit that is given by its file or as a Dataset; None where it is none, StoreError where it is broken."""
+    """Return a fit that is given by its file or as a Dataset; None where it is none, StoreError where it is broken.
+
+    A UserWarning tells the caller of the caller where the numbers in a file cannot be trusted.
+    """
     if isinstance(fit, str | os.PathLike):
-        return read_fit(Path(fit)) if is_fit(Path(fit)) else None
+        if not is_fit(Path(fit)):
+            return None
+        data = read_fit(Path(fit))
+        if fault := data.integrity_fault():
+            warnings.warn(f"{fit}: {fault}", UserWarning, stacklevel=3)
+        return data
     if getattr(fit, "attrs", {}).get("kind") != FIT:
         return None
-    data = Labelled.of(fit)
-    if fault := fit_fault(data):
-        raise StoreError(f"fit: not as roughmdr.fit returns it: {fault}")
-    return data
+    try:
+        return as_fit(Labelled.of(fit))
+    except RoughmdrError as error:
+        raise StoreError(f"fit: not as roughmdr.fit returns it: {error}") from None
 
 
-def fit_fault(data: Labelled) -> str:
-    """Return why arrays are no fit as ``fit`` writes it; empty if they are one."""
-    for name, dims in _expected(data):
+def as_fit(data: Labelled) -> Labelled:
+    """Return arrays as a fit, with the declared units where they have none; RoughmdrError if they are none."""
+    for check in (_attributes, _arrays, _values):
+        for fault in check(data):
+            raise RoughmdrError(fault)
+    return with_units(data, _forms(data) | _optional_forms(data))
+
+
+def _attributes(data: Labelled) -> Iterator[str]:
+    yield from attribute_faults(data.attrs, FIT_ATTRIBUTES)
+    yield from scene_faults(data.attrs["scene"])
+
+
+def _arrays(data: Labelled) -> Iterator[str]:
+    """Find arrays that are missing, or of the wrong type, unit or dimensions."""
+    required = _forms(data)
+    for name, form in (required | _optional_forms(data)).items():
+        coordinate = form.kind == "text" or name in _CONTROLS
+        holder = data.coordinates if coordinate else data.variables
+        if name in holder:
+            yield from form.mismatches(name, holder[name])
+        elif name in required:
+            yield f"it has no {name}"
+    for key, (value, *_) in _parameters(data):
+        if not is_text(data.variables[value].attrs.get("units")):
+            yield f"the units of {key} are missing or no text"
+
+
+def _values(data: Labelled) -> Iterator[str]:
+    """Find values that no fit has: not finite, or outside their own interval."""
+    ends = {name for _, names in _parameters(data) for name in names[1:]}  # infinite where nothing is determined
+    for name, form in (_forms(data) | _optional_forms(data)).items():
         array = (data.variables | data.coordinates).get(name)
-        text = name in ("branch", "parameter_name")
-        if array is None or array.dims != dims or (array.values.dtype.kind in "OU") != text:
-            return f"{name} is missing or of another kind"
-    missing = [name for name in _TEXTS if not isinstance(data.attrs.get(name), str)]
-    return f"it has no {', '.join(missing)}" if missing else ""
+        if array is not None and form.kind == "f" and name not in ends and not np.isfinite(array.values).all():
+            yield f"{name} is not finite"
+    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
+        yield f"branch must be {' or '.join(_BRANCHES)}"
+    for key, names in _parameters(data):
+        value, error, low, high = (float(data.variables[name].values) for name in names)
+        if not low <= value <= high:
+            yield f"{key} is {value:g}, outside its own interval, {low:g} to {high:g}"
+        if not error >= 0.0:
+            yield f"the standard error of {key} is {error:g}; it must be at least 0"
+        if not (np.isfinite([low, high]).all() or is_open(data, names[0])):
+            yield f"the interval of {key}, {low:g} to {high:g}, is not finite, and its standard error is {error:g}"
 
 
-def _expected(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield the arrays of a fit with their dimensions."""
-    load = "pressure" if "pressure_fitted" in data.variables else "force"
-    control = "remote" if "remote" in data.coordinates else "separation"
-    yield from ((name, ("point",)) for name in (control, "branch", load, f"{load}_fitted", "residual"))
-    yield from ((name, ("parameter",)) for name in ("parameter_name", "parameter_scale"))
-    yield from ((name, ()) for name in ("residual_rms", "evaluation_count", "run_time"))
-    names = data.coordinates["parameter_name"].values.ravel() if "parameter_name" in data.coordinates else ()
-    for name in (str(each).replace(".", "_") for each in names):
-        yield from ((f"{name}{end}", ()) for end in _ENDS)
+def _parameters(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the key of each parameter and the names of its value, standard error and ends of its interval."""
+    names = data.coordinates["parameter_name"].values if "parameter_name" in data.coordinates else ()
+    for key in np.ravel(names):
+        yield str(key), tuple(f"{str(key).replace('.', '_')}{end}" for end in _ENDS)
+
+
+def _forms(data: Labelled) -> dict[str, Form]:
+    """Return the forms of the arrays that a fit must have, by their names."""
+    control = next((name for name in _CONTROLS if name in data.coordinates), "separation")
+    load, point = _load(data), ("point",)
+    forms = {control: Form(point, "f", MEASURED[control]), "branch": Form(point, "text", "")}
+    forms |= {name: Form(point, "f", MEASURED[load]) for name in (load, f"{load}_fitted", "residual")}
+    forms |= {"parameter_name": Form(("parameter",), "text", ""), "parameter_scale": Form(("parameter",), "f", "")}
+    forms |= {name: Form((), "f", "1") for name in ("residual_rms", "evaluation_count")}
+    forms |= {name: Form((), "f", "") for _, names in _parameters(data) for name in names}
+    return forms | {"run_time": Form((), "f", "s")}
+
+
+def _optional_forms(data: Labelled) -> dict[str, Form]:
+    """Return the forms of the arrays that a fit can have: errors of the measured points, and of the model."""
+    errors = {f"{names[0]}_model_error": Form((), "f", "") for _, names in _parameters(data)}
+    return errors | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
+
+
+def _load(data: Labelled) -> str:
+    return "pressure" if "pressure_fitted" in data.variables else "force"

@@ -48,13 +48,13 @@ def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
 def _with_interval(fit: Labelled, name: str) -> str:
     unit = str(fit.variables[name].attrs["units"])
     low, high = (_number(fit, f"{name}_{end}") for end in ("low", "high"))
-    if _is_open(fit, name):
+    if is_open(fit, name):
         return f"{format_quantity(_number(fit, name), unit)}, not determined"
     value = format_quantity(_number(fit, name), unit, error=_number(fit, f"{name}_standard_error"))
     return f"{value} ({format_quantity(low, unit, to=high)})"
 
 
-def _is_open(fit: Labelled, name: str) -> bool:
+def is_open(fit: Labelled, name: str) -> bool:
     """Return whether a parameter is not determined: a positive one by a factor of several, another by its scale."""
     position = [key.replace(".", "_") for key in parameter_keys(fit)].index(name)
     scale = float(fit.variables["parameter_scale"].values[position]) or _number(fit, name)
@@ -62,7 +62,7 @@ def _is_open(fit: Labelled, name: str) -> bool:
 
 
 def _has_shift(fit: Labelled, name: str) -> bool:
-    return f"{name}_model_error" in fit.variables and not _is_open(fit, name)
+    return f"{name}_model_error" in fit.variables and not is_open(fit, name)
 
 
 def _shift(fit: Labelled, key: str) -> str:

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.fitting.stored import fit_fault
+from roughmdr.fitting.stored import as_fit
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT
-from roughmdr.storage.result_validation import find_fault
+from roughmdr.storage.result_validation import as_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,8 +30,8 @@ class Drawable(NamedTuple):
 
     @property
     def doubt(self) -> str:
-        """Why the numbers of a result in a file cannot be trusted; empty if they can."""
-        return self.data.integrity_fault() if self.content == "result" and self.file is not None else ""
+        """Why the numbers of a result or a fit in a file cannot be trusted; empty if they can."""
+        return self.data.integrity_fault() if self.content != "ensemble" and self.file is not None else ""
 
 
 class Picture(NamedTuple):
@@ -81,11 +81,14 @@ def drawable(source: "str | Path | xr.Dataset") -> Drawable:
     else:
         raise StoreError(f"result is {short_repr(source)}; it must be a path or a Dataset as roughmdr.run returns it")
     content = _content(data)
-    if content != "ensemble" and (fault := find_fault(data) if content == "result" else fit_fault(data)):
+    if content == "ensemble":  # which the picture checks
+        return Drawable(content, data, file)
+    try:
+        return Drawable(content, as_result(data) if content == "result" else as_fit(data), file)
+    except RoughmdrError as error:
         made = f"{content}: not as roughmdr.{'run' if content == 'result' else 'fit'} returns it"
         place = made if file is None else f"{file}: not a {content} as roughmdr writes it"
-        raise StoreError(f"{place}: {fault}")
-    return Drawable(content, data, file)
+        raise StoreError(f"{place}: {error}") from None
 
 
 def _content(data: Labelled) -> Content:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.fitting.stored import given_fit
 from roughmdr.report import citations as papers
 from roughmdr.report import citations_of_layers as layer_papers
 from roughmdr.report.citations import Paper
@@ -34,7 +35,7 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
     Parameters
     ----------
     target : path, xarray.Dataset or Scene
-        A result, as a file or as ``run`` returned it, or a scene, as a .toml file or as it was read.
+        A result or a fit, as a file or as ``run`` or ``fit`` returned it; or a scene, a .toml file or as it was read.
     bibtex : bool, optional
         Whether to return entries of BibTeX in place of lines to read.
 
@@ -65,6 +66,8 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
         return describe_papers(target.toml, None, bibtex=bibtex)
     if isinstance(target, str | os.PathLike) and Path(target).suffix.lower() == ".toml":
         return describe_papers(read(target if isinstance(target, str) else Path(target)).toml, None, bibtex=bibtex)
+    if (fit := given_fit(target)) is not None:
+        return describe_papers(fit.attrs["scene"], None, bibtex=bibtex)
     result, _ = given_result(target)
     return describe_papers(result.attrs["scene"], result, bibtex=bibtex)
 

@@ -5,11 +5,11 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roughmdr.errors import StoreError
+from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
-from roughmdr.storage.result_validation import find_fault
+from roughmdr.storage.result_validation import as_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,10 +23,10 @@ def given_result(result: "str | Path | xr.Dataset") -> tuple[Labelled, Path | No
     import xarray as xr
 
     if isinstance(result, xr.Dataset):
-        data = Labelled.of(result)
-        if fault := find_fault(data):
-            raise StoreError(f"result: not as roughmdr.run returns it: {fault}")
-        return data, None
+        try:
+            return as_result(Labelled.of(result)), None
+        except RoughmdrError as error:
+            raise StoreError(f"result: not as roughmdr.run returns it: {error}") from None
     if not isinstance(result, str | os.PathLike):
         raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
     data = read_result(Path(result))

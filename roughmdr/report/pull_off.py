@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.result import layout
-from roughmdr.result.means import mean_of
+from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LATERAL, TRAVEL
@@ -67,8 +67,8 @@ def _describe_cell(result: Labelled, cell: tuple[int, ...]) -> str:
     if force == 0.0:
         return f"0 N: contacts part without tension{without}"
     text = format_quantity(force, "N", error=error)
-    if "pull_off_pressure_of_mean" in result.variables:
-        text += f", {format_quantity(float(mean_of(result, 'pull_off_pressure')[0][cell]), 'Pa')}"
+    if holds(result, "pull_off_pressure") and math.isfinite(pressure := mean_of(result, "pull_off_pressure")[0][cell]):
+        text += f", {format_quantity(float(pressure), 'Pa')}"
     of_mean = float(result.variables["pull_off_force_of_mean"].values[cell])
     if runs > 1 and layout.control_of(result) != TRAVEL.name:  # at equal travel realisations stand at different places
         text += (

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.variables import STATED
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -49,11 +51,13 @@ class Labelled(NamedTuple):
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
 
     def checksum(self) -> str:
-        """Return a hash of the scene and of all arrays but ``run_time``, which depends on the clock."""
-        digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
+        """Return a hash of what attributes state and of all arrays but ``run_time``, which depends on the clock."""
+        stated = [(name, str(self.attrs.get(name, ""))) for name in STATED]
+        digest = hashlib.sha256(repr(stated).encode(errors="replace"))
         for name, array in sorted((self.variables | self.coordinates).items()):
             if name != "run_time":
-                digest.update(name.encode() + str(array.dims).encode())
+                told = [str(array.attrs.get(key, "")) for key in ("units", "flag_meanings")]
+                digest.update(repr((name, array.dims, told)).encode(errors="replace"))
                 for part in _bytes_of(array.values):
                     digest.update(part)
         return digest.hexdigest()

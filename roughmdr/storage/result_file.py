@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions, read_netcdf
-from roughmdr.storage.result_validation import find_fault
+from roughmdr.storage.result_validation import as_result
 
 FIT = "fit"
 """The attribute ``kind`` of the result of a fit."""
@@ -46,9 +46,10 @@ def read_result(path: Path) -> Labelled:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") == FIT:
         raise StoreError(f"{path}: holds a fit, no result; info, plot and cite show it, and run computes its scene")
-    if fault := find_fault(data):
-        raise StoreError(f"{path}: not a result as roughmdr writes it: {fault}")
-    return data
+    try:
+        return as_result(data)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: not a result as roughmdr writes it: {error}") from None
 
 
 def is_fit(path: Path) -> bool:

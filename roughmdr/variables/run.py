@@ -153,23 +153,36 @@ PULL_OFF_NUMBERS = declare(
 )
 """Numbers of the pull-off of each realisation, in the order of ``PullOff``."""
 
-PULL_OFF = PULL_OFF_NUMBERS | declare(
+PULL_OFF_PER_AREA = declare(
     ("pull_off_pressure", "Pa", "largest tension of the unloading over nominal area"),
     ("pull_off_contact_fraction", "1", "contact area over nominal area at the largest tension of the unloading"),
+)
+"""Those of them over the nominal area, where that is known."""
+
+PULL_OFF_OF_CELLS = declare(
     ("pull_off_count", "1", "number of realizations with a pull-off: whose unloading does not end in contact"),
     ("pull_off_force_of_mean", "N", "largest tension of the mean force during unloading"),
     ("pull_off_pressure_of_mean", "Pa", "largest tension of the mean force during unloading, over nominal area"),
 )
+"""Numbers of the pull-off of each cell."""
+
+PULL_OFF = PULL_OFF_NUMBERS | PULL_OFF_PER_AREA | PULL_OFF_OF_CELLS
 """Variables of a result with an unloading."""
 
-RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | declare(
+CELL_VARIABLES = declare(
     ("realization_count", "1", "number of realizations of the statistics"),
     ("nominal_area", "m2", "nominal area of the surface, or of its patch"),
     ("cell_key", "", "hash of everything that decides the numbers of a cell, versions included"),
     ("accuracy_reached", "1", "standard error of the mean force, or error of an expected law, over the largest force"),
     ("accuracy_method", "1", "how the cell was computed", ESTIMATORS),
 )
+"""Variables of a result that describe its cells."""
+
+RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | CELL_VARIABLES
 """Variables of a result that describe its runs and cells."""
+
+STATISTICS = ("mean", "sem", "min", "max")
+"""Endings of the names of statistics over realisations."""
 
 AUXILIARY_COORDINATES = (
     "separation",

@@ -1,0 +1,128 @@
+"""Values of a result that no run writes."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_form import is_text, statistics_of
+from roughmdr.variables import (
+    DONE,
+    FAILED,
+    LAW_VARIABLES,
+    NOT_RUN,
+    OUTPUT_VARIABLES,
+    PULL_OFF,
+    PULL_OFF_NUMBERS,
+    PULL_OFF_PER_AREA,
+    REFERENCE_VARIABLES,
+    RUN_DIAGNOSTICS,
+    RUN_VARIABLES,
+    STATISTICS,
+)
+
+_BRANCHES = ("loading", "unloading")
+_COUNTS = ("realization_count", "pull_off_count")
+_CODES = ("adhesion_law", "accuracy_method")
+_KNOWN_TOGETHER = {
+    "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error")],
+    "avalanche_count": ["avalanche_size_max"],
+    **{
+        f"pull_off_force{end}": [f"{name}{end}" for name in PULL_OFF_NUMBERS]
+        for end in ("", *(f"_{statistic}" for statistic in STATISTICS))
+    },
+    **{name: ["reference_error"] for name in REFERENCE_VARIABLES},
+    **{f"{name}_mean": ["reference_error_mean"] for name in REFERENCE_VARIABLES},
+}
+"""Variables that are known where another is."""
+_LARGEST = 1e150  # magnitude of a variable of a law in SI: products of larger ones overflow
+_NOT_NEGATIVE = ("1", "m2", "s")  # units of errors, shares, counts, areas and times
+_ROUNDING = 1e-9  # share of the largest magnitude by which a sum may be off its bounds
+
+
+def value_faults(data: Labelled) -> Iterator[str]:
+    """Find values that no run writes, in arrays that are known to have the right types and dimensions."""
+    if not np.isin(data.variables["status"].values, (DONE, FAILED, NOT_RUN)).all():
+        yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
+    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
+        yield f"branch must be {' or '.join(_BRANCHES)}"
+    for name, array in data.coordinates.items():
+        if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
+            yield f"{name} is not finite"
+    yield from _computed(data)
+    yield from _magnitudes(data)
+    yield from _statistics(data)
+    yield from _pull_offs(data)
+    for name in _CODES:
+        if name in data.variables:
+            array = data.variables[name]
+            meanings = array.attrs.get("flag_meanings")
+            if not is_text(meanings):
+                yield f"{name} has no flag_meanings"
+            elif not ((array.values >= 0) & (array.values < len(str(meanings).split()))).all():
+                yield f"{name} has a value that is none of its flags"
+
+
+def _computed(data: Labelled) -> Iterator[str]:
+    """Find numbers that are not known although they were computed; marked steps may have no value."""
+    status = data.variables["status"].values
+    marked = data.variables["marked_steps"].values if "marked_steps" in data.variables else np.zeros_like(status)
+    whole = (status == DONE) & (marked == 0.0)
+    diagnostics = ("run_time", "numerical_error", "reference_points")
+    for name in (*diagnostics, *OUTPUT_VARIABLES, *(f"{name}_mean" for name in OUTPUT_VARIABLES)):
+        if name in data.variables and not np.isfinite(data.variables[name].values[whole]).all():
+            yield f"{name} is not finite, and status says that it was computed"
+    for name, others in _KNOWN_TOGETHER.items():
+        if name in data.variables:
+            known = np.isfinite(data.variables[name].values) & (status == DONE).reshape(_shape_of(status, data, name))
+            for other in others:
+                if other in data.variables and not np.isfinite(data.variables[other].values[known]).all():
+                    yield f"{other} is not finite where {name} is known"
+
+
+def _shape_of(status: NDArray[np.int64], data: Labelled, name: str) -> tuple[int, ...]:
+    """Return the shape of the status for arrays that may have steps."""
+    return (*status.shape, 1) if data.variables[name].dims[-1:] == ("step",) else status.shape
+
+
+def _pull_offs(data: Labelled) -> Iterator[str]:
+    """Find a number of realisations with a pull-off that is not that of their pull-offs."""
+    if "pull_off_count" in data.variables:
+        count, kept = data.variables["pull_off_count"].values, "pull_off_force" in data.variables
+        having = np.isfinite(data.variables["pull_off_force" if kept else "pull_off_force_mean"].values)
+        if not (count == having.sum(axis=-1) if kept else (count > 0.0) == having).all():
+            yield "pull_off_count is not the number of realizations that have a pull_off_force"
+
+
+def _magnitudes(data: Labelled) -> Iterator[str]:
+    """Find numbers that are too large, and negative ones of what is not negative."""
+    for name, declared in (LAW_VARIABLES | PULL_OFF | RUN_VARIABLES).items():
+        for each in [held for held in (name, *statistics_of(name)) if held in data.variables]:
+            values = data.variables[each].values
+            if values.dtype.kind != "f":
+                continue
+            largest = float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
+            if largest > _LARGEST:
+                yield f"{each} is above {_LARGEST:g} in SI"
+            if declared.units in _NOT_NEGATIVE and (values < -_ROUNDING * largest).any():
+                yield f"{each} must be at least 0"
+    for name in [name for name in _COUNTS if name in data.variables]:
+        if not np.isfinite(data.variables[name].values).all():
+            yield f"{name} must be at least 0, and finite"
+
+
+def _statistics(data: Labelled) -> Iterator[str]:
+    """Find means that do not lie between the least and the greatest, and standard errors below 0."""
+    for name in (*LAW_VARIABLES, *PULL_OFF_NUMBERS, *PULL_OFF_PER_AREA):
+        if f"{name}_mean" in data.variables:
+            mean, error, least, greatest = (data.variables[each].values for each in statistics_of(name))
+            if _outside(mean, least, greatest).any():
+                yield f"{name}_mean does not lie between {name}_min and {name}_max"
+            if (error < 0.0).any():
+                yield f"{name}_sem must be at least 0"
+
+
+def _outside(mean: NDArray[np.float64], least: NDArray[np.float64], greatest: NDArray[np.float64]) -> NDArray[np.bool_]:
+    slack = _ROUNDING * np.fmax(np.abs(least), np.abs(greatest))
+    return (mean < least - slack) | (mean > greatest + slack)
