@@ -7,7 +7,7 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
 
-_SEPARATED, _POWER = 0.165, 2.5
+_SEPARATED, _POWER = 0.18, 2.5
 """Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """To first order: (a/D)^3 likewise, and the factor by which it grows with the contact fraction."""
