@@ -9,6 +9,7 @@ from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation
 from roughmdr.aggregate.mean_field import couple
+from roughmdr.aggregate.neighbours import are_few, neighbours_error
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
@@ -59,11 +60,16 @@ def compute(
     adhesion = adhesion.resolved(validity.jkr_error)
     law = choose(ensemble.shape, adhesion, columns[2])
     rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
+    rows |= {totals.COUNT} if are_few(ensemble) else set()
 
     def sums(along: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
         return loop.sum_over_asperities(
             law, ensemble.height, columns, effective_modulus, adhesion, along.separation, along.memory, rows
         )
+
+    def radius_at(separation: float) -> Floats:
+        there = LoadingPath.along(np.array([separation]), unload=False, adhesive=adhesion.work > 0.0)
+        return sums(there, {totals.AREA})[1]
 
     if coupling := coupling_in(ensemble, interaction, effective_modulus):
 
@@ -87,6 +93,7 @@ def compute(
         ensemble.border_error,
         ensemble.origin,
         _overlap(ensemble, radius),
+        neighbours_error=neighbours_error(ensemble, path, total, radius_at) if interaction is None else None,
     )
     result = LoadSeparation.of(
         total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model

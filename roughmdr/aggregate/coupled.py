@@ -186,7 +186,8 @@ def _found(
     beyond |= [step.lost > 0 for step in steps]
     largest = np.nanmax(np.abs(total[totals.FORCE]), initial=0.0) if adhesive else total[totals.FORCE]
     beyond |= total[totals.ERROR] > interaction.error * largest  # contacts that did not come to rest
-    error = coupling_error(np.nan_to_num(fraction), share, ensemble)
+    near = np.array([step.overlap.crowding for step in steps])
+    error = coupling_error(np.nan_to_num(fraction), near, ensemble, interaction.order)
     of_conductance = coupled_conductance_error(np.nan_to_num(fraction), share, ensemble, interaction.order)
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))

@@ -26,6 +26,12 @@ _VERTICAL = 10.0  # a slope from which on a flank is as good as vertical
 _UPRIGHT = float(np.finfo(np.float64).max)  # slope of a vertical flank
 
 
+def relative_loads(radius: Floats, slopes: Floats) -> Floats:
+    """Return a^2 f'(a) [1] of contact radii [m] and the slopes there, which is about proportional to their forces."""
+    relative = radius / np.max(radius)
+    return np.asarray(relative * relative * np.minimum(np.nan_to_num(slopes, posinf=_VERTICAL), _VERTICAL))
+
+
 class ValidityLimits(NamedTuple):
     """The extremes over all contacts."""
 
@@ -39,15 +45,14 @@ class ValidityLimits(NamedTuple):
     def of(cls, radius: Floats, slopes: Floats, ends: Floats) -> "ValidityLimits":
         """Return the limits of contact radii [m], with the slopes there and the ends [m] of their profiles.
 
-        A contact bears a share of the force as a^2 f'(a), which is about proportional to its force.
+        A contact bears a share of the force as ``relative_loads`` has it.
         """
         if not (radius > 0.0).any():
             return cls()
         with np.errstate(all="ignore"):
             steepest = np.where((radius > 0.0) & ~np.isnan(slopes), slopes, 0.0)
             farthest = np.where(np.isfinite(radius), radius / ends, 0.0)
-            relative = radius / np.max(radius)
-            loads = relative * relative * np.minimum(steepest, _VERTICAL)
+            loads = relative_loads(radius, steepest)
             errors = np.minimum(steepest * steepest / _SLOPE_DIVISOR, 1.0)
             total = float(np.sum(loads))
             shares = loads / total if total > 0.0 else np.zeros_like(loads)

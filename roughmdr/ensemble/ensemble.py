@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.asperity.validity import ValidityLimits
+from roughmdr.asperity.validity import ValidityLimits, relative_loads
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats
@@ -115,11 +115,19 @@ class Ensemble:
         if not (radius > 0.0).any():
             return ValidityLimits()
         if self.shared_profile is not None:
-            return ValidityLimits.of(radius, self.shared_profile.df(radius), np.array(self.shared_profile.end))
-        shape = SHAPES[self.shape]
+            return ValidityLimits.of(radius, self._slopes(radius), np.array(self.shared_profile.end))
+        return ValidityLimits.of(radius, self._slopes(radius), SHAPES[self.shape].ends(self.parameters))
+
+    def relative_loads(self, radius: Floats) -> Floats:
+        """Return about the forces of contacts with these radii [m], 0 for none, over the largest."""
+        return relative_loads(radius, self._slopes(radius))
+
+    def _slopes(self, radius: Floats) -> Floats:
+        """Return f' at radii [m]."""
+        if self.shared_profile is not None:
+            return self.shared_profile.df(radius)
         with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
-            slopes = shape.slopes(self.nondimensional(), radius)
-        return ValidityLimits.of(radius, slopes, shape.ends(self.parameters))
+            return SHAPES[self.shape].slopes(self.nondimensional(), radius)
 
     def labelled(self) -> Labelled:
         """Return the arrays over ``asperity``, with their units."""

@@ -88,6 +88,11 @@ class Source(Section):
         raise NotImplementedError
 
     @property
+    def given_count(self) -> int | None:
+        """The number of asperities, where it is given and the same in all realisations; None of a density."""
+        return None
+
+    @property
     def nominal_area(self) -> float | None:
         """[m2]; None where it is unknown."""
         raise NotImplementedError
@@ -113,6 +118,11 @@ class Source(Section):
         of this chance; all asperities themselves where nothing is drawn.
         """
         raise NotImplementedError
+
+    @property
+    def unbounded(self) -> "Source":
+        """The source as a part of a surface that goes on beyond the patch: with a density in place of a count."""
+        return self
 
     def limited_to(self, count: int) -> "Source":
         """Return a source like this one with about ``count`` asperities at most, on so much smaller a patch, or itself

@@ -30,11 +30,12 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge, converge_at_kinks
 from roughmdr.expected.node import Problem, QuadratureNode, moved, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
-from roughmdr.interaction.mean_field import Shift, coupling_of, shift
+from roughmdr.interaction.mean_field import Shift, coupling_of, mean_inverse_distance, shift
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
 from roughmdr.numerics.arguments import Floats
 
@@ -106,11 +107,24 @@ def compute(
     contacts = float(total[COUNT].max())
     jkr_error = contacts * validity.contact_error if model == "jkr" and contacts > 0.0 else 0.0
     assumptions = Assumptions(
-        limits, jkr_error, origin="summits" if source.of_surface else "asperities", overlap=overlap
+        limits,
+        jkr_error,
+        origin="summits" if source.of_surface else "asperities",
+        overlap=overlap,
+        neighbours_error=_neighbours_error(source, total) if interaction is None else None,
     )
     warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
+
+
+def _neighbours_error(source: Source, total: Floats) -> Floats | None:
+    """Return the error that few asperities at random make as independent ones, at each step; None of many."""
+    given, area = source.given_count, source.nominal_area
+    if given is None or given > FEW or area is None:
+        return None
+    contacts, side = total[COUNT], math.sqrt(area)
+    return error_of_few(total[AREA], contacts, contacts * (1.0 - 1.0 / given), mean_inverse_distance(side, side))
 
 
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:

@@ -1,5 +1,7 @@
 """Summits that lie below the flank of a higher asperity: they are no part of the surface that all make together."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,8 @@ from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
 
 _NEAREST = 1e-5  # of the side of the patch: 1/r^3 is then 1e15 times what is smooth on the patch
 _DOUBLINGS, _HALVINGS = 200, 30
+_SEARCHED = 4.0
+"""Radius up to which a hidden flank is looked for, over that at which a flank is as low as the lowest summit."""
 
 
 def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
@@ -34,24 +38,58 @@ def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
         return np.asarray(rise * (r / width) ** columns.params[i])
 
 
-def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> NDArray[np.bool_]:
+class Buried(NamedTuple):
+    """Which summits lie below a flank, and from where on they are part of the surface."""
+
+    hidden: NDArray[np.bool_]
+    emerging: Floats
+    """The radius [m] at which the flank of a hidden summit comes out of that of each asperity, the least; inf for none:
+    a larger contact is no disc."""
+
+    @classmethod
+    def none(cls, count: int) -> "Buried":
+        """Return that none of so many is below another."""
+        return cls(np.zeros(count, dtype=np.bool_), np.full(count, np.inf))
+
+
+def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> Buried:
     """Return which summits lie below a flank; positions [asperity, 2] and ``sides`` of a patch that repeats [m].
 
     Of summits so near to each other that no digits are left of what tells them apart, all but the highest do.
     """
     height = ensemble.height
-    hidden = np.zeros(height.size, dtype=np.bool_)
-    for i, j, away in within_reach(at, reach(ensemble, height - height.min()), sides):
+    hidden, emerging = np.zeros(height.size, dtype=np.bool_), np.full(height.size, np.inf)
+    farthest = reach(ensemble, height - height.min())
+    for i, j, away in within_reach(at, farthest, sides):
         lower = np.flatnonzero(height[j] < height[i])
         if not lower.size:
             continue
-        flank = height[i[lower]] - drop(ensemble, i[lower], away[lower])
-        hidden[j[lower][flank > height[j[lower]]]] = True
+        below = height[i[lower]] - drop(ensemble, i[lower], away[lower]) > height[j[lower]]
+        over = lower[below]
+        hidden[j[over]] = True
+        np.minimum.at(emerging, i[over], _emerging(ensemble, i[over], j[over], away[over], farthest[i[over]]))
     if sides is not None:
         for i, j, away in within_reach(at, np.full(height.size, _NEAREST * sides.max()), sides):
             later = (away < _NEAREST * sides.max()) & (i < j)  # heights descend
             hidden[j[later & ~hidden[i]]] = True
-    return hidden
+    return Buried(hidden, emerging)
+
+
+def _emerging(ensemble: Ensemble, i: NDArray[np.int64], j: NDArray[np.int64], away: Floats, farthest: Floats) -> Floats:
+    """Return the radius about i, towards j and beyond, where the flank of j comes out; inf where it does not."""
+
+    def above(r: Floats) -> NDArray[np.bool_]:
+        with np.errstate(invalid="ignore"):
+            flank = ensemble.height[i] - drop(ensemble, i, r)
+            return np.asarray(ensemble.height[j] - drop(ensemble, j, np.abs(r - away)) > flank)
+
+    low, high = away, _SEARCHED * farthest
+    never = ~above(high)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        higher = above(middle)
+        low, high = np.where(higher, low, middle), np.where(higher, middle, high)
+    return np.where(never, np.inf, high)
 
 
 def reach(ensemble: Ensemble, depth: Floats) -> Floats:

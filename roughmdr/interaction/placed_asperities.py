@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
-from roughmdr.interaction.buried import buried
+from roughmdr.interaction.buried import Buried, buried
 from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.placed import sides_of
@@ -33,10 +33,10 @@ class Placed:
         self.patch = Periodic.of(sides[1] / sides[0])
         _check_apart(ensemble, at / self.length, self.sides)
         if ensemble.origin == "hills":  # each is a part of the surface
-            hidden = np.zeros(ensemble.height.size, dtype=np.bool_)
+            below = Buried.none(ensemble.height.size)
         else:
-            hidden = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
-        self.kept = np.flatnonzero(~hidden)
+            below = buried(ensemble, at, None if self.sides is None else self.sides * self.length)
+        self.kept = np.flatnonzero(~below.hidden)
         """The numbers of the asperities that are not buried."""
         ensemble = ensemble.taken(self.kept)
         self._columns, self._material = ensemble.nondimensional(), Material(effective_modulus, 0.0, math.inf)
@@ -44,6 +44,8 @@ class Placed:
         """Their kernels without adhesion."""
         self.at = at[self.kept] / self.length
         self.height = ensemble.height / self.length
+        self.emerging = below.emerging[self.kept] / self.length
+        """Radii from which on the flanks of summits that are buried are in their contacts; inf for none."""
         depth, size = _natural_scales(self.law, self._columns, self._material, self.height.size)
         self.depth, self.size = depth / self.length, size / self.length
         """Natural depths and radii."""

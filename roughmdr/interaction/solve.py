@@ -13,6 +13,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
 from roughmdr.interaction.contacts import coupled_kernels
+from roughmdr.interaction.crowding import crowding
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
@@ -156,7 +157,16 @@ def _totals(candidates: Candidates, found: Equilibrium, h: float, modulus: float
     close.mark_overlaps(pairs, np.where(touching, contacts.radius, 0.0), overlapping)
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
-    overlap = Overlap(int(overlapping.sum()), float(contacts.load[overlapping].sum()) / load)
+    share, count = float(contacts.load[overlapping].sum()) / load, touching.size
+    near = crowding(
+        candidates.at[:count],
+        contacts.radius,
+        contacts.load,
+        candidates.sides,
+        candidates.emerging[:count],
+        candidates.interaction.order,
+    )
+    overlap = Overlap(int(overlapping.sum()), share, near)
     rigidity = total_stiffness(candidates.system, found.state, h) if "stiffness" in names else 0.0
     conductance = 0.0
     if "conductance_radius" in names:

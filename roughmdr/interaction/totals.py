@@ -4,11 +4,13 @@ from typing import NamedTuple
 
 
 class Overlap(NamedTuple):
-    """Contacts that overlap a neighbour's."""
+    """Contacts that overlap a neighbour's, or are near to one."""
 
     contacts: int
     share: float
-    """Of the force."""
+    """Of the force of those that overlap."""
+    crowding: float = 0.0
+    """About the error of the force by contacts near to each other [1]."""
 
 
 class Step(NamedTuple):

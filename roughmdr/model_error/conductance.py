@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble, Origin
+from roughmdr.model_error.interaction import OF_ORIGIN
 from roughmdr.model_error.parts import Assumptions, ModelError
 from roughmdr.numerics.arguments import Floats
 
@@ -43,9 +44,12 @@ def conductance_error(assumptions: Assumptions, model_error: ModelError, contact
     """Return the largest error along a path, with the parts that are not by interaction; NaN without a nominal area."""
     if contact_fraction is None:
         return math.nan
-    interaction = assumptions.conductance_error
+    interaction, known = assumptions.conductance_error, assumptions.neighbours_error
     if interaction is None:
-        interaction = _INDEPENDENT[assumptions.origin] * np.sqrt(contact_fraction)
+        over_root = _INDEPENDENT[assumptions.origin]
+        interaction = over_root * np.sqrt(contact_fraction)
+        if known is not None:
+            interaction = known * (over_root / OF_ORIGIN[assumptions.origin].estimate)
     largest = float(np.nanmax(interaction, initial=0.0))
     others = math.fsum(part for name, part in model_error.parts.items() if name != "interaction_error")
     return min(largest + others, 1.0) if largest > 0.0 else 0.0

@@ -7,10 +7,14 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
 
-_SEPARATED, _POWER = 0.15, 2.5
+_SEPARATED, _POWER = 0.18, 2.5
 """Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
-_OVERLAP, _CROWDED = 0.15, 0.2
-"""Of contacts that overlap, over their share of the force; and so much more over the contact fraction as well."""
+_FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
+"""To first order: (a/D)^3 likewise, and the factor by which it grows with the contact fraction."""
+_CROWDED = 5.0
+"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``)."""
+_TYPICAL_CROWDING = 0.15
+"""Crowding over the share of the force of overlapping contacts, where their distances are not known."""
 _SUMMITS = 1.3
 """Of the summits of a continuous surface, whose flanks are no paraboloids, over the root of the contact fraction."""
 
@@ -25,17 +29,28 @@ HILLS_MARKED_FRACTION = 0.3
 """Of hills, whose contacts overlap as those of one surface do: beyond, nothing was measured."""
 
 
-def coupling_error(contact_fraction: Floats, overlap: Floats, ensemble: Ensemble | None = None) -> Floats:
+def coupling_error(
+    contact_fraction: Floats, crowding: Floats, ensemble: Ensemble | None = None, order: int = 2
+) -> Floats:
     """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
 
-    ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
-    contacts that overlap; shape (n,) each. ``ensemble`` are the asperities, on a plane where it is left out.
+    ``contact_fraction`` is the summed contact area over the nominal area, ``crowding`` about the error by contacts near
+    to each other at low contact fractions; shape (n,) each. ``ensemble`` are the asperities, on a plane where it is
+    left out.
     """
     if ensemble is not None and ensemble.origin == "hills":
         return np.where(contact_fraction > 0.0, min(_HILLS * math.sqrt(ensemble.anisotropy), 1.0), 0.0)
-    error = _SEPARATED * contact_fraction**_POWER + overlap * (_OVERLAP + _CROWDED * contact_fraction)
+    separated = _SEPARATED * contact_fraction**_POWER
+    if order == 1:
+        separated = _FIRST * contact_fraction**_THIRD * (1.0 + _FULLER * contact_fraction)
+    error = np.maximum(separated, crowding * (1.0 + _CROWDED * contact_fraction))
     origin = "asperities" if ensemble is None else ensemble.origin
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
+
+
+def foreseen_error(contact_fraction: float, overlap: float) -> float:
+    """Return it for asperities of which only the share of the force of overlapping contacts is known."""
+    return float(coupling_error(np.array(contact_fraction), np.array(_TYPICAL_CROWDING * overlap)))
 
 
 def summits_error(contact_fraction: Floats, origin: Origin) -> Floats:

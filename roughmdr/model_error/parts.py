@@ -47,6 +47,8 @@ class Assumptions(NamedTuple):
     """The error of asperities that are coupled, at each step; None of independent ones."""
     conductance_error: Floats | None = None
     """That of their conductance; None likewise."""
+    neighbours_error: Floats | None = None
+    """The error of independent ones as their distances tell it, at each step; None where the contact fraction does."""
 
 
 class ModelError(NamedTuple):
@@ -96,14 +98,15 @@ class ModelError(NamedTuple):
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
             return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
-        coupled = assumptions.coupling_error
+        coupled, known = assumptions.coupling_error, assumptions.neighbours_error
+        coefficients = OF_ORIGIN[assumptions.origin]
         if coupled is None:
-            interaction = interaction_error(contact_fraction, OF_ORIGIN[assumptions.origin])
+            interaction = interaction_error(contact_fraction, coefficients) if known is None else np.minimum(known, 1.0)
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
         curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
         if coupled is None:
-            trusted = contact_fraction <= _SLACK * TRUSTED_FRACTION
+            trusted = interaction <= interaction_error(np.array(_SLACK * TRUSTED_FRACTION), coefficients)
         else:  # the error of hills is the same at every contact fraction
             trusted = np.isfinite(force) if assumptions.origin == "hills" else interaction <= TRUSTED_ERROR
         beyond = separation[~trusted]

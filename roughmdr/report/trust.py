@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.model_error.coupling import coupling_error, summits_error
+from roughmdr.model_error.coupling import MARKED_SHARE, foreseen_error, summits_error
 from roughmdr.model_error.interaction import (
     ASPERITIES,
     HILLS,
@@ -26,7 +26,8 @@ from roughmdr.variables import LATERAL
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
-_MORE = 1.0 + 1e-9
+_LEAST, _MOST = 0.9, 1.0 + 1e-9
+"""An error between these, over that of the contact fraction, is that of the contact fraction."""
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _OPENINGS = {
@@ -34,6 +35,7 @@ _OPENINGS = {
     "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
 }
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
+_BY_FRACTION = {"interaction_error", "largest_contact_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
 Numbers = Mapping[str, Any]
@@ -84,14 +86,18 @@ def trust_lines(
         yield from _several("", others)
         yield "trust", _trust_coupled(known, summits)
         return
-    errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
-    yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
-    yield from (("", f"and by {error}") for error in errors[1:])
-    if len(places) > 1:
-        yield "", _pull_off_error(tension)
+    if coefficients is None:
+        yield "model error", _neighbours(float(known["interaction_error"].max()))
+    else:
+        errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
+        yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
+        yield from (("", f"and by {error}") for error in errors[1:])
+        if len(places) > 1:
+            yield "", _pull_off_error(tension)
     yield from _several("", others)
     yield "trust", _trust(known, coefficients, interaction)
-    if advise and interaction is None and not tension.size:
+    lone = known["interaction_error"].max() == 0.0
+    if advise and interaction is None and not (tension.size or lone):
         yield "", _advice(known, coefficients)
 
 
@@ -126,7 +132,11 @@ def _has_summits(table: dict[str, Any]) -> bool:
 def pull_off_error_of(result: Labelled) -> str:
     """Return by how much independence may change the pull-off force of a result; empty where that is not known."""
     tension = _known(_at_pull_off(result))
-    return _pull_off_error(tension) if tension.size and result.attrs.get("interaction") != "pairwise" else ""
+    if not tension.size or result.attrs.get("interaction") == "pairwise":
+        return ""
+    known = {name: _known(result.variables[name].values) for name in _BY_FRACTION & set(result.variables)}
+    by_fraction = not all(known.get(name, np.empty(0)).size for name in _BY_FRACTION) or _coefficients(known)
+    return _pull_off_error(tension) if by_fraction else ""
 
 
 def _at_pull_off(result: Labelled) -> Floats:
@@ -140,7 +150,17 @@ def _pull_off_error(tension: Floats) -> str:
     return f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}"
 
 
-def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: str | None) -> str:
+def _neighbours(error: float) -> str:
+    """Return the error that the distances of independent asperities tell."""
+    if error == 0.0:
+        return "a lone asperity feels no other: no error by interaction"
+    return (
+        "asperities are independent, where each lowers the surface under those near it: force at given separation too "
+        f"high by up to {_percent(error)}"
+    )
+
+
+def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interaction: str | None) -> str:
     """Return within which error the force holds, and up to where."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
@@ -148,8 +168,9 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients, interaction: st
         whole = _percent(min(sum(parts.values()), 1.0))
         left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
         rest = f"; below it {left_out}: within {whole} at closest approach"
-        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients))
-        place = f"down to h = {format_quantity(float(beyond.max()), 'm')} (contact {_percent(TRUSTED_FRACTION)})"
+        parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients or ASPERITIES))
+        contact = f" (contact {_percent(TRUSTED_FRACTION)})" if coefficients else ""
+        place = f"down to h = {format_quantity(float(beyond.max()), 'm')}{contact}"
     error = sum(parts.values())
     if error < 1.0:
         return f"force within about {_percent(error)} {place}{rest}"
@@ -188,23 +209,30 @@ def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
     return f"force within about {_percent(whole)} along the whole path{rest}"
 
 
-def _advice(known: dict[str, Floats], coefficients: Coefficients) -> str:
+def _advice(known: dict[str, Floats], coefficients: Coefficients | None) -> str:
     """Return by how much [interaction] would better the error, if contacts overlap as often as those of this scene."""
     fraction, overlap = (known[name].max(initial=0.0) for name in ("largest_contact_fraction", "overlap_fraction"))
+    if coefficients is None:
+        grid = ', beyond = "boundary_elements" where contacts overlap' if overlap > MARKED_SHARE else ""
+        return (
+            f'[interaction] model = "pairwise" counts it{grid}; boundary = "free" where the patch is no part of a '
+            "larger surface"
+        )
     if coefficients is HILLS:
         return 'hills need [interaction] model = "pairwise": without it their forces mean nothing'
-    better = coupling_error(np.array([fraction]), np.array([overlap]))
+    better = foreseen_error(fraction, overlap)
     if coefficients is SUMMITS:
-        better = better + summits_error(np.array([fraction]), "summits")
-    within = _percent(float(min(better[0], 1.0)))
+        better += float(summits_error(np.array(fraction), "summits"))
+    within = _percent(min(better, 1.0))
     return f'with [interaction] model = "pairwise" by the interaction within about {within}'
 
 
-def _coefficients(known: dict[str, Floats]) -> Coefficients:
-    """Return the coefficients that the error by interaction was estimated with."""
+def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
+    """Return the coefficients that the error by interaction was estimated with; None of one by distances."""
     error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
-    kinds = (ASPERITIES, SUMMITS, HILLS)  # by rising errors
-    return next((kind for kind in kinds if error <= _MORE * interaction_error(fraction, kind)), HILLS)
+    kinds = (ASPERITIES, SUMMITS, HILLS)
+    by_fraction = [float(interaction_error(fraction, kind)) for kind in kinds]
+    return next((kind for kind, of in zip(kinds, by_fraction, strict=True) if _LEAST * of <= error <= _MOST * of), None)
 
 
 def _interaction(fraction: float, coefficients: Coefficients) -> str:

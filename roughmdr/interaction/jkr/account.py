@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
+from roughmdr.interaction.crowding import crowding
 from roughmdr.interaction.jkr.equilibrium import State, alone, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.jumps import Avalanche
@@ -98,7 +99,7 @@ class Account:
             visits,
             self._avalanches,
             self._pull_off(),
-            self._crowding(),
+            self._crowded(),
         )
 
     def _totals(self, state: State) -> Step:
@@ -128,12 +129,18 @@ class Account:
             unit / length * stiffness,
             on.size,
             unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
-            Overlap(int(overlapping.sum()), share),
+            Overlap(int(overlapping.sum()), share, self._crowding(state)),
             int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
             *lost,
             conductance,
         )
+
+    def _crowding(self, state: State) -> float:
+        placed, count = self._front.placed, state.t.size
+        load = np.where(state.inside, state.load, 0.0)
+        order = placed.interaction.order
+        return crowding(placed.at[:count], state.contacts.radius, load, placed.sides, placed.emerging[:count], order)
 
     def _conductance(self, state: State) -> float:
         """Return the conductance radius of the contacts as they are, whatever adhesion does to their stiffness."""
@@ -151,7 +158,7 @@ class Account:
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
 
-    def _crowding(self) -> str:
+    def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
         pairs = self._front.problem.pairs
         made = self._front.made[: self._front.problem.natural.size]

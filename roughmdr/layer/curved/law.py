@@ -81,7 +81,7 @@ def _of_layer(layer: Layer, pressed: Floats, names: list[str]) -> LoadSeparation
     """Return the law of the layer along the path of the ring that is pressed most: its errors and its limits."""
     path = LoadingPath.along(pressed, unload=False, adhesive=layer.adhesion.work > 0.0)
     return expected.compute(
-        layer.source,
+        layer.source.unbounded,
         path,
         effective_modulus=layer.effective_modulus,
         adhesion=layer.adhesion,

@@ -1,0 +1,109 @@
+"""Contacts near to each other, and flanks of buried summits within a contact: what they cost, and that it is told."""
+
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import ensemble
+
+import roughmdr as rm
+from roughmdr.elements.path import solve_on_grid
+from roughmdr.elements.surface import surface_of_asperities
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.interaction.buried import buried
+from roughmdr.interaction.crowding import crowding
+from roughmdr.interaction.neighbours import within_reach
+
+POINTS = 192
+
+
+def errors(asperities: xr.Dataset, h: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """The true error of the force of pairs, by boundary elements without the error of their grid, and the stated."""
+    coupling: dict[str, Any] = {"model": "pairwise", "order": order}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        pairs = rm.load_separation(
+            asperities, separation=h, effective_modulus=1e9, interaction=coupling,
+            variables=["force", "model_error_curve"],
+        )  # fmt: skip
+    surface = surface_of_asperities(Ensemble.from_dataset(asperities), float(h.min()), periodic=True)
+    fine, coarse = (
+        np.array([step.force for step in solve_on_grid(surface, h, 1e9, (n, n), stiffness=False).steps])
+        for n in (POINTS, POINTS // 2)
+    )
+    exact = fine + (fine - coarse) / 3.0
+    return np.abs(pairs.force.values / exact - 1.0), (pairs.model_error_curve - pairs.slope_error).values
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
+def test_the_first_order_tells_its_own_error_on_a_lattice(unit: float) -> None:
+    """From 4 to 35 % contact; the second order would tell a thirtieth of it."""
+    one = ensemble([0.0], area=unit**2, radius=1e3 * unit, x=[0.5 * unit], y=[0.5 * unit])
+    h = -unit * np.array([1e-5, 3e-5, 5e-5])
+    true, stated = errors(one, h, order=1)
+    assert true[-1] > 0.1
+    assert (true <= stated).all()
+    assert (stated <= 3.0 * true).all()
+
+
+def test_a_buried_summit_whose_flank_comes_out_within_a_contact_is_told() -> None:
+    """Contacts do not overlap; the lower summit widens the higher one's contact to one side."""
+    radius, side, apart, lower = 1e3, 1.0, 0.06, 2.5e-6
+    pair = ensemble(
+        [0.0, -lower], area=side**2, radius=radius, x=[0.4, 0.4 + apart], y=[0.5, 0.5],
+    )  # fmt: skip
+    h = np.array([-1.5e-5, -3e-5])
+    true, stated = errors(pair, h, order=2)
+    alone, _ = errors(ensemble([0.0], area=side**2, radius=radius, x=[0.4], y=[0.5]), h, order=2)
+    assert (true > 5.0 * alone).all()
+    assert (true <= stated).all()
+    assert (stated <= 5.0 * true).all()
+
+
+def test_the_flank_of_a_buried_paraboloid_comes_out_where_both_meet() -> None:
+    """At D/2 + R dz/D on the line of both; nothing of a summit that is no part of the surface at all."""
+    radius, apart, lower = 50e-6, 4e-6, 0.3e-6
+    pair = Ensemble.from_dataset(ensemble([0.0, -lower], area=1e-6, radius=radius))
+    found = buried(pair, np.array([[0.0, 0.0], [apart, 0.0]]), None)
+    assert found.hidden.tolist() == [False, True]
+    assert found.emerging[0] == pytest.approx(0.5 * apart + radius * lower / apart, rel=1e-6)
+    assert math.isinf(found.emerging[1])
+    cones = Ensemble.from_dataset(ensemble([0.0, -lower], area=1e-6, shape="cone", slope=0.05))
+    found = buried(cones, np.array([[0.0, 0.0], [apart, 0.0]]), None)
+    assert found.hidden.tolist() == [False, True]
+    assert np.isinf(found.emerging).all()
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(1, 30), st.integers(0, 2**31), st.sampled_from([1, 2]), st.booleans())
+def test_pairs_are_summed_as_one_by_one(count: int, seed: int, order: int, repeats: bool) -> None:
+    rng = np.random.default_rng(seed)
+    at, radius, load = rng.random((count, 2)), 0.1 * rng.random(count), rng.random(count) * (rng.random(count) > 0.3)
+    emerging = np.where(rng.random(count) < 0.3, 0.1 * rng.random(count), np.inf)
+    found = crowding(at, radius, load, np.ones(2) if repeats else None, emerging, order)
+    plain = 0.0
+    for i in np.flatnonzero(load):
+        share = load[i] / load.sum()
+        plain += 0.22 * share * max(1.0 - emerging[i] / radius[i], 0.0)
+        for j in np.flatnonzero(load):
+            apart = at[i] - at[j]
+            away = math.hypot(*(apart - np.rint(apart) if repeats else apart)) / (radius[i] + radius[j])
+            if i != j and away < 2.5:
+                near = 0.02 / max(away, 1.0) ** 3 if order == 1 else 0.004 / max(away, 1.0) ** 6
+                plain += share * (near + 0.45 * max(1.0 - away, 0.0))
+    assert found == pytest.approx(plain, rel=1e-9, abs=1e-12)
+
+
+def test_equal_contacts_count_once_a_pair() -> None:
+    at = np.array([[0.0, 0.0], [1.0, 0.0]])
+    both = [
+        sorted((int(i[k]), int(j[k]))) for i, j, _ in within_reach(at, np.full(2, 2.0), None) for k in range(i.size)
+    ]
+    assert len(both) == 2  # in both orders
+    near = crowding(at, np.full(2, 0.5), np.ones(2), None, np.full(2, np.inf), 2)
+    assert near == pytest.approx(0.004)
