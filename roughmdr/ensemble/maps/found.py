@@ -59,4 +59,5 @@ def asperities_on(
     else:
         all_attrs["radius_uncertainty"] = radius_uncertainty(all_attrs)
         text = warning(name, all_attrs)
-    return replace(found, attrs=all_attrs, warnings=(text,) if text else ())
+    doubtful = f"{name}: {attrs['doubtful']}" if "doubtful" in attrs else ""
+    return replace(found, attrs=all_attrs, warnings=tuple(filter(None, (text, doubtful))))
