@@ -40,16 +40,15 @@ def _open(source: Any, known_format: str | None, channel: str | None, kind: str)
         except RoughmdrError:
             raise
         except Exception as error:
+            kind = type(error).__name__
+            if kind == "IndexError":
+                raise RoughmdrError("holds no channel of heights that SurfaceTopography can read") from error
+            if kind == "CorruptFile" and str(error):
+                said = str(error).splitlines()[0].rstrip(".")
+                raise RoughmdrError(f"holds no heights that SurfaceTopography can read: {said}") from error
             raise RoughmdrError(
-                f"in no format that SurfaceTopography can read ({_cause(error)}); text is .txt, .csv, .tsv, .dat, .xyz"
+                f"in no format that SurfaceTopography can read ({kind}); text is .txt, .csv, .tsv, .dat, .xyz"
             ) from error
-
-
-def _cause(error: Exception) -> str:
-    """Return what a reader says of a file, or the type of its error where many readers or none said something."""
-    text = str(error).strip()
-    said = type(error).__name__ == "CorruptFile" and text
-    return text.splitlines()[0].rstrip(".") if said else type(error).__name__
 
 
 def _read_channel(reader: Any, name: str | None) -> RawMap:
@@ -89,4 +88,6 @@ def _kind(channel: Any) -> str:
     """Return in words what a channel holds."""
     if channel.dim != 2:
         return "a line"
+    if 0 in (getattr(channel, "nb_grid_pts", None) or ()):
+        return "no points"
     return "heights" if channel.data_kind.value == "height" else str(channel.data_kind.value)

@@ -18,7 +18,7 @@ class Sides(NamedTuple):
     down: float  # from the first row to the last
 
 
-Size = float | tuple[float, float] | Sides
+Size = Sides | float | tuple[float, float]
 """The side of a square map, the lengths along x and y, or those across a row of the file and down its rows [m]."""
 
 _SAME = 1e-3
