@@ -39,10 +39,9 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
     rows = f", rows of the file along {attrs['rows_along']}" if "rows_along" in attrs else ""
     outliers = f", among them {attrs['outliers']} outliers" if "outliers" in attrs else ""
     remarks = (implausible(attrs), str(attrs.get("doubtful", "")))
-    sides = f"{length('patch_x')} along x and {length('patch_y')} along y"
     return (
         *filter(None, remarks),
-        f"{sides}{rows}; {attrs['undefined_share']:.2%} undefined{outliers}; {kept}",
+        f"{length('patch_x')} x {length('patch_y')}{rows}, {attrs['undefined_share']:.2%} undefined{outliers}; {kept}",
         f"{heights}; {slopes}",
         f"{attrs['points_per_summit']:.3g} points a summit, misfit {attrs['misfit']:.2g}; "
         f"{attrs['saddles']} saddles left out",
