@@ -55,6 +55,8 @@ class BoundaryElements:
         self._cell_stiffness = 1.0 / float(fft.irfft2(self._compliance, s=self._shape)[0, 0])
         self.pressure = np.zeros_like(height)
         """[E*], at the last separation."""
+        self.work = 0.0
+        """Iterations so far, times the points of the grid that each displaces."""
 
     def displacement(self) -> Floats:
         """Return that of the surface, into the half-space."""
@@ -98,6 +100,7 @@ class BoundaryElements:
         """Return the pressures that undo the overlap; None where they are not found."""
         before, direction = 0.0, np.zeros_like(overlap)
         for _ in range(_MAX_ITERATIONS):
+            self.work += math.prod(self._shape)
             gap = self._displaced(pressure) - overlap
             loaded = pressure > 0.0
             rest = np.where(loaded, gap, 0.0)

@@ -26,6 +26,8 @@ class GridPath(NamedTuple):
     steps: list[Step]
     """``error`` [N] is inf where boundary elements do not converge; no overlaps."""
     shape: tuple[int, int]
+    work: float = 0.0
+    """Iterations times points of the grids, with those around a surface that stands alone."""
 
 
 def solve_on_grid(
@@ -44,21 +46,25 @@ def solve_on_grid(
     if downwards[-1] >= highest:
         return GridPath([Step()] * separation.size, shape)
     depth, reduced = highest - downwards[-1], [h / length for h in downwards]
+    work = 0.0
     while True:
         floor = downwards[-1] - depth
         height = surface.on_grid(shape, floor) / length
         grid = BoundaryElements(height, surface.sides / length, periodic=surface.periodic)
-        steps = _along(grid, surface.tops / length, reduced, stiffness)
+        coarser = BoundaryElements(grid.height[::2, ::2], grid.sides, periodic=grid.periodic)
+        steps = _along(grid, coarser, surface.tops / length, reduced, stiffness)
+        work += grid.work + coarser.work
         if not (surface.has_floor and _surface_below(grid, floor / length, reduced, steps)):
             break
         depth *= _DEEPER
     in_si = [_in_si(step, length, effective_modulus) for step in steps]
-    return GridPath([in_si[i] for i in index.ravel()], shape)
+    return GridPath([in_si[i] for i in index.ravel()], shape, work)
 
 
-def _along(grid: BoundaryElements, summits: Floats, downwards: list[float], stiffness: bool) -> list[Step]:
-    """Return the totals in units of the side and E*."""
-    coarser = BoundaryElements(grid.height[::2, ::2], grid.sides, periodic=grid.periodic)
+def _along(
+    grid: BoundaryElements, coarser: BoundaryElements, summits: Floats, downwards: list[float], stiffness: bool
+) -> list[Step]:
+    """Return the totals in units of the side and E*, with the error by what a coarser grid finds."""
     steps, changes = list[Step](), list[float]()
     for h in downwards:
         force, coarse = grid.press(h), coarser.press(h)

@@ -15,6 +15,11 @@ LIGHT = 0.01
 _PER_SUMMIT, _FIRST_ERROR = 9.0, 0.02
 """Points along the mean distance of summits that mostly give a force to that error, on maps and of asperities."""
 _FEWEST, _FASTEST, _ORDER = 1.2, 2.0, 2.0  # refinement of a grid, and the order of the error in its cells
+_BEST_ORDER = 3.0  # the highest order that was found on maps
+BUDGET = 6e8
+"""Iterations times points that a path takes at most to find out whether an error is in reach, or where it is not: about
+a minute on one core, at 0.1 us each. A count, so that results do not depend on the machine."""
+_WORK_ORDER = 2.5  # order of that number in the points along a side: more iterations on finer grids
 
 
 def first_points(summits: float, error: float) -> float:
@@ -27,8 +32,9 @@ def solve_to_error(
 ) -> GridPath:
     """Return the totals at separations [m], on a grid by which the force is off by at most ``error`` [1].
 
-    It ends with ``LARGEST_GRID`` whatever the error. Where the error was largest, and at the lowest separation, finer
-    grids are tried before the whole path is solved again.
+    Where the error was largest, and at the lowest separation, finer grids are tried before the whole path is solved
+    again. Where these tell that ``LARGEST_GRID`` does not reach the error, or are out of ``BUDGET`` before they tell
+    that it does, the path is solved on as fine a grid as the budget allows.
     """
 
     def on(points: float, separation: Floats, *, stiffness: bool) -> GridPath:
@@ -36,17 +42,32 @@ def solve_to_error(
         return solve_on_grid(surface, separation, effective_modulus, shape, stiffness=stiffness)
 
     points = first_points(surface.tops.size, error)
-    while True:
-        found = on(points, separation, stiffness=stiffness)
-        off = errors(found)
-        if off.max() <= error or points >= LARGEST_GRID:
-            return found
+    found = on(points, separation, stiffness=stiffness)
+    spent = found.work
+    while (off := errors(found)).max() > error and points < LARGEST_GRID:
         tried = separation[[int(np.argmax(off)), int(np.argmin(separation))]]
-        while off.max() > error and points < LARGEST_GRID:
+        solved, share, reaches = points, tried.size / separation.size, True
+        cost = found.work * share
+        while off.max() > error and reaches:
             with np.errstate(over="ignore"):
                 finer = np.clip((off.max() / error) ** (1.0 / _ORDER), _FEWEST, _FASTEST)
-            points = min(float(finer) * points, LARGEST_GRID)
-            off = errors(on(points, tried, stiffness=False))
+            refined = min(float(finer) * points, LARGEST_GRID)
+            foreseen = cost * (refined / points) ** _WORK_ORDER
+            reaches = points < LARGEST_GRID and _may_reach(off.max(), points, error) and spent + foreseen <= BUDGET
+            if reaches:
+                trial = on(refined, tried, stiffness=False)
+                points, off, cost, spent = refined, errors(trial), trial.work, spent + trial.work
+        if not reaches:
+            growth = (max(BUDGET - spent, 0.0) / max(found.work, 1.0)) ** (1.0 / _WORK_ORDER)
+            points = min(solved * growth, LARGEST_GRID)
+            return found if points < _FEWEST * solved else on(points, separation, stiffness=stiffness)
+        found = on(points, separation, stiffness=stiffness)
+    return found
+
+
+def _may_reach(off: float, points: float, error: float) -> bool:
+    """Return whether the largest grid may reach an error, off by so much on a grid of so many points a side."""
+    return not math.isfinite(off) or off * (points / LARGEST_GRID) ** _BEST_ORDER <= error
 
 
 def errors(found: GridPath) -> Floats:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits, relative_loads
+from roughmdr.ensemble.maps.resolution import FORCE_PER_RADIUS
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
 from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _SIDES = ("patch", "patch_x", "patch_y")
-_FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
 _OF_HILLS = ("resolution_error", "border_error", "area_share", "anisotropy")
 
 
@@ -79,7 +79,7 @@ class Ensemble:
         """The relative error of the force that the resolution of a map causes [1]."""
         if self.origin == "hills":
             return float(self.attrs.get("resolution_error", 0.0))
-        return min(_FORCE_PER_RADIUS * float(self.attrs.get("radius_uncertainty", 0.0)), 1.0)
+        return min(FORCE_PER_RADIUS * float(self.attrs.get("radius_uncertainty", 0.0)), 1.0)
 
     @property
     def border_error(self) -> float:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR
+from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR, MAX_SUMMITS_ERROR
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 
@@ -29,7 +29,7 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
     model = asperities.get("model", "summits" if asperities["source"] == "surface" else "hills")
     coupled = table.get("interaction", {}).get("model") == "pairwise"
     which = _which(table, model, coupled)
-    if resolution_error <= MAX_HILLS_ERROR:
+    if resolution_error <= (MAX_SUMMITS_ERROR if model == "summits" else MAX_HILLS_ERROR):
         yield "advice", which
         return
     finer, useless = _finer(asperities), resolution_error > _USELESS

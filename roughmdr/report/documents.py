@@ -121,6 +121,7 @@ class ForeseenTable(TypedDict):
 class PlanTable(TypedDict):
     """A plan: what a run would do."""
 
+    implausible: list[str]  # what of sizes, units and pressures cannot be meant
     title: str
     sizes: dict[str, int]
     coordinates: dict[str, CoordinateTable]

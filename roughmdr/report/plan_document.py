@@ -7,6 +7,7 @@ from roughmdr.batch.foresee import Foreseen, Prospect
 from roughmdr.batch.plan import Plan
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.documents import ForeseenTable, PlanTable, paragraphs, trust_table
+from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
 from roughmdr.report.summary import foreseen_resolution
@@ -16,6 +17,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
     """Return all that ``describe_plan`` tells, as numbers."""
     scene, accuracy = plan.scene, plan.scene.accuracy
     return {
+        "implausible": implausible_lines(plan, prospect),
         "title": scene.title,
         "sizes": plan.sizes,
         "coordinates": coordinate_tables(scene.sweep.coordinates(), plan.sizes),

@@ -9,6 +9,7 @@ from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.conduction import conduction_lines
 from roughmdr.report.contact_pressure import contact_pressure_lines
+from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
@@ -31,7 +32,9 @@ _HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "stand
 def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", workers: int) -> str:
     """Return what a run will do, how long it will take and how much memory."""
     steps, output = plan.cells[0].path.separation.size, plan.scene.output
+    unlikely = implausible_lines(plan, prospect)
     lines = [
+        *_indent("implausible", unlikely),
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
         *_required_accuracy(plan),
@@ -47,7 +50,8 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *_motion(plan.coordinates()),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
-    lines += [*_indent("map", plan.map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
+    map_lines = [text for text in plan.map_lines if text not in unlikely]
+    lines += [*_indent("map", map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
     return format_table([*lines, *_indent("left out", plan.left_out)])
 
 

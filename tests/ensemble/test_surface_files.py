@@ -58,7 +58,7 @@ def generate(path: Path, **keys: object) -> xr.Dataset:
         ("map.npz", lambda path, height: np.savez(path, anything=height)),
         ("map.npz", lambda path, height: np.savez_compressed(path, x=np.arange(4), height=height)),
         ("map.txt", text(" ")),
-        ("map.txt", text(" ", header="Channel: Topography\nWidth: 3 um; Height: 4, 5 um")),
+        ("map.txt", text(" ", header="measured on 3 May, 4, 5 um")),
         ("map.csv", text(",")),
         ("map.csv", text(", ", encoding="utf-8-sig")),
         ("map.CSV", text(";")),
@@ -75,9 +75,11 @@ def test_every_format_gives_the_same_asperities(tmp_path: Path, name: str, write
     found = generate(tmp_path / name, size=SIZE)
     xr.testing.assert_allclose(found, expected, rtol=1e-12)
     assert found.attrs.pop("warnings").replace(f"{name}:", "map.nc:") == expected.attrs.pop("warnings")
+    rows_along = found.attrs.pop("rows_along")
     assert (found.attrs.pop("shape"), found.attrs.pop("detrend")) == ("paraboloid", "quadratic")
     assert found.attrs == approx({key: expected.attrs[key] for key in found.attrs}, rel=1e-12)
     assert found.attrs["undefined_share"] == 3 / 600
+    assert rows_along == "y"
 
 
 def test_heights_and_sides_in_any_unit(tmp_path: Path) -> None:
@@ -167,11 +169,16 @@ def zipped(**arrays: Any) -> Callable[[Path], None]:
 
 GOOD = saved(bumps())
 REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
-    ("a.npy", saved(np.full((9, 9), np.nan)), {}, "all its 81 heights are undefined"),
-    ("a.npy", saved(np.full((9, 9), np.inf)), {}, "all its 81 heights are undefined"),
+    ("a.npy", saved(np.full((9, 9), np.nan)), {"size": "9 um"}, "all its 81 heights are undefined"),
+    ("a.npy", saved(np.full((9, 9), np.inf)), {"size": "9 um"}, "all its 81 heights are undefined"),
     ("a.npy", saved(np.zeros((1, 9))), {}, "1 x 9 points; it needs at least 3 x 3"),
-    ("a.npy", saved(np.zeros((9, 9))), {}, "no summit: with detrend 'quadratic' it is flat"),
-    ("a.npy", saved(np.full((9, 9), 0.1)), {"periodic": True}, "no summit: with detrend 'mean' it is flat"),
+    ("a.npy", saved(np.zeros((9, 9))), {"size": "9 um"}, "no summit: with detrend 'quadratic' it is flat"),
+    (
+        "a.npy",
+        saved(np.full((9, 9), 0.1)),
+        {"periodic": True, "size": "9 um"},
+        "no summit: with detrend 'mean' it is flat",
+    ),
     ("a.npy", saved(np.zeros((9, 9, 9))), {}, "9 x 9 x 9 points; it needs at least 3 x 3, over two dimensions"),
     ("a.npy", saved(np.float64(1.0)), {}, "no points"),
     ("a.npy", saved(np.eye(9) * 1j), {}, "type complex128; they must be real numbers"),
@@ -184,7 +191,7 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
     ("a.npy", written(b""), {}, "a.npy: is empty"),
     ("a.txt", written(b""), {}, "a.txt: is empty"),
     ("a.npz", zipped(a=np.eye(9), b=np.eye(9)), {}, r"no array 'height', but \['a', 'b'\]; name one as channel"),
-    ("a.npz", zipped(a=np.eye(9), size=[1e-5, 1e-5]), {}, "1e-05 m x 1e-05 m; leave out size"),
+    ("a.npz", zipped(a=np.eye(9), size=[1e-5, 1e-5]), {}, "the map is 10 um x 10 um, and size differs; leave it out"),
     ("a.npz", zipped(a=bumps(), size=1e-5), {"size": None}, "20 x 30 points, and one size is that of a square"),
     ("a.npz", zipped(a=np.eye(9), size=[1e-5, -1e-5]), {"size": None}, "'size', the size of the map: must be above 0"),
     ("a.npz", zipped(a=np.eye(9), size=[9.0, 9.0, 1.0]), {"size": None}, "the size of the map: must be one side"),
@@ -193,11 +200,13 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
     ("a.npz", zipped(), {}, "no array 'height'"),
     ("a.npz", lambda path: renamed(np.save, ".npy")(path, np.eye(9)), {}, "not an .npz file"),
     ("a.npy", lambda path: renamed(np.savez, ".npz")(path, np.eye(9)), {}, "not an .npy file"),
-    ("a.txt", written("1 2 3\n1 2\n1 2 3\n"), {}, "number of columns changed from 3 to 2 at row 2"),
-    ("a.csv", written("x,y,z\n1,2,3\n"), {}, "could not convert string 'x'"),
-    ("a.csv", written("1,2,3\n1,,3\n1,2,3\n"), {}, "could not convert string ''"),
+    ("a.txt", written("1 2 3\n1 2\n1 2 3\n"), {}, "line 2 has 2 numbers, but line 1 has 3"),
+    ("a.csv", written("1,2,3\n1,x,3\n1,2,3\n"), {}, "line 2, column 2: 'x' is no number"),
+    ("a.csv", written("1,07,3,12\n1,25,3,50\n"), {}, "line 1, column 2: '07' follows a comma that may be a decimal"),
+    ("a.txt", written("1.5;2;3\n1,5;2;3\n1.5,5;2;3\n"), {}, "line 3: has points and commas"),
+    ("a.txt", written("1 2 3 4x\n1 2 3 4\n1 2 3 4\n1 2 3 4\n"), {}, "line 1, column 4: '4x' is no number"),
     ("a.txt", written("# only words\n\n"), {}, "holds no numbers"),
-    ("a.txt", written(b"\xff\xfe\x00\x01"), {}, "not a text file in UTF-8"),
+    ("a.txt", written(b"\x00\x01\xff"), {}, "in no format that SurfaceTopography can read"),
     ("a.txt", written("1 2 3\n1 2 3\n1 2 3\n"), {"channel": "z"}, "leave out channel = 'z'"),
     ("a.npy", GOOD, {"size": None}, "does not say how large the map is; give size"),
     ("a.npy", GOOD, {"size": "1 um"}, "20 x 30 points, and one size is that of a square"),
@@ -217,7 +226,12 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
         {"cutoff": "10.1 um"},
         "must lie between two spacings, 2e-06 m, and the map's shorter side, 1e-05 m",
     ),
-    ("a.nc", lambda path: netcdf(path, bumps()), {}, "says itself that the map is 1e-05 m x 3e-05 m; leave out size"),
+    (
+        "a.nc",
+        lambda path: netcdf(path, bumps()),
+        {"size": ["30 um", "10 um"]},
+        "says itself that the map is 10 um x 30 um",
+    ),
     (
         "a.nc",
         lambda path: netcdf(path, bumps(), periodic="perhaps"),
@@ -240,13 +254,14 @@ def test_invalid_maps_are_refused(
         generate(tmp_path / name, **{key: value for key, value in asked.items() if value is not None})
 
 
-def test_a_unit_is_given_once(tmp_path: Path) -> None:
+def test_a_unit_and_a_size_are_not_contradicted(tmp_path: Path) -> None:
     netcdf(tmp_path / "a.nc", bumps())
     with xr.open_dataset(tmp_path / "a.nc") as data:
         data["height"].attrs["units"] = "m"
         data.to_netcdf(tmp_path / "b.nc")
     with pytest.raises(rm.SceneError, match="says itself that heights are in m; leave out unit = 'nm'"):
         generate(tmp_path / "b.nc", unit="nm")
+    assert generate(tmp_path / "b.nc", unit="m", size=SIZE).identical(generate(tmp_path / "b.nc"))
 
 
 def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -294,8 +309,8 @@ def test_an_instrument_file_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"dim": 1}, "channel 'Z' holds a line, not a map of heights"),
-        ({"data_kind": SimpleNamespace(value="phase")}, "channel 'Z' holds phase, not a map of heights"),
+        ({"dim": 1}, "holds no map of heights, but channel 'Z' with a line"),
+        ({"data_kind": SimpleNamespace(value="phase")}, "holds no map of heights, but channel 'Z' with phase"),
         ({"unit": None}, "does not say in which unit it is"),
         ({"unit": "mV"}, "unknown unit 'mV'"),
         ({"physical_sizes": None}, "give size"),
@@ -334,8 +349,8 @@ def test_an_atomic_force_scan() -> None:
     assert generate(SHARED / "afm_film.di", channel="Height").identical(found)
     for keys, says in (
         ({"channel": "Width"}, r"no channel 'Width', but \['Height', 'Deflection'\]"),
-        ({"size": "300 nm"}, "3e-07 m x 3e-07 m; leave out size"),
-        ({"unit": "nm"}, "heights are in nm; leave out unit"),
+        ({"size": "310 nm"}, "300 nm x 300 nm, and size differs; leave it out"),
+        ({"unit": "um"}, "heights are in nm; leave out unit"),
     ):
         with pytest.raises(rm.SceneError, match=says):
             generate(SHARED / "afm_film.di", **keys)

@@ -46,7 +46,7 @@ def remove_short_waves(surface: HeightMap, cutoff: float) -> None:
     of a wave of the cut-off length, and 2^-(cutoff/length)^2 of any other (ISO 16610-61); its weights are normalised at
     edges and next to undefined points. SceneError where the cut-off does not fit the grid, or a periodic map has gaps.
     """
-    height, dx, dy, periodic, _ = surface
+    height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
     shortest, longest = 2.0 * max(dx, dy), min(nx * dx, ny * dy)
     if not shortest <= cutoff <= longest:

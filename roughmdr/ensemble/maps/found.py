@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
+from roughmdr.ensemble.maps.plausible import implausible
 from roughmdr.ensemble.maps.resolution import hills_warning, radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import RoughmdrError
@@ -59,4 +60,5 @@ def asperities_on(
     else:
         all_attrs["radius_uncertainty"] = radius_uncertainty(all_attrs)
         text = warning(name, all_attrs)
-    return replace(found, attrs=all_attrs, warnings=(text,) if text else ())
+    remarks = [f"{name}: {remark}" for remark in (implausible(all_attrs), attrs.get("doubtful")) if remark]
+    return replace(found, attrs=all_attrs, warnings=tuple(filter(None, (*remarks, text))))

@@ -1,7 +1,8 @@
 """A height map in metres, worked on in blocks of rows, and the statistics of it that its ensemble reports."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ class HeightMap(NamedTuple):
     dy: float
     periodic: bool = False  # whether the map repeats beyond its edges
     rounding: float = 0.0  # rounding error of a height in the number format of the file [m]
+    attrs: Mapping[str, float | int | str] = MappingProxyType({})
+    """How the file was read: ``outliers``, the number left out, ``doubtful``, a remark, and ``rows_along`` x or y."""
 
     @property
     def highest(self) -> float:
@@ -50,7 +53,7 @@ def mean_and_rms(surface: HeightMap) -> tuple[float, float]:
 
 def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
     """Return r.m.s. height [m], r.m.s. slope sqrt(<h_x^2> + <h_y^2>), the undefined fraction, and 1 if periodic."""
-    height, dx, dy, periodic, _ = surface
+    height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
     scale = surface.highest or 1.0
 

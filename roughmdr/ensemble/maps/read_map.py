@@ -1,10 +1,9 @@
 """Read a height map from a file: netCDF, plain numbers as text or of NumPy, or the format of an instrument.
 
-Plain numbers are rows along x, columns along y; netCDF has heights over evenly spaced coordinates, both with units.
-Each reader raises RoughmdrError where the file does not hold such a map.
+Plain numbers are rows along y, one after the other along x; netCDF has heights over evenly spaced coordinates, both
+with units. Each reader raises RoughmdrError where the file does not hold such a map.
 """
 
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +13,12 @@ from numpy.typing import NDArray
 
 from roughmdr.ensemble.from_file import open_dataset
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks
+from roughmdr.ensemble.maps.instrument import read_instrument
+from roughmdr.ensemble.maps.outliers import Treatment, leave_out_outliers
 from roughmdr.ensemble.maps.raw_map import RawMap, Size, SizeReader, check_points, spacings, spacings_of_sides
+from roughmdr.ensemble.maps.text_map import read_text, refuse_channel
 from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import unit_factor
 from roughmdr.storage.files import NETCDF_ENDINGS
 
@@ -23,7 +26,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
-_DELIMITERS = (";", ",", "\t")
 _SIZE_ARRAY = "size"  # in a .npz file
 _MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
 
@@ -35,27 +37,40 @@ def read_map(
     unit: str | None = None,
     channel: str | None = None,
     periodic: bool | None = None,
+    outliers: Treatment | None = None,
 ) -> HeightMap:
     """Read the map of a file; ``size`` [m] and ``unit`` say what the file does not, ``channel`` which of its maps.
 
-    ``periodic`` overrides the file. RoughmdrError where there is no map, or these do not fit it.
+    ``periodic`` overrides the file; ``outliers`` says what becomes of them. RoughmdrError where there is no map, where
+    these do not fit it, and where it has outliers of which it is not said.
     """
     raw = _reader(path)(path, channel)
     values = raw.height
     check_points(values.shape)
     if values.dtype.kind not in "iuf":
         raise RoughmdrError(f"heights are of type {values.dtype}; they must be real numbers")
-    (dx, dy), factor = spacings(raw, size), _factor(raw, unit)
+    (dx, dy), factor = spacings(raw, size, unit), _factor(raw, unit)
     eps = float(np.finfo(values.dtype).eps) if values.dtype.kind == "f" else 0.0
-    with np.errstate(over="ignore"):  # a height out of range is undefined
-        height = np.require(values, np.float64, "W")
-        for rows in blocks(*height.shape):
-            height[rows] *= factor
-            height[rows][~np.isfinite(height[rows])] = np.nan
-    surface = HeightMap(height, dx, dy, bool(raw.periodic) if periodic is None else periodic)
+    height = np.require(values, np.float64, "W")
+    repeats = bool(raw.periodic) if periodic is None else periodic
+    _undefine(height, 1.0)
+    attrs: dict[str, float | int | str] = {}
+    attrs |= leave_out_outliers(height, outliers, raw.unit or unit or "m", periodic=repeats)
+    _undefine(height, factor)
+    if raw.spacing is None and raw.steps is None:
+        attrs["rows_along"] = raw.rows_along
+    surface = HeightMap(height, dx, dy, repeats, attrs=attrs)
     if not surface.defined:
         raise RoughmdrError(f"all its {height.size} heights are undefined")
     return surface._replace(rounding=eps * surface.highest)
+
+
+def _undefine(height: Floats, factor: float) -> None:
+    """Multiply heights, in place; those that are not finite are undefined."""
+    for rows in blocks(*height.shape):
+        with np.errstate(over="ignore"):
+            height[rows] *= factor
+        height[rows][~np.isfinite(height[rows])] = np.nan
 
 
 def _reader(path: Path) -> Callable[[Path, str | None], RawMap]:
@@ -68,23 +83,23 @@ def _reader(path: Path) -> Callable[[Path, str | None], RawMap]:
     if not start:
         raise RoughmdrError("is empty")
     suffix = path.suffix.lower()
-    if suffix in _READER_OF_SUFFIX:
-        return _READER_OF_SUFFIX[suffix]
-    if suffix not in _INSTRUMENT_SUFFIXES:
+    by_content = suffix not in _READER_OF_SUFFIX or _READER_OF_SUFFIX[suffix] is read_text
+    if by_content and suffix not in _INSTRUMENT_SUFFIXES:
         for magic, reader in _READER_OF_MAGIC.items():
             if start.startswith(magic):
                 return reader
-    return _read_instrument
+    return _READER_OF_SUFFIX.get(suffix, read_instrument)
 
 
 def _factor(raw: RawMap, unit: str | None) -> float:
     """Return one unit of the heights in metres."""
-    if unit is not None and raw.unit is not None:
-        raise RoughmdrError(f"the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}")
     try:
-        return float(unit_factor((raw.unit if unit is None else unit) or "m", "m"))
+        factor = float(unit_factor(raw.unit or unit or "m", "m"))
+        if unit is not None and float(unit_factor(unit, "m")) != factor:
+            raise RoughmdrError(f"the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}")
     except RoughmdrError as error:
         raise RoughmdrError(f"units of the heights: {error}") from None
+    return factor
 
 
 def _read_numpy(path: Path, channel: str | None) -> RawMap:
@@ -101,7 +116,7 @@ def _read_numpy(path: Path, channel: str | None) -> RawMap:
         own, other = (".npz", ".npy") if is_npz else (".npy", ".npz")
         raise RoughmdrError(f"not an {own} file; it may be an {other} file under another name")
     if not is_npz:
-        _refuse_channel(channel)
+        refuse_channel(channel)
         return RawMap(loaded)
     with loaded:
         names = list(loaded.files)
@@ -126,28 +141,6 @@ def _array_of(loaded: Any, name: str) -> NDArray[Any]:
         return np.asarray(loaded[name])
     except Exception as error:
         raise RoughmdrError(f"its array {name!r} cannot be read: {error}") from error
-
-
-def _read_text(path: Path, channel: str | None) -> RawMap:
-    """Read rows of numbers separated by blanks, tabs, commas or semicolons; # begins a comment, "nan" is undefined."""
-    _refuse_channel(channel)
-    try:
-        with path.open(encoding="utf-8-sig") as file:
-            first = next(filter(None, (line.partition("#")[0].strip() for line in file)), "")
-        delimiter = next((mark for mark in _DELIMITERS if mark in first), None)
-        table = np.loadtxt(path, delimiter=delimiter, encoding="utf-8-sig", ndmin=2) if first else None
-    except UnicodeDecodeError:
-        raise RoughmdrError("not a text file in UTF-8") from None
-    except ValueError as error:
-        raise RoughmdrError(f"not a table of numbers: {str(error).partition(';')[0]}") from None
-    if table is None:
-        raise RoughmdrError("holds no numbers")
-    return RawMap(table)
-
-
-def _refuse_channel(channel: str | None) -> None:
-    if channel is not None:
-        raise RoughmdrError(f"holds one map only; leave out channel = {channel!r}")
 
 
 def _read_netcdf(path: Path, channel: str | None) -> RawMap:
@@ -200,53 +193,9 @@ def _spacing(dataset: "xr.Dataset", dim: str) -> float:
     return abs(mean)
 
 
-def _read_instrument(path: Path, channel: str | None) -> RawMap:
-    """Read the first channel of that name, or the file's default one, by SurfaceTopography; NaN is undefined."""
-    with warnings.catch_warnings(action="ignore"):  # of other contents of the file, or packages that are not installed
-        try:
-            from SurfaceTopography.IO import open_topography
-        except ImportError:
-            raise RoughmdrError(
-                f"{path.suffix or 'a format without a suffix'} is left to SurfaceTopography, which is not installed: "
-                "pip install 'roughmdr[surface]'; without it there are .nc, .npy, .npz, .txt, .csv, .tsv and .dat"
-            ) from None
-        try:
-            with open_topography(str(path)) as reader:
-                return _read_channel(reader, channel)
-        except RoughmdrError:
-            raise
-        except Exception as error:
-            raise RoughmdrError(
-                f"in no format that SurfaceTopography can read ({type(error).__name__}); text is .txt, .csv, .tsv, .dat"
-            ) from error
-
-
-def _read_channel(reader: Any, name: str | None) -> RawMap:
-    channel = reader.default_channel
-    if name is not None:
-        names = [each.name for each in reader.channels]
-        if name not in names:
-            raise RoughmdrError(f"has no channel {name!r}, but {list(dict.fromkeys(names))}")
-        channel = reader.channels[names.index(name)]
-    if channel.dim != 2 or channel.data_kind.value != "height":
-        kind = "a line" if channel.dim != 2 else channel.data_kind.value
-        raise RoughmdrError(f"channel {channel.name!r} holds {kind}, not a map of heights")
-    sizes = channel.physical_sizes
-    topography = channel.topography(**({} if sizes else {"physical_sizes": (1.0, 1.0)}))
-    height = np.ma.filled(topography.heights(), np.nan)
-    unit = "Å" if topography.unit == "A" else topography.unit
-    if sizes is None:
-        return RawMap(height, unit)
-    if unit is None:
-        raise RoughmdrError("does not say in which unit it is; export it as text, where size and unit can be given")
-    factor = float(unit_factor(unit, "m"))
-    dx, dy = (float(side) * factor / points for side, points in zip(sizes, height.shape, strict=True))
-    return RawMap(height, unit, (dx, dy), topography.is_periodic)
-
-
 _READER_OF_SUFFIX: dict[str, Callable[[Path, str | None], RawMap]] = {
     **dict.fromkeys(NETCDF_ENDINGS, _read_netcdf),
-    **dict.fromkeys((".txt", ".csv", ".tsv", ".dat"), _read_text),
+    **dict.fromkeys((".txt", ".csv", ".tsv", ".dat", ".xyz", ".asc"), read_text),
     **dict.fromkeys((".npy", ".npz"), _read_numpy),
 }
 _READER_OF_MAGIC = {b"CDF": _read_netcdf, b"\x89HDF": _read_netcdf, b"\x93NUMPY": _read_numpy}

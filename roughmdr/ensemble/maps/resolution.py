@@ -16,6 +16,11 @@ from roughmdr.schema.units import format_quantity
 MAX_UNCERTAINTY = 0.15
 """Relative uncertainty of the radii above which there is a warning."""
 
+FORCE_PER_RADIUS = 0.5
+"""Relative error of a force over that of the radii: Hertz's force grows as their square root."""
+MAX_SUMMITS_ERROR = FORCE_PER_RADIUS * MAX_UNCERTAINTY
+"""Error of the force of summits by the resolution of their map above which there is a warning."""
+
 # Without noise the mean curvature of the fits is too low by about the misfit: 2 % at 290 points a summit, 9 % at 74,
 # 15 % at 42, 29 % at 19 where waves are equally long, misfit 6/points; 3 % at 260, 14 % at 68, 23 % at 42 where they
 # are self-affine, misfit 9/points to 15/points. A misfit above that is due to noise.

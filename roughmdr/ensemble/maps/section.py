@@ -12,6 +12,7 @@ from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape, summits_on
 from roughmdr.ensemble.maps.height_map import HeightMap, mean_and_rms
+from roughmdr.ensemble.maps.outliers import Treatment
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
 from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.waves import MapWaves
@@ -29,8 +30,9 @@ class SurfaceAsperities(FromFile):
     """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``), or its hills.
 
     ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
-    file; ``periodic`` overrides the file. ``detrend`` is removed, by default "quadratic", or "mean" of a periodic map;
-    so are waves shorter than ``cutoff``.
+    file; ``periodic`` overrides the file. ``outliers`` (marks of undefined points, spikes) are "undefined", or "kept";
+    a map that has some is refused where neither is said. ``detrend`` is removed, by default "quadratic", or "mean" of a
+    periodic map; so are waves shorter than ``cutoff``.
 
     Attributes of the ensemble beside those of ``find_summits`` and ``map_statistics``: ``rms_height_raw`` [m], before
     the trend is removed; ``mean_curvature_radius`` [m], 1/<sqrt(k1 k2)>; with a cutoff ``uncut_...``, without it; and
@@ -48,6 +50,7 @@ class SurfaceAsperities(FromFile):
     detrend: Trend | None = None
     periodic: StrictBool | None = None
     cutoff: Length | None = None
+    outliers: Treatment | None = None
 
     @model_validator(mode="after")
     def _shape_of_the_model(self) -> "SurfaceAsperities":
@@ -66,7 +69,7 @@ class SurfaceAsperities(FromFile):
             noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
             trend = self._trend(surface)
             self._remove_trend(surface)
-            attrs: dict[str, float | int | str] = {"rms_height_raw": raw, "detrend": trend}
+            attrs: dict[str, float | int | str] = {**surface.attrs, "rms_height_raw": raw, "detrend": trend}
             if self.cutoff is not None:
                 uncut = summits_on(surface, noise, trend).attrs
                 attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
@@ -101,7 +104,14 @@ class SurfaceAsperities(FromFile):
 
     def _read_map(self) -> HeightMap:
         path = Path(self.file)
-        return read_map(path, size=self.size, unit=self.unit, channel=self.channel, periodic=self.periodic)
+        return read_map(
+            path,
+            size=self.size,
+            unit=self.unit,
+            channel=self.channel,
+            periodic=self.periodic,
+            outliers=self.outliers,
+        )
 
     def _trend(self, surface: HeightMap) -> Trend:
         return self.detrend or ("mean" if surface.periodic else "quadratic")

@@ -39,7 +39,7 @@ def slope_ratio(surface: HeightMap) -> float:
     Those are the roots of the eigenvalues of <grad h grad h>, over the points whose next along x and along y is
     defined.
     """
-    height, dx, dy, periodic, _ = surface
+    height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
     products, scale = np.zeros(3), surface.highest or 1.0
     for rows in blocks(nx if periodic else max(nx - 1, 1), ny):
@@ -57,7 +57,7 @@ def slope_ratio(surface: HeightMap) -> float:
 
 def mean_square_laplacian(surface: HeightMap) -> float:
     """Return <(h_xx + h_yy)^2> [1/m2] by second differences, over the points whose four neighbours are defined."""
-    height, dx, dy, periodic, _ = surface
+    height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
     total, count = 0.0, 0
     for rows in blocks(nx if periodic else nx - 2, ny):

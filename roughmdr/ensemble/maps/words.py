@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from roughmdr.ensemble.maps.plausible import implausible
 from roughmdr.ensemble.maps.resolution import hills_verdict, verdict
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.schema.units import format_quantity
@@ -35,8 +36,12 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
         if attrs.get("asperity_model") == "hills"
         else (verdict(attrs),)
     )
+    rows = f", rows of the file along {attrs['rows_along']}" if "rows_along" in attrs else ""
+    outliers = f", among them {attrs['outliers']} outliers" if "outliers" in attrs else ""
+    remarks = (implausible(attrs), str(attrs.get("doubtful", "")))
     return (
-        f"{length('patch_x')} x {length('patch_y')}, {attrs['undefined_share']:.2%} undefined; {kept}",
+        *filter(None, remarks),
+        f"{length('patch_x')} x {length('patch_y')}{rows}, {attrs['undefined_share']:.2%} undefined{outliers}; {kept}",
         f"{heights}; {slopes}",
         f"{attrs['points_per_summit']:.3g} points a summit, misfit {attrs['misfit']:.2g}; "
         f"{attrs['saddles']} saddles left out",

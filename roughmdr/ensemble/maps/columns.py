@@ -1,0 +1,106 @@
+"""Heights given as columns x, y, z of points on a grid."""
+
+import re
+
+import numpy as np
+
+from roughmdr.ensemble.maps.raw_map import RawMap, check_points
+from roughmdr.ensemble.maps.text_table import TextTable
+from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.units import unit_factor
+
+_FEWEST = 9  # points of the smallest map
+_LEAST_SHARE = 0.5
+"""Share of the points of a grid that a file must hold: instruments leave out those that they could not measure."""
+_OFF_GRID = 0.2
+"""Distance of a coordinate from the grid at most, in spacings: it may be rounded to one digit of a spacing."""
+_TITLE = re.compile(r"\s*\"?(?:pos\w*\s*)?([xyz])(?:\b|_)[^\[(]*(?:[\[(]\s*([^\])]*?)\s*[\])])?.*", re.IGNORECASE)
+_UNITS = re.compile(r"(lateral|xy|value|z)[ -]units?\s*[:=]\s*(\S+)", re.IGNORECASE)
+
+
+def is_of_points(table: TextTable) -> bool:
+    """Return whether rows are points with three coordinates: not a map that is three points wide."""
+    return table.numbers.shape[1] == 3 and len(table.numbers) >= _FEWEST
+
+
+def map_of_points(table: TextTable) -> RawMap:
+    """Return the map of rows x, y, z in any order on an evenly spaced grid; points that are not there are undefined.
+
+    Titles of the columns, or their values, tell which is z. RoughmdrError where the points do not lie on a grid.
+    """
+    units, order = _titles(table)
+    points = table.numbers
+    grids = [_grid(points[:, first]) for first in range(3)]
+    lines = ""
+    for x, y, z in [order] if order else [(0, 1, 2), (0, 2, 1), (1, 2, 0)]:
+        of_x, of_y = grids[x], grids[y]
+        if of_x is None or of_y is None:
+            continue
+        shape = int(of_x[0].max()) + 1, int(of_y[0].max()) + 1
+        if len(points) < _LEAST_SHARE * shape[0] * shape[1]:
+            continue
+        check_points(shape)
+        flat = of_x[0] * shape[1] + of_y[0]
+        times = np.bincount(flat)
+        if times.max() > 1:
+            lines = lines or " and ".join(str(table.lines[k]) for k in np.flatnonzero(flat == times.argmax())[:2])
+            continue
+        height = np.full(shape, np.nan)
+        height[of_x[0], of_y[0]] = points[:, z]
+        steps = of_x[1], of_y[1]
+        lateral, unit = units
+        spacing = (_metres(lateral) * steps[0], _metres(lateral) * steps[1]) if lateral else None
+        return RawMap(height, unit, spacing, steps=None if spacing else steps)
+    if lines:
+        raise RoughmdrError(f"columns x, y, z: lines {lines} give a height to one point")
+    kinds = " and ".join(f"{np.unique(points[:, k]).size} different {name}" for k, name in enumerate("xy"))
+    raise RoughmdrError(
+        f"its {len(points)} rows of three numbers are points x, y, z, with {kinds}, that do not lie on an evenly "
+        "spaced grid along x and y; interpolate scattered points to one, and give the map that they make"
+    )
+
+
+def _grid(values: Floats) -> tuple[np.ndarray, float] | None:
+    """Return the number of the grid line of each coordinate, from 0, and their spacing; None where there is no grid."""
+    distinct = np.unique(values)
+    if not np.isfinite(distinct).all() or distinct.size < 3:
+        return None
+    steps = np.diff(distinct)
+    steps = steps[steps > 0.1 * steps.max()]
+    extent = float(distinct[-1] - distinct[0])
+    for step in (np.median(steps), np.mean(steps)):  # lines may be missing, or steps rounded
+        intervals = round(extent / float(step))
+        at = (values - distinct[0]) * (intervals / extent)
+        lines = np.rint(at).astype(np.int64)
+        if intervals < values.size and float(np.abs(at - lines).max()) <= _OFF_GRID:
+            return lines, extent / intervals
+    return None
+
+
+def _titles(table: TextTable) -> tuple[tuple[str | None, str | None], tuple[int, int, int] | None]:
+    """Return the units of coordinates and heights, and the columns of x, y and z, as far as comments say them."""
+    lateral = height = None
+    for _, comment in table.comments:
+        for name, unit in _UNITS.findall(comment):
+            if name.lower() in ("lateral", "xy"):
+                lateral = unit
+            else:
+                height = unit
+    for _, comment in table.comments[::-1]:
+        words = re.split(r"[;,\t]|\s+(?=[xyzXYZ]\b)", comment.strip())
+        found = [match for match in map(_TITLE.fullmatch, filter(None, words)) if match]
+        names = [match[1].lower() for match in found]
+        if sorted(names) == ["x", "y", "z"]:
+            of = {match[1].lower(): match[2] for match in found}
+            if of["x"] != of["y"]:
+                raise RoughmdrError(f"x is in {of['x']}, y in {of['y']}; both must be in one unit")
+            return (of["x"] or lateral, of["z"] or height), (names.index("x"), names.index("y"), names.index("z"))
+    return (lateral, height), None
+
+
+def _metres(unit: str) -> float:
+    try:
+        return float(unit_factor(unit, "m"))
+    except RoughmdrError as error:
+        raise RoughmdrError(f"units of x and y: {error}") from None

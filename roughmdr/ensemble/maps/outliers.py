@@ -1,0 +1,239 @@
+"""Find numbers of a map that are no measured heights: marks of undefined points, spikes, clipped tops, coordinates.
+
+Thresholds were chosen on an optical and an atomic-force map, Gaussian maps of Hurst exponent 0.2 to 1 down to two
+points a wave, white noise, grains and pillars: the largest peak among these stands out by 2.6 where ``_SPIKE`` is 3.5.
+"""
+
+from collections.abc import Iterator
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.ensemble.maps.height_map import blocks
+from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
+
+Treatment = Literal["undefined", "kept"]
+
+_SPIKE = 3.5
+"""Height of a spike beyond all but one of its neighbours, over their range and over ``_Steps.large``."""
+_FEWEST, _TIMES = 10, 5.0
+"""Points that share one value, and how many times as many they are as at values next to it: no chance any more."""
+_JUMP = 2.5
+"""Median step from such points to their neighbours, over the median step of the map, beyond which they are a mark; at a
+clipped top it is about 1."""
+_NEAR = 10  # distinct heights next to a value that its number of points is compared with
+_MOST_MARKS = 8  # different marks in one map
+_SAMPLE = 2**16  # points of the map that its steps and the numbers of equal heights are taken from
+_FEWEST_STEPS = 7  # between numbers of a row that may be coordinates
+_EVEN, _UNEVEN = 0.1, 0.5
+"""Relative range of the steps of coordinates at most, with their rounding, and of heights in the next row at least."""
+_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+_REMEDY = 'outliers = "undefined" leaves them out, outliers = "kept" takes them as they are'
+
+
+class _Steps(NamedTuple):
+    """Differences of neighbours that are not equal, in magnitude."""
+
+    median: float
+    large: float  # 95 % are smaller
+
+
+class _Finding(NamedTuple):
+    text: str
+    points: NDArray[np.intp]  # flat indices of points to leave out
+    matters: bool = True  # to a law of light contact, which the lowest points do not bear
+
+
+def leave_out_outliers(
+    height: Floats, treatment: Treatment | None, unit: str, *, periodic: bool
+) -> dict[str, int | str]:
+    """Set outliers of a map, heights in ``unit`` over x and y, to NaN, in place; return what was found, as attributes.
+
+    Without a ``treatment`` RoughmdrError names outliers that matter, as number, value and place. So it does, unless all
+    are "kept", where no law can follow: of coordinates among the heights, and where the highest part is clipped.
+    """
+    if treatment == "kept" or min(height.shape) < 3:
+        return {}
+    _refuse_coordinates(height)
+    with np.errstate(over="ignore", invalid="ignore"):  # marks at the end of the range of floats
+        found = [*_marks(height, unit), *_spikes(height, unit, periodic=periodic)]
+        clipped = list(_clipped(height, unit))
+    refused = [each.text for each in clipped if each.matters]
+    if treatment is None and any(each.matters for each in found):
+        refused = [f"{'; '.join(each.text for each in found)}: {_REMEDY}", *refused]
+    if refused:
+        raise RoughmdrError("; ".join(refused))
+    attrs: dict[str, int | str] = {}
+    if treatment == "undefined" and found:
+        points = np.unique(np.concatenate([each.points for each in found]))
+        height.flat[points] = np.nan
+        attrs["outliers"] = points.size
+        found = []
+    if found or clipped:
+        attrs["doubtful"] = "; ".join(each.text for each in [*found, *clipped])
+    return attrs
+
+
+def _refuse_coordinates(height: Floats) -> None:
+    """RoughmdrError where the first row or column counts up evenly, and the next one does not."""
+    which = {"row": height[0, 1:], "column": height[1:, 0]}
+    after = {"row": height[1, 1:], "column": height[1:, 1]}
+    found = [name for name in which if _unevenness(which[name]) <= _EVEN and _unevenness(after[name]) > _UNEVEN]
+    if found:
+        steps = " and ".join(f"{float(np.mean(np.diff(which[name]))):.4g}" for name in found)
+        names, those = " and first ".join(found), "they are" if len(found) > 1 else "it is"
+        nx, ny = height.shape[0] - ("row" in found), height.shape[1] - ("column" in found)
+        raise RoughmdrError(
+            f"the first {names} of numbers, of the map as it is read, count up evenly, by {steps}: {those} no heights "
+            f"but coordinates; delete them, so that {nx} x {ny} heights are left"
+        )
+
+
+def _unevenness(values: Floats) -> float:
+    """Return the range of the steps over their mean; infinite where they do not go one way, or are too few to tell."""
+    steps = np.diff(values)
+    one_way = bool((steps > 0.0).all() or (steps < 0.0).all())
+    if steps.size < _FEWEST_STEPS or not one_way:
+        return np.inf
+    return float(np.ptp(steps) / np.abs(steps).mean())
+
+
+def _marks(height: Floats, unit: str) -> Iterator[_Finding]:
+    """Yield values that mark undefined points, and set these to NaN: they stand apart from all others, or many points
+    share them that do not join on to their neighbours.
+    """
+    for _ in range(_MOST_MARKS):
+        levels, counts = _levels(height)
+        if not levels.size:
+            return
+        low, high = _ends(height, ())
+        low_of_rest, high_of_rest = _ends(height, (low, high))
+        candidates = dict.fromkeys([low, high, 0.0, float(levels[np.argmax(counts)])])
+        steps = _steps(height, candidates)
+        apart = {low: low_of_rest - low, high: high - high_of_rest}
+        for value in candidates:
+            points = np.flatnonzero(height == value)
+            detached = 0.0 < high_of_rest - low_of_rest < apart.get(value, 0.0)
+            many = _is_frequent(value, points.size, levels, counts, height.size)
+            if points.size and (detached or (many and _jump(height, points, value) > _JUMP * steps.median)):
+                yield _Finding(f"{_at(height, points)} exactly {value:g} {unit}, far from neighbouring heights", points)
+                height.flat[points] = np.nan
+                break
+        else:
+            return
+
+
+def _clipped(height: Floats, unit: str) -> Iterator[_Finding]:
+    """Yield where the highest or lowest points of a map are flat, at the end of the range of the instrument."""
+    levels, counts = _levels(height)
+    if not levels.size:
+        return
+    for value, end in zip(_ends(height, ()), ("lowest", "highest"), strict=True):
+        points = np.flatnonzero(height == value)
+        if _is_frequent(value, points.size, levels, counts, height.size) and _is_flat(height, points, value):
+            remedy = (
+                "the tops that touch first are not known; measure with a larger range, or give "
+                'outliers = "kept" if they are as flat as that'
+            )
+            text = f"its {end} part is clipped: {_at(height, points)} exactly {value:g} {unit}, with their neighbours"
+            yield _Finding(f"{text}; {remedy}" if end == "highest" else text, points, matters=end == "highest")
+
+
+def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
+    """Yield the single points that stand out above or below their neighbours, all but one, by more than the range of
+    these and more than other steps of the map.
+    """
+    least = _SPIKE * _steps(height, ()).large
+    if not least > 0.0:
+        return
+    nx, ny = height.shape
+    points: NDArray[np.intp]
+    up, down = list[int](), list[int]()
+    for rows in blocks(nx, ny):
+        numbers = np.arange(rows.start - 1, rows.stop + 1)
+        part = np.pad(height[numbers % nx], ((0, 0), (1, 1)), mode="wrap")
+        if not periodic:
+            part[:, [0, -1]] = np.nan
+            part[(numbers < 0) | (numbers >= nx)] = np.nan
+        inner = part[1:-1, 1:-1]
+        around = [part[1 + i : part.shape[0] - 1 + i, 1 + j : part.shape[1] - 1 + j] for i, j in _NEIGHBOURS]
+        known = sum((np.isfinite(each).view(np.int8) for each in around), np.zeros(inner.shape, np.int8))
+        for sign, found in ((1.0, up), (-1.0, down)):
+            below = sum(((sign * (inner - each) > least).view(np.int8) for each in around), np.zeros_like(known))
+            at = np.nonzero((below >= known - 1) & (known >= 3))
+            beside = np.sort(np.stack([sign * each[at] for each in around]), axis=0)  # undefined ones come last
+            second = np.take_along_axis(beside, known[at][None].astype(np.intp) - 2, 0)[0]
+            spiky = sign * inner[at] - second > _SPIKE * (second - beside[1])
+            found.extend(((at[0][spiky] + rows.start) * ny + at[1][spiky]).tolist())
+    for spikes, where in ((up, "above"), (down, "below")):
+        if spikes:
+            points = np.array(spikes, dtype=np.intp)
+            values = height.flat[points]
+            span = f"{values.min():.4g}{f' to {values.max():.4g}' * (points.size > 1)} {unit}"
+            text = f"{_at(height, points)} {span}, far {where} neighbouring heights"
+            yield _Finding(text, points, matters=where == "above")
+
+
+def _at(height: Floats, points: NDArray[np.intp]) -> str:
+    """Return the number of points and the place of the first, as the subject of a sentence."""
+    row, column = divmod(int(points[0]), height.shape[1])
+    first = f"point {row + 1} along x and {column + 1} along y"
+    return f"the height at {first} is" if points.size == 1 else f"{points.size} heights, the first at {first}, are"
+
+
+def _ends(height: Floats, without: tuple[float, ...]) -> tuple[float, float]:
+    """Return the lowest and the highest value that is none of some others; infinite where there is none."""
+    low, high = np.inf, -np.inf
+    for rows in blocks(*height.shape):
+        kept = height[rows][np.isfinite(height[rows]) & ~np.isin(height[rows], without)]
+        low, high = min(low, float(kept.min(initial=np.inf))), max(high, float(kept.max(initial=-np.inf)))
+    return low, high
+
+
+def _levels(height: Floats) -> tuple[Floats, NDArray[np.intp]]:
+    """Return the distinct heights of a sample of rows, and how many points of the map, about, have each."""
+    every = -(-height.size // _SAMPLE)
+    sample = height[::every]
+    levels, counts = np.unique(sample[np.isfinite(sample)], return_counts=True)
+    return levels, counts * every
+
+
+def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[Any], size: int) -> bool:
+    """Return whether many more points share a value than share those next to it."""
+    at = int(np.searchsorted(levels, value))
+    others = [k for k in range(max(at - _NEAR, 0), min(at + _NEAR + 1, levels.size)) if levels[k] != value]
+    if number < _FEWEST or len(others) < _NEAR:
+        return False
+    return bool(number > _TIMES * float(np.mean(counts[others])))
+
+
+def _steps(height: Floats, without: Any) -> _Steps:
+    """Return the steps between neighbours in a sample of rows, of which values may be left out."""
+    rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
+    part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))
+    steps = np.abs(np.concatenate([(after - part).ravel(), np.diff(part, axis=1).ravel()]))
+    steps = steps[(steps > 0.0) & np.isfinite(steps)]
+    return _Steps(*np.quantile(steps, [0.5, 0.95]).tolist()) if steps.size else _Steps(0.0, 0.0)
+
+
+def _beside(height: Floats, points: NDArray[np.intp]) -> Iterator[Floats]:
+    """Yield the heights of the four neighbours of points; NaN beyond the edge."""
+    nx, ny = height.shape
+    row, column = np.divmod(points, ny)
+    for i, j in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+        inside = (row + i >= 0) & (row + i < nx) & (column + j >= 0) & (column + j < ny)
+        yield np.where(inside, height[(row + i) % nx, (column + j) % ny], np.nan)
+
+
+def _jump(height: Floats, points: NDArray[np.intp], value: float) -> float:
+    """Return the median step from points that share a value to neighbours that do not."""
+    steps = np.abs(np.concatenate(list(_beside(height, points))) - value)
+    steps = steps[(steps > 0.0) & np.isfinite(steps)]
+    return float(np.median(steps)) if steps.size else 0.0
+
+
+def _is_flat(height: Floats, points: NDArray[np.intp], value: float) -> bool:
+    """Return whether most of the points that share a value have a neighbour that does."""
+    return bool(np.mean(np.any([each == value for each in _beside(height, points)], axis=0)) > 0.5)

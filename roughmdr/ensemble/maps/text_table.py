@@ -1,0 +1,152 @@
+"""Read a table of numbers from a text file, whatever its delimiter, decimal mark and encoding."""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.numerics.arguments import Floats
+
+_DELIMITERS = (";", "\t", ",")
+_UNDEFINED = ("", "na", "n/a", "null", "none", "bad", "-", "--", "---", "*")  # and nan and inf
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:e[-+]?\d+)?|[-+]?\d+", re.IGNORECASE)
+_BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1b]")
+
+
+class Line(NamedTuple):
+    """A line with its number from 1."""
+
+    number: int
+    text: str
+
+
+class TextTable(NamedTuple):
+    """Rows of numbers, and what else the file holds."""
+
+    numbers: Floats  # NaN where a word says that there is none
+    comments: list[Line]  # after #, or before the first row
+    lines: list[int]  # numbers of the lines that hold the rows
+
+
+def text_of(path: Path) -> str | None:
+    """Return the text of a file in UTF-8, UTF-16 or Latin-1; None where it is binary."""
+    content = path.read_bytes()
+    try:
+        text = content.decode("utf-16" if content.startswith(_BYTE_ORDER_MARKS) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    return None if _CONTROL.search(text) else text
+
+
+def read_table(text: str) -> TextTable:
+    """Return the rows of numbers of a text; RoughmdrError names the line and column that holds none.
+
+    They are separated by semicolons, tabs, commas or blanks. A comma is a decimal mark where it does not separate. A
+    delimiter at the end of all lines ends no column. Lines before the first row, and what follows #, are comments.
+    """
+    comments, titles, rows = list[Line](), list[Line](), list[Line]()
+    for number, line in enumerate(text.splitlines(), 1):
+        content, mark, comment = line.partition("#")
+        if mark:
+            comments.append(Line(number, comment.strip()))
+        if not content.strip(" \t,;"):
+            continue
+        if rows or _holds_numbers(content):
+            rows.append(Line(number, content.strip(" ")))
+        else:
+            titles.append(Line(number, content.strip()))
+    if not rows:
+        raise RoughmdrError("holds no numbers")
+    delimiter = _delimiter(rows[0].text)
+    _refuse_mostly_numbers(titles, delimiter)
+    comments = sorted([*comments, *titles])
+    numbers = [number for number, _ in rows]
+    if delimiter == ",":
+        _refuse_two_meanings(rows)
+    elif any("," in row for _, row in rows):
+        rows = [Line(number, _with_point(number, row)) for number, row in rows]
+    if delimiter is not None and all(row.endswith(delimiter) for _, row in rows):
+        rows = [Line(number, row[:-1]) for number, row in rows]
+    try:
+        table = np.loadtxt([row for _, row in rows], delimiter=delimiter, comments=None, ndmin=2)
+    except ValueError:
+        table = np.array(_by_words(rows, delimiter))
+    return TextTable(table, comments, numbers)
+
+
+def _delimiter(row: str) -> str | None:
+    """Return what separates the numbers of a row; None for blanks."""
+    found = next((mark for mark in _DELIMITERS if mark in row), None)
+    words = row.split()
+    return None if found == "," and len(words) > 1 and all(map(_DECIMAL_COMMA.fullmatch, words)) else found
+
+
+def _holds_numbers(row: str) -> bool:
+    """Return whether a line is a row: numbers, or words that stand for one, and at least one number."""
+    delimiter = _delimiter(row)
+    words = row.strip(" ").split(delimiter)
+    values = [_value(word if delimiter == "," else _as_point(word)) for word in words]
+    return None not in values and any(np.isfinite(value) for value in values if value is not None)
+
+
+def _refuse_mostly_numbers(titles: list[Line], delimiter: str | None) -> None:
+    """RoughmdrError where a line before the first row is a row but for some words."""
+    for number, title in titles:
+        words = title.split(delimiter)
+        wrong = [k for k, word in enumerate(words) if _value(word if delimiter == "," else _as_point(word)) is None]
+        if len(words) > 2 * len(wrong) and len(words) > 2:
+            raise RoughmdrError(f"line {number}, column {wrong[0] + 1}: {words[wrong[0]].strip()!r} is no number")
+
+
+def _as_point(word: str) -> str:
+    """Return a number with a decimal point in place of a comma, if it has no point."""
+    return word if "." in word else word.replace(",", ".")
+
+
+def _value(word: str) -> float | None:
+    """Return the number that a word is, NaN for an undefined one, or None."""
+    word = word.strip().strip('"')
+    if word.lower() in _UNDEFINED:
+        return np.nan
+    try:
+        return float(word)
+    except ValueError:
+        return None
+
+
+def _refuse_two_meanings(rows: list[Line]) -> None:
+    """RoughmdrError where a comma between numbers may be a decimal mark: whole numbers do not begin with 0."""
+    for number, row in rows:
+        for column, word in enumerate(row.split(","), 1):
+            if re.fullmatch(r"\s*0\d+\s*", word):
+                raise RoughmdrError(
+                    f"line {number}, column {column}: {word.strip()!r} follows a comma that may be a decimal mark, or "
+                    "separate numbers; write decimal points, or separate by semicolons or tabs"
+                )
+
+
+def _with_point(number: int, row: str) -> str:
+    """Return a row with decimal points in place of commas; RoughmdrError where it has both."""
+    if "." in row and "," in row:
+        raise RoughmdrError(f"line {number}: has points and commas, and does not say which is the decimal mark")
+    return row.replace(",", ".")
+
+
+def _by_words(rows: list[Line], delimiter: str | None) -> list[list[float]]:
+    """Return the numbers of rows word by word."""
+    table = list[list[float]]()
+    for number, row in rows:
+        words = row.split(delimiter)
+        values = [_value(word) for word in words]
+        if None in values:
+            column = values.index(None)
+            raise RoughmdrError(f"line {number}, column {column + 1}: {words[column].strip()!r} is no number")
+        table.append([value for value in values if value is not None])
+        if len(values) != len(table[0]):
+            raise RoughmdrError(
+                f"line {number} has {len(values)} numbers, but line {rows[0].number} has {len(table[0])}"
+            )
+    return table
