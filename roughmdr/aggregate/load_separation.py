@@ -17,6 +17,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def load_separation(
     ensemble: xr.Dataset,
     *,

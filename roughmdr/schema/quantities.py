@@ -12,11 +12,23 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema
 from roughmdr.schema.units import DIMENSIONLESS, example_of_unit, quantity, quantity_pattern
 
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")}
 
-class Section(BaseModel):
+
+class _Listed(type(BaseModel)):  # type: ignore[misc]
+    """Lists of a section its own names, not those of pydantic."""
+
+    def __dir__(cls) -> list[str]:
+        return sorted({*super().__dir__()} - _OF_PYDANTIC)
+
+
+class Section(BaseModel, metaclass=_Listed):
     """A table of a scene: keys that it does not declare are errors, and it is immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__()} - _OF_PYDANTIC)
 
 
 @runtime_checkable

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _TEXTS_AT_ONCE = 2**16
+RUN_TIME = "run_time"
+"""The only variable that depends on the clock."""
 
 
 class Array(NamedTuple):
@@ -52,7 +54,7 @@ class Labelled(NamedTuple):
         """Return a hash of the scene and of all arrays but ``run_time``, which depends on the clock."""
         digest = hashlib.sha256(str(self.attrs.get("scene")).encode())
         for name, array in sorted((self.variables | self.coordinates).items()):
-            if name != "run_time":
+            if name != RUN_TIME:
                 digest.update(name.encode() + str(array.dims).encode())
                 for part in _bytes_of(array.values):
                     digest.update(part)
@@ -70,7 +72,12 @@ class Labelled(NamedTuple):
         """Convert to a Dataset."""
         import xarray as xr
 
-        return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
+        from roughmdr.storage.clocked import Clocked
+
+        variables: dict[str, Any] = dict(self.variables)
+        if RUN_TIME in variables:
+            variables[RUN_TIME] = Clocked(*variables[RUN_TIME])
+        return xr.Dataset(variables, coords=self.coordinates, attrs=self.attrs)
 
 
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
