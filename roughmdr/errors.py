@@ -1,5 +1,6 @@
 """Errors and warnings that roughmdr raises on purpose. Messages name the argument, its value and what is allowed."""
 
+import sys
 import warnings
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -52,11 +53,19 @@ class TooMuchContact(OutOfRange):
     """The summed contact area is larger than the nominal area: independent asperities have no such contact."""
 
 
-def warn_limits(texts: Iterable[str], stacklevel: int = 3) -> dict[str, str]:
-    """Issue each text as a LimitWarning to the caller of the caller; return them as an attribute of a result."""
+def level_outside() -> int:
+    """Return the ``stacklevel`` by which a warning is that of the first frame outside the package."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "roughmdr":
+        frame, level = frame.f_back, level + 1
+    return level
+
+
+def warn_limits(texts: Iterable[str]) -> dict[str, str]:
+    """Issue each text as a LimitWarning to the caller of a public function; return them as an attribute of a result."""
     texts = list(texts)
     for text in texts:
-        warnings.warn(text, LimitWarning, stacklevel=stacklevel)
+        warnings.warn(text, LimitWarning, stacklevel=level_outside())
     return {"warnings": "\n".join(texts)} if texts else {}
 
 

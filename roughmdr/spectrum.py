@@ -14,8 +14,14 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, exactly_one
+from roughmdr.schema.keywords import named_keywords
 
 __all__ = ["Moments", "SelfAffine", "Spectrum"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 MIN_ALPHA = 1.5
 """Nayak's parameter alpha of waves of one length in all directions; every other isotropic surface has a larger one."""
@@ -102,6 +108,7 @@ class SelfAffine(NamedTuple):
     level: float  # C(q0) [m4]
 
     @classmethod
+    @named_keywords
     def of(
         cls,
         *,

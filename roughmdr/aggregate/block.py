@@ -50,8 +50,8 @@ class Totals(NamedTuple):
     """[row, step] in SI."""
     compensation: Floats
     """The rounding errors of ``total``."""
-    max_radius: Floats
-    """The contact radius [m] of each asperity where the flat is closest."""
+    closest: Floats
+    """Contact radius [m] and force [N] of each asperity where the flat is closest, [2, asperity]."""
 
 
 class SumKernels(Kernels):

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
-from roughmdr.aggregate.law import PER_AREA, LoadSeparation
+from roughmdr.aggregate.law import PER_AREA, LoadSeparation, effective_number
 from roughmdr.aggregate.mean_field import couple
 from roughmdr.aggregate.neighbours import are_few, neighbours_error
 from roughmdr.aggregate.pull_off import pull_off_of
@@ -79,10 +79,10 @@ def compute(
 
         found = shift(independent, path.separation, coupling)
         shifted = LoadingPath(found.separation, no_memory(found.separation))
-        total, radius, visits = sums(shifted, rows | {totals.STIFFNESS})
+        total, (radius, force), visits = sums(shifted, rows | {totals.STIFFNESS})
         couple(total, found)
     else:
-        total, radius, visits = sums(path, rows)
+        total, (radius, force), visits = sums(path, rows)
     total[totals.AREA] *= ensemble.area_share
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
@@ -100,7 +100,8 @@ def compute(
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
     warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []))
-    return result._replace(warnings=warnings, pull_off=pull_off)
+    effective = effective_number(force)
+    return result._replace(warnings=warnings, pull_off=pull_off, effective_contacts=effective)
 
 
 def check_asked(ensemble: Ensemble, names: list[str], adhesion: Adhesion, interaction: Interaction | None) -> None:

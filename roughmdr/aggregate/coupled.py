@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
-from roughmdr.aggregate.law import LoadSeparation
+from roughmdr.aggregate.law import LoadSeparation, effective_number
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
@@ -42,6 +42,8 @@ class CoupledTotals(NamedTuple):
     """[row, step] in SI; NaN at a step without an equilibrium."""
     radius: Floats
     """The contact radius [m] of each asperity where the flat is closest."""
+    force: Floats
+    """The force [N] of each there; of contacts coupled in pairs, also where the rest is from a grid."""
     visits: int
     error: Floats
     """The estimated error of the force that the coupling leaves [1], over the steps."""
@@ -132,6 +134,7 @@ def _law(
         overlap_count=float(found.overlap_count),
         marked_steps=float(found.marked),
         grid_points=float(found.grid_points),
+        effective_contacts=effective_number(found.force),
     )
 
 
@@ -193,7 +196,7 @@ def _found(
     marked = int(np.sum(beyond | ~solved))
     overlap = math.nan if hills else closest.share
     visits, contacts = along.visits, closest.contacts
-    return CoupledTotals(total, along.radius, visits, error, of_conductance, contacts, overlap, marked)
+    return CoupledTotals(total, along.radius, along.force, visits, error, of_conductance, contacts, overlap, marked)
 
 
 def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np.bool_]]:

@@ -57,6 +57,9 @@ class LoadSeparation(NamedTuple):
     """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
     avalanche_size_max: float = math.nan
     """Largest number of contacts that changed at one; NaN likewise."""
+    effective_contacts: float = math.nan
+    """``effective_number`` of the contacts where the flat is closest; NaN where none bears a force, or it is not known.
+    """
 
     @classmethod
     def of(
@@ -95,6 +98,21 @@ class LoadSeparation(NamedTuple):
     def only(self, names: list[str]) -> LoadSeparation:
         """Return the law with these variables, in this order."""
         return self._replace(variables={name: self.variables[name] for name in names})
+
+
+def effective_number(force: Floats) -> float:
+    """Return the effective number of contacts that carry the load, (sum of |F|)^2 / sum of F^2 [1]; NaN for none.
+
+    So many equal contacts have the same sums. Forces of both signs count by their magnitude: pushing and pulling
+    contacts do not cancel. Where contacts are as many as chance has it, the load of a sample scatters by 1/sqrt(n) of
+    the summed magnitudes (N. R. Campbell, Proc. Camb. Phil. Soc. 15 (1909) 117).
+    """
+    sizes = np.abs(force)
+    largest = float(sizes.max(initial=0.0))
+    if largest == 0.0:
+        return math.nan
+    shares = sizes / largest
+    return float(np.square(shares.sum()) / np.square(shares).sum())
 
 
 def _over_area(name: str, total: Floats, area: float) -> Floats:

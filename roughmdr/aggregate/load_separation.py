@@ -17,6 +17,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def load_separation(
     ensemble: xr.Dataset,
     *,
@@ -75,7 +77,8 @@ def load_separation(
         quantity that it controls as the coordinate, and separation as a variable, NaN where a dead load has pulled the
         flat off, and force; numerical_error [1];
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
-        where there is no nominal area); with an unloading pull_off_force [N], pull_off_separation [m],
+        where there is no nominal area); effective_contacts [1], how many equal contacts would carry the load where the
+        flat is closest; with an unloading pull_off_force [N], pull_off_separation [m],
         pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact; with pairwise interaction
         overlap_count [1], marked_steps [1] and grid_points [1]; with conductance_radius its conductance_error [1].
 
@@ -130,6 +133,7 @@ def load_separation(
     )
     data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
+    errors["effective_contacts"] = result.effective_contacts
     if coupling is not None and coupling.model == "pairwise":
         names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]
         names_of_coupling += ["avalanche_count", "avalanche_size_max"] if asked.work > 0.0 else []

@@ -16,6 +16,7 @@ from roughmdr.aggregate.block import (
     BEFORE,
     CONTACT_ROWS,
     DEPTH_SCALE,
+    FORCE_SCALE,
     IN_CONTACT,
     RADIUS_SCALE,
     SCALES,
@@ -168,7 +169,8 @@ def _loop(
             if step == turn:
                 for i in range(count):
                     if not law.adhesive or contacts[IN_CONTACT, i] > 0.0:
-                        totals.max_radius[start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
+                        totals.closest[0, start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
+                        totals.closest[1, start + i] = scales[FORCE_SCALE, i] * law.force_at(contacts, params, i)
             if count > 0:
                 law.add_totals(count, block, step, totals)
     return visits
@@ -216,8 +218,8 @@ def sum_over_asperities(
     memory: Staircase,
     rows: set[int],
 ) -> tuple[Floats, Floats, int]:
-    """Return the totals over the asperities, [row, step] in SI, the contact radius of each [m] where the flat is
-    closest, and the number of visits (asperities times steps).
+    """Return the totals over the asperities, [row, step] in SI, the contact radius [m] and the force [N] of each where
+    the flat is closest, [2, asperity], and the number of visits (asperities times steps).
 
     height [m] descends; only the ``rows`` asked for are computed, for the conductance that of the radii. OutOfRange
     where the contact of an asperity that can be in contact is not representable.
@@ -226,7 +228,7 @@ def sum_over_asperities(
     wanted[list(rows)] = True
     wanted[RADIUS] |= wanted[CONDUCTANCE]
     shape = ROWS, separation.size
-    totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros_like(height))
+    totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros((2, height.size)))
     material = Material(effective_modulus, adhesion.work, adhesion.strength)
     compiled = compiled_sum(kernels.in_sums or kernels, energetic=not _ENERGIES.isdisjoint(rows))
     if compiled.adhesive:
@@ -246,4 +248,4 @@ def sum_over_asperities(
         )
     if wanted[CONDUCTANCE]:
         totals.total[CONDUCTANCE] = totals.total[RADIUS]
-    return totals.total, totals.max_radius, visits
+    return totals.total, totals.closest, visits

@@ -15,6 +15,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.schema.arguments import check_scalar
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def equilibria(
     shape: Shape, *, work: float | str, indentation: float | str, **material: Unpack[AdhesiveMaterial]
 ) -> xr.Dataset:

@@ -19,6 +19,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_values, exactly_one
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.variables import ASPERITY
@@ -37,6 +38,7 @@ class IndentArguments(AdhesiveMaterial, total=False):
     springs: int | None
 
 
+@named_keywords
 def indent(
     shape: Shape | Callable[[Floats], Floats],
     *,

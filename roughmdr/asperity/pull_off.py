@@ -12,6 +12,7 @@ from roughmdr.asperity.on_machine import OnMachine, check_machine_stiffness
 from roughmdr.asperity.tabor import resolved, warnings_of
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import Shape
 
@@ -26,6 +27,7 @@ _PULL_OFFS = {
 """The ends of a slow retraction, by its control."""
 
 
+@named_keywords
 def pull_off(
     shape: Shape,
     *,

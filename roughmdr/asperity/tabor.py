@@ -11,10 +11,12 @@ from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, exactly_one
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Shape
 
 
+@named_keywords
 def tabor(
     shape: Shape,
     *,

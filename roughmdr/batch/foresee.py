@@ -29,7 +29,7 @@ class Foreseen(NamedTuple):
     path: LoadingPath
     """Some steps of the path of the cell."""
     law: LoadSeparation
-    """Its contact fraction and pressure are those of all asperities."""
+    """Its contact fraction, pressure and effective number of contacts are those of all asperities."""
     fraction_at_pull_off: float
     """NaN where there is none, or no nominal area."""
     cell: int = 0
@@ -128,6 +128,8 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
     law = simulate_ensemble(scene.without_grid, path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    if source.nominal_area is not None:
+        law = law._replace(effective_contacts=law.effective_contacts * source.nominal_area / area)
     return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
 
 

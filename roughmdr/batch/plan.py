@@ -124,8 +124,9 @@ class Plan(NamedTuple):
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings of asperities that may not be as intended, with the number of cells where not in all."""
-        return count_by_cell((text for cell in self.cells for text in cell.scene.asperities.warnings), len(self.cells))
+        """Warnings of entries that may not be as intended, with the number of cells where not in all."""
+        of_cells = (text for cell in self.cells for text in (*cell.scene.doubts, *cell.scene.asperities.warnings))
+        return count_by_cell(of_cells, len(self.cells))
 
     @property
     def slip_notes(self) -> list[str]:

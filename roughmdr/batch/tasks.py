@@ -171,6 +171,7 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
         "adhesion_law": ADHESION_CODES.index(result.model if scene.work > 0.0 else "none"),
         "overlap_count": result.overlap_count,
         "marked_steps": result.marked_steps,
+        "effective_contacts": result.effective_contacts,
         "grid_points": result.grid_points,
         "reference_points": result.reference_points,
         "conductance_error": result.conductance_error,

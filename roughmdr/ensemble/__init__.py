@@ -20,6 +20,7 @@ from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.errors import SceneError, warn_limits
 from roughmdr.schema.faults import find_faults
+from roughmdr.schema.keywords import named_keywords
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +41,7 @@ __all__ = [
 ]
 
 
+@named_keywords
 def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int = 0) -> "xr.Dataset":
     """Draw or read an ensemble of asperities, the same that a run with this seed loads.
 

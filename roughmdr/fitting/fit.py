@@ -14,6 +14,7 @@ from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.uncertainty import uncertainty
 from roughmdr.fitting.words import parameter_keys
 from roughmdr.scene import Scene
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def fit(
     measured: "str | Path | pd.DataFrame | xr.Dataset",
     scene: str | Path | dict[str, Any] | Scene,

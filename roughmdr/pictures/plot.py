@@ -5,10 +5,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughmdr.errors import LimitWarning
+from roughmdr.errors import LimitWarning, level_outside
 from roughmdr.pictures.kinds import draw_request
 from roughmdr.pictures.request import Request, drawable
 from roughmdr.pictures.style import format_of, save, styled
+from roughmdr.schema.keywords import with_options
 from roughmdr.storage.files import check_writable
 from roughmdr.storage.result_file import check_same_kind
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@with_options(Request)
 def plot(
     result: "str | Path | xr.Dataset",
     out: str | Path | None = None,
@@ -85,14 +87,14 @@ def plot(
     request = Request(kind, names, **options)
     source = drawable(result)
     if source.doubt:
-        warnings.warn(f"{source.file}: {source.doubt}", UserWarning, stacklevel=2)
+        warnings.warn(f"{source.file}: {source.doubt}", UserWarning, stacklevel=level_outside())
     if out is not None:
         check_picture(Path(out), [] if source.file is None else [source.file], fresh=fresh)
     with styled(style):
         figure, remarks = draw_request(source, request)
         for title, remark in remarks:
             if "not drawn" in remark:
-                warnings.warn(f"{title}: {remark}", LimitWarning, stacklevel=2)
+                warnings.warn(f"{title}: {remark}", LimitWarning, stacklevel=level_outside())
         if out is not None:
             save(figure, Path(out))
     return figure

@@ -14,6 +14,7 @@ from roughmdr.report.citations import Paper
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import done_of
 from roughmdr.scene import Scene, read
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
@@ -29,6 +30,7 @@ _PROGRAM = "roughmdr"
 _NAMES = {"“": "``", "”": "''", "ß": "{\\ss}", "ä": '{\\"a}', "ö": '{\\"o}', "ü": '{\\"u}'}
 
 
+@named_keywords
 def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> str:
     """Return the papers behind a result or a scene, as ``roughmdr cite`` prints them; nothing is printed.
 

@@ -57,6 +57,7 @@ class CellTable(TypedDict):
     model_error: float
     parts: dict[str, float]  # of the model error, by their names in results
     largest_contact_fraction: float
+    effective_contacts: float  # that carry the load at closest approach
     trusted_separation: float  # [m]
     numerical_error: float
     run_time: float  # [s], of all realisations
@@ -86,6 +87,7 @@ class ResultTable(TypedDict):
     path: list[str]  # which separations "clear" and targets came to
     map: list[str]
     trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
+    sample: str | None  # where few contacts carry the load
     advice: str | None
     reference: str | None
     accuracy: str | None
@@ -114,6 +116,7 @@ class ForeseenTable(TypedDict):
     model_error: float
     parts: dict[str, float]
     largest_contact_fraction: float
+    effective_contacts: float  # that carry the load at closest approach
     contact_fraction_at_pull_off: float
     trusted_separation: float  # [m]
 
@@ -141,6 +144,7 @@ class PlanTable(TypedDict):
     path: list[str]
     map: list[str]
     trust: dict[str, str | None]
+    sample: str | None  # where few contacts carry the load
     advice: str | None
     warnings: list[str]
     failures: list[str]  # which of the cells that were tried cannot be computed, and why

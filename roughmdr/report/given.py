@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.errors import RoughmdrError, StoreError, level_outside
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
@@ -31,5 +31,5 @@ def given_result(result: "str | Path | xr.Dataset") -> tuple[Labelled, Path | No
         raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
     data = read_result(Path(result))
     if fault := data.integrity_fault():
-        warnings.warn(f"{result}: {fault}", UserWarning, stacklevel=3)
+        warnings.warn(f"{result}: {fault}", UserWarning, stacklevel=level_outside())
     return data, Path(result)

@@ -7,12 +7,14 @@ from roughmdr.fitting.stored import given_fit
 from roughmdr.fitting.words import describe_fit
 from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, describe_origin, describe_result
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def info(result: "str | Path | xr.Dataset", *, cells: bool = False) -> str:
     """Return the text that ``roughmdr info`` prints of a result; nothing is printed.
 

@@ -16,6 +16,7 @@ from roughmdr.report.error_table import error_rows
 from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, summary_lines
 from roughmdr.result.layout import cells_of, stored_variables, swept_sizes
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 from roughmdr.storage.labelled import Labelled
@@ -40,6 +41,7 @@ class _Figure(NamedTuple):
     dark: str
 
 
+@named_keywords
 def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: bool = False) -> None:
     """Write a result as one page of HTML that needs no other file.
 

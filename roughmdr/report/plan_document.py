@@ -7,6 +7,7 @@ from roughmdr.batch.foresee import Foreseen, Prospect
 from roughmdr.batch.plan import Plan
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.documents import ForeseenTable, PlanTable, paragraphs, trust_table
+from roughmdr.report.few_contacts import foreseen_sample
 from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
@@ -42,6 +43,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "path": list(plan.path_notes),
         "map": plan.map_lines,
         "trust": trust_table(prospect_lines(prospect)),
+        "sample": paragraphs(foreseen_sample(plan, prospect)).get("sample"),
         "advice": paragraphs(advice_lines(scene.toml, foreseen_resolution(prospect))).get("advice"),
         "warnings": plan.warnings,
         "failures": list(dict.fromkeys([*estimate.failures, *prospect.failures])),
@@ -65,6 +67,7 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "model_error": error.named["model_error"],
         "parts": dict(error.parts),
         "largest_contact_fraction": error.largest_fraction,
+        "effective_contacts": cell.law.effective_contacts,
         "contact_fraction_at_pull_off": cell.fraction_at_pull_off,
         "trusted_separation": error.trusted_separation,
     }

@@ -15,6 +15,7 @@ from roughmdr.report.documents import (
     paragraphs,
     trust_table,
 )
+from roughmdr.report.few_contacts import sample_of_result
 from roughmdr.report.reference import reference_lines
 from roughmdr.report.summary import describe_failed, first_remark, resolution_error
 from roughmdr.report.trust import trust_of_result
@@ -41,6 +42,7 @@ def result_table(result: Labelled, file: Path | None, elapsed: float | None = No
         "path": attrs.get("path", "").splitlines(),
         "map": attrs.get("map", "").splitlines(),
         "trust": trust_table(trust_of_result(result)),
+        "sample": paragraphs(sample_of_result(result)).get("sample"),
         "advice": paragraphs(advice_lines(attrs["scene"], resolution_error(result))).get("advice"),
         "reference": paragraphs(reference_lines(result)).get("reference"),
         "accuracy": attrs.get("accuracy") or None,
@@ -93,6 +95,7 @@ def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
         "model_error": largest("model_error"),
         "parts": {name: largest(name) for name in PARTS},
         "largest_contact_fraction": largest("largest_contact_fraction"),
+        "effective_contacts": float(np.fmin.reduce(values("effective_contacts"))),
         "trusted_separation": largest("trusted_separation"),
         "numerical_error": largest("numerical_error"),
         "run_time": float(np.nansum(values("run_time"))),

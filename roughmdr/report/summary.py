@@ -9,6 +9,7 @@ from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.conduction import conduction_lines
 from roughmdr.report.contact_pressure import contact_pressure_lines
+from roughmdr.report.few_contacts import foreseen_sample, sample_of_result
 from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
@@ -44,6 +45,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("memory", _memory(estimate)),
         *_lateral(plan),
         *prospect_lines(prospect),
+        *foreseen_sample(plan, prospect),
         *_indent("slip", plan.slip_notes),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
         *_reference(plan, estimate),
@@ -119,6 +121,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield from _avalanches(result)
     yield from _contacts_at_ends(result)
     yield from trust_of_result(result)
+    yield from sample_of_result(result)
     yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
     yield from _indent("slip", attrs.get("slip", "").splitlines())

@@ -19,7 +19,7 @@ from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
-from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, warn_limits
+from roughmdr.errors import FailedRuns, RoughmdrError, StoreError, Unfinished, level_outside, warn_limits
 from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble
 from roughmdr.runner.backend import Backend
@@ -28,6 +28,7 @@ from roughmdr.runner.local import Pool, Serial, Threads
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.scene import Scene, read
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 _FORCE = "force"
 
 
+@named_keywords
 def run(
     scene: str | Path | dict[str, Any] | Scene,
     out: str | Path | None = None,
@@ -107,7 +109,11 @@ def run(
     warn_limits(result.attrs.get("warnings", "").splitlines())
     status = result.variables["status"].values
     if (status == FAILED).any():
-        warnings.warn(f"{int((status == FAILED).sum())} of {status.size} failed, see remark", FailedRuns, stacklevel=2)
+        warnings.warn(
+            f"{int((status == FAILED).sum())} of {status.size} failed, see remark",
+            FailedRuns,
+            stacklevel=level_outside(),
+        )
     return result.to_xarray()
 
 

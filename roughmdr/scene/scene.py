@@ -17,8 +17,11 @@ from roughmdr.scene.sections import (
 )
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
-from roughmdr.schema.units import format_quantity
-from roughmdr.schema.wording import printable
+from roughmdr.schema.units import format_quantity, millipascals
+from roughmdr.schema.wording import printable, short_repr
+
+_SOFTEST = 1.0
+"""Effective modulus [Pa] below which no solid is known: the softest gels have some 10 Pa."""
 
 
 class Scene(Sections):
@@ -138,6 +141,15 @@ class Scene(Sections):
             raise mismatch("accuracy.method", f"cannot be {accuracy.method!r}: {reason}")
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """Warnings of quantities that are possible but hardly meant: pressures in millipascals, solids like air."""
+        told = tuple(f"{key} = {short_repr(value)}: {doubt}" for key, value, doubt in _millipascals(self._table))
+        if not told and self.effective_modulus < _SOFTEST:
+            soft = format_quantity(self.effective_modulus, "Pa")
+            told = (f"effective modulus {soft}: no solid is so soft, gels have some 10 Pa; is its unit right?",)
+        return told
+
+    @property
     def without_grid(self) -> "Scene":
         """The scene with steps marked that interaction.beyond would have computed on a grid, which takes long."""
         if self.interaction is None or self.interaction.beyond == "flag":
@@ -159,6 +171,16 @@ class Scene(Sections):
     def toml(self) -> str:
         """The scene as it was given, in TOML."""
         return tomli_w.dumps(_without_none(self._table))
+
+
+def _millipascals(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield key, value and doubt of each quantity of a table that is given in millipascals."""
+    for key, entry in table.items():
+        if isinstance(entry, dict):
+            yield from _millipascals(entry, f"{prefix}{key}.")
+        for value in entry if isinstance(entry, list) else [entry]:
+            if doubt := millipascals(value):
+                yield f"{prefix}{key}", value, doubt
 
 
 def _without_none(table: dict[str, Any]) -> dict[str, Any]:

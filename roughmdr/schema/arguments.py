@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import OutOfRange, RoughmdrError
+from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import DIMENSIONLESS, quantity
+from roughmdr.schema.units import DIMENSIONLESS, millipascals, quantity
 from roughmdr.schema.wording import short_repr
 
 _LEAST_STEPS = 2
@@ -53,10 +53,7 @@ def check_poisson(name: str, value: float) -> float:
 def check_values(name: str, raw: ArrayLike, dimension: str) -> Floats:
     """Return a number or a one-dimensional array of numbers in SI; OutOfRange unless all are finite."""
     try:
-        given = np.asarray(raw)
-        if given.dtype.kind == "U":
-            given = np.reshape([_from_text(name, str(text), dimension) for text in given.flat], given.shape)
-        values = np.asarray(given, dtype=np.float64)
+        values = np.asarray(texts_in_si(name, raw, dimension), dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         if isinstance(error, OutOfRange):
             raise
@@ -86,8 +83,19 @@ def exactly_one(owner: str, **choices: Any) -> tuple[str, Any]:
     return given.popitem()
 
 
+def texts_in_si(name: str, raw: ArrayLike, dimension: str) -> ArrayLike:
+    """Return numbers as they are given, strings with units as numbers in SI; OutOfRange where one cannot be read."""
+    given = np.asarray(raw)
+    if given.dtype.kind != "U":
+        return given
+    return np.reshape([_from_text(name, str(text), dimension) for text in given.flat], given.shape)
+
+
 def _from_text(name: str, text: str, dimension: str) -> float:
     try:
-        return quantity(text, dimension)
+        number = quantity(text, dimension)
     except RoughmdrError as error:
         raise OutOfRange(f"{name} is {short_repr(text)}: {error}") from None
+    if doubt := millipascals(text):
+        warn_limits([f"{name} is {short_repr(text)}: {doubt}"])
+    return number

@@ -1,13 +1,12 @@
 """The elastic constants of the two bodies in contact, and their effective modulus E*."""
 
-import inspect
 import math
 from collections.abc import Callable
 from typing import Any, TypedDict
 
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.schema.arguments import check_number, check_poisson
-from roughmdr.schema.wording import close_matches
+from roughmdr.schema.keywords import named_keywords
 
 
 class MaterialArguments(TypedDict, total=False):
@@ -23,6 +22,7 @@ class MaterialArguments(TypedDict, total=False):
     counter_poisson: float
 
 
+@named_keywords
 def effective_modulus(
     modulus: float | str, poisson: float, counter_modulus: float | str = math.inf, counter_poisson: float = 0.0
 ) -> float:
@@ -83,14 +83,9 @@ def check_one_body(effective_modulus: object, modulus: object, poisson: object) 
 def effective_modulus_of(function: Callable[..., Any], material: MaterialArguments) -> float:
     """Return E* [Pa] from the keyword arguments that a public ``function`` was given beside its own.
 
-    TypeError for an unknown keyword, RoughmdrError unless they tell E* in exactly one way, OutOfRange for a number.
+    RoughmdrError unless they tell E* in exactly one way, OutOfRange for a number.
     """
     given: dict[str, Any] = {name: value for name, value in material.items() if value is not None}
-    if unknown := set(given) - set(MaterialArguments.__annotations__):
-        name = min(unknown)
-        meant = close_matches(name, {*inspect.signature(function).parameters, *MaterialArguments.__annotations__})
-        hint = f"; did you mean {meant[0]!r}?" if meant else ""
-        raise TypeError(f"{function.__name__}() got an unexpected keyword argument {name!r}{hint}")
     try:
         check_one_body(*(given.get(name) for name in ("effective_modulus", "modulus", "poisson")))
         if counter := sorted(name for name in given if name.startswith("counter_")):

@@ -4,7 +4,7 @@ A reader is a callable that converts a value of the scene or raises RoughmdrErro
 """
 
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
@@ -12,11 +12,28 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema
 from roughmdr.schema.units import DIMENSIONLESS, example_of_unit, quantity, quantity_pattern
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
-class Section(BaseModel):
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")}
+
+
+class _Listed(ModelMetaclass):
+    """Lists of a section its own names, not those of pydantic."""
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__()} - _OF_PYDANTIC)
+
+
+class Section(BaseModel, metaclass=_Listed):
     """A table of a scene: keys that it does not declare are errors, and it is immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__()} - _OF_PYDANTIC)
 
 
 @runtime_checkable

@@ -94,6 +94,13 @@ def quantity(value: object, dimension: str) -> float:
     return number
 
 
+def millipascals(value: object) -> str:
+    """Return a doubt about a string in millipascals, which are seldom meant; empty for any other value."""
+    if isinstance(value, str) and value.rstrip().endswith("mPa"):
+        return "mPa are millipascals, 1e-3 Pa; if megapascals are meant, write MPa"
+    return ""
+
+
 def unit_factor(unit: str, dimension: str) -> Decimal:
     """Return the value of one ``unit`` in SI; no unit means SI. RoughmdrError where it is no unit of the dimension."""
     unit = unit.strip()

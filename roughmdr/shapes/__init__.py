@@ -1,6 +1,7 @@
 """The profiles of single asperities. CONTRIBUTING.md says how to add one: a file here and a line in ``SHAPES``."""
 
-from roughmdr.shapes.base import ProfileShape, Shape, SharedProfile, TabledShape
+from roughmdr.shapes.array_shapes import SharedProfile, TabledShape
+from roughmdr.shapes.base import ProfileShape, Shape
 from roughmdr.shapes.blunt_tips import CappedParaboloid, RoundedCone
 from roughmdr.shapes.flat_tips import FlatPunch, RoundedPunch, TruncatedCone, TruncatedParaboloid
 from roughmdr.shapes.mdr_table.shape import MdrTable

@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import cache
+from inspect import signature
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
@@ -14,6 +15,8 @@ from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
+from roughmdr.schema.arguments import texts_in_si
+from roughmdr.schema.keywords import check_keywords
 from roughmdr.schema.units import quantity
 from roughmdr.schema.wording import short_repr
 from roughmdr.shapes.profile import Profile, zero
@@ -42,6 +45,12 @@ class Shape(ABC):
     body_radius: ClassVar[tuple[str, ...]] = ()
     """The parameters whose sum is the radius where the body that the profile stands for ends."""
 
+    def __new__(cls, *_: Any, **given: Any) -> Self:
+        """Raise TypeError where a keyword is no parameter of the shape."""
+        if given:
+            check_keywords(cls.__name__, given, _arguments_of(cls))
+        return super().__new__(cls)
+
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         if "units" in vars(cls) and "parameter_sets" not in vars(cls):
@@ -49,7 +58,7 @@ class Shape(ABC):
 
     @abstractmethod
     def f(self, r: ArrayLike) -> Floats:
-        """Return the profile [m] at radii r >= 0 [m]."""
+        """Return the profile [m] at radii r >= 0 [m], which may be strings with a unit, such as "1 um"."""
 
     def df(self, r: ArrayLike) -> Floats:
         """Return f'(r) [1] at radii r >= 0 [m]."""
@@ -163,6 +172,12 @@ class Shape(ABC):
 
 
 @cache
+def _arguments_of(kind: type[Shape]) -> tuple[str, ...]:
+    """Return the names of the arguments of a shape."""
+    return tuple(signature(kind.__init__).parameters)[1:]
+
+
+@cache
 def _of_mpmath(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function of a profile for numbers of mpmath, without the series that floats need."""
     from mpmath import mp
@@ -230,45 +245,13 @@ class ProfileShape(Shape):
         return evaluate.G(self.profile, self.name, self.nondimensional(), check_radii("a", a))
 
 
-class SharedProfile(ProfileShape):
-    """A shape whose parameters are arrays, so that all asperities of an ensemble share one profile."""
-
-    shared = True
-    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble
-
-    @property
-    def columns(self) -> dict[str, Floats]:
-        """The parameters as equally long arrays."""
-        return dict[str, Any](self.parameters)
-
-    @classmethod
-    def from_columns(cls, columns: dict[str, Floats]) -> Self:
-        """Return the shape of such arrays; ShapeError as the shape itself."""
-        return cls(**columns)
-
-    @classmethod
-    def nondimensionalise(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
-        return cls(**parameters).nondimensional()
-
-    @property
-    def end(self) -> float:
-        return math.inf
-
-
-class TabledShape(ProfileShape):
-    """A shape whose parameters are arrays, of which each asperity of an ensemble has its own, all equally long.
-
-    Parameters of asperities are arrays [asperity, point], and params a row each.
-    """
-
-    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble, beside ``asperity``
-
-
 def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats:
-    """Return ``values`` as floats; OutOfRange unless all are finite, at least 0 and at most ``limit``."""
+    """Return ``values``, numbers or strings with units, in metres; OutOfRange unless all are from 0 to ``limit``."""
     try:
-        numbers = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
+        numbers = np.asarray(texts_in_si(name, values, "m"), dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, OutOfRange):
+            raise
         raise OutOfRange(f"{name} is {values!r}; it must be numbers, finite and at least 0") from None
     wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= limit))
     if wrong.any():

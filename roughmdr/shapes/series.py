@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import SharedProfile, check_one, check_positive, check_radii
+from roughmdr.shapes.array_shapes import SharedProfile
+from roughmdr.shapes.base import check_one, check_positive, check_radii
 from roughmdr.shapes.profile import Params, Profile
 
 _MAX_LOG = 690.0  # e^690 = 1e299: a little inside the range of a float

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _TEXTS_AT_ONCE = 2**16
+RUN_TIME = "run_time"
+"""The only variable that depends on the clock."""
 
 
 class Array(NamedTuple):
@@ -55,7 +57,7 @@ class Labelled(NamedTuple):
         stated = [(name, str(self.attrs.get(name, ""))) for name in STATED]
         digest = hashlib.sha256(repr(stated).encode(errors="replace"))
         for name, array in sorted((self.variables | self.coordinates).items()):
-            if name != "run_time":
+            if name != RUN_TIME:
                 told = [str(array.attrs.get(key, "")) for key in ("units", "flag_meanings")]
                 digest.update(repr((name, array.dims, told)).encode(errors="replace"))
                 for part in _bytes_of(array.values):
@@ -74,7 +76,12 @@ class Labelled(NamedTuple):
         """Convert to a Dataset."""
         import xarray as xr
 
-        return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
+        from roughmdr.storage.clocked import Clocked
+
+        variables: dict[str, Any] = dict(self.variables)
+        if RUN_TIME in variables:
+            variables[RUN_TIME] = Clocked(*variables[RUN_TIME])
+        return xr.Dataset(variables, coords=self.coordinates, attrs=self.attrs)
 
 
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:

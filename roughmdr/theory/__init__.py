@@ -19,3 +19,7 @@ __all__ = [
     "persson_separation",
     "rough_line",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, check_values
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import Moments
 from roughmdr.theory.equal_summits import Variable, representable
 from roughmdr.theory.gaussian import mean_over_summits
 
 
+@named_keywords
 def bush_gibson_thomas(
     *,
     separation: ArrayLike,
@@ -67,6 +69,7 @@ def bush_gibson_thomas(
     return mean_over_summits(True, separation, modulus, Moments.checked(m0, m2, m4), variable)
 
 
+@named_keywords
 def greenwood_elliptic(
     *,
     separation: ArrayLike,
@@ -113,6 +116,7 @@ def greenwood_elliptic(
     return mean_over_summits(False, separation, modulus, Moments.checked(m0, m2, m4), variable)
 
 
+@named_keywords
 def bush_gibson_thomas_asymptote(
     *, pressure: ArrayLike, rms_slope: float, **material: Unpack[MaterialArguments]
 ) -> Floats:

@@ -16,6 +16,7 @@ from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows
 from roughmdr.schema.arguments import check_number, check_scalar, check_values
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.shapes import Paraboloid
 from roughmdr.theory.heights import Distribution, Heights
@@ -31,6 +32,7 @@ class SummitMaterial(MaterialArguments, total=False):
     heights: Distribution | None
 
 
+@named_keywords
 def greenwood_williamson(
     *,
     separation: ArrayLike,
@@ -85,6 +87,7 @@ def greenwood_williamson(
     return _Summits.of(greenwood_williamson, radius, density, material).over(variable, separation)
 
 
+@named_keywords
 def fuller_tabor(
     *,
     separation: ArrayLike,
@@ -141,6 +144,7 @@ def fuller_tabor(
     return summits.over(variable, separation, lowest)
 
 
+@named_keywords
 def dmt_maugis(
     *,
     separation: ArrayLike,

@@ -13,6 +13,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import gauss
 from roughmdr.schema.arguments import check_number, check_values
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.equal_summits import representable
@@ -25,6 +26,7 @@ class RoughLine(NamedTuple):
     stiffness: Floats
 
 
+@named_keywords
 def rough_line(
     *,
     separation: ArrayLike,
@@ -92,6 +94,7 @@ def rough_line(
         return RoughLine(representable("force", force, given), representable("stiffness", stiffness, given))
 
 
+@named_keywords
 def line_heights(*, spectrum: Spectrum, length: float | str, points: int, seed: int) -> Floats:
     """Generate a periodic line of heights with random phases, at evenly spaced points.
 

@@ -14,6 +14,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.chebyshev import PiecewiseChebyshev
 from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
 from roughmdr.schema.arguments import check_number, check_values
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
 from roughmdr.spectrum import MapSpectrum, SelfAffine, Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.bush import check_load
@@ -26,6 +27,7 @@ _EXP_ZERO = 30.0  # exp(-x^2) is 0 beyond
 _LOG_MIN, _LOG_MAX = -350.0, math.log(25.0)
 
 
+@named_keywords
 def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **material: Unpack[MaterialArguments]) -> Floats:
     """Compute the real over nominal area of contact without adhesion: erf(sqrt(2) p/(E* h')).
 
@@ -65,6 +67,7 @@ def persson_contact_fraction(*, pressure: ArrayLike, rms_slope: float, **materia
     return np.asarray(erf(math.sqrt(2.0) * load))
 
 
+@named_keywords
 def persson_separation(
     *, pressure: ArrayLike, spectrum: Spectrum | MapSpectrum, gamma: float = 0.45, **material: Unpack[MaterialArguments]
 ) -> Floats:
@@ -120,6 +123,7 @@ def persson_separation(
     return representable("mean gap", gaps, given)
 
 
+@named_keywords
 def persson_pressure(
     *,
     separation: ArrayLike,

@@ -103,6 +103,13 @@ RUN_DIAGNOSTICS = _diagnostics(
         in_result=_adhering,
     ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
+    Diagnostic(
+        "effective_contacts",
+        "1",
+        "effective number of contacts that carry the load at closest approach: squared sum of the magnitudes of their "
+        "forces over the sum of the squares",
+        merge="fmin",
+    ),
     Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0

@@ -8,7 +8,7 @@ import pytest
 from scenes import scene
 
 import roughmdr as rm
-from roughmdr.aggregate import LoadingPath, simulate
+from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.aggregate.each_contact import EachContact, contacts_at
 from roughmdr.ensemble import Ensemble
 from roughmdr.numerics.arguments import Floats
@@ -33,12 +33,12 @@ def planned(adhesion: Any = None, interaction: Any = None, **asperities: Any) ->
 
 def law_and_contacts(
     one: Scene, ensemble: Ensemble, separation: Floats, step: int
-) -> tuple[dict[str, Any], EachContact]:
+) -> tuple[LoadSeparation, EachContact]:
     given: Any = {"effective_modulus": one.effective_modulus, "adhesion": one.adhesion_model}
     given["interaction"] = one.interaction_model
     path = LoadingPath.along(separation, unload=False, adhesive=one.work > 0.0)
     law = simulate(ensemble, path, variables=["force", "contact_radius_sum", "contact_count"], **given)
-    return law.variables, contacts_at(ensemble, separation, step, **given)
+    return law, contacts_at(ensemble, separation, step, **given)
 
 
 @pytest.mark.parametrize(
@@ -59,12 +59,17 @@ def law_and_contacts(
 @pytest.mark.parametrize("step", [1, 2, 4, 6])
 def test_forces_and_radii_add_up_to_the_law(adhesion: Any, interaction: Any, asperities: Any, step: int) -> None:
     one, ensemble = planned(adhesion, interaction, **asperities)
-    law, contacts = law_and_contacts(one, ensemble, NESTED, step)
+    whole, contacts = law_and_contacts(one, ensemble, NESTED, step)
+    law = whole.variables
     force, radius = law["force"][step], law["contact_radius_sum"][step]
     assert math.fsum(contacts.force) == pytest.approx(force, rel=1e-12, abs=1e-13 * np.abs(contacts.force).sum())
     assert math.fsum(contacts.radius) == pytest.approx(radius, rel=1e-12)
     assert np.count_nonzero(contacts.radius) == law["contact_count"][step]
     assert np.array_equal(contacts.active, contacts.radius > 0.0) or contacts.adhesion.cohesive
+    if step == NESTED.argmin():
+        size = np.abs(contacts.force)
+        effective = math.fsum(size) ** 2 / math.fsum(size * size)
+        assert whole.effective_contacts == pytest.approx(effective, rel=1e-12)
 
 
 def test_contacts_remember_how_near_the_flat_was() -> None:

@@ -188,3 +188,27 @@ def test_paths_of_few_steps_have_values_as_far_as_they_reach(path: list[str]) ->
     made = rm.run(scene(path={"separation": path}))
     there = made.roughmdr.at_separation("0.75 um")
     assert bool(there.force.isnull().all()) == (len(path) == 1)
+
+
+def test_numbers_that_only_jump_are_off_by_a_whole_jump_between_steps() -> None:
+    """Between 1 and 2 contacts there are 1 or 2: their error is half of one, however straight the line of steps is.
+
+    Their losses likewise are those of either step; the force, a smooth curve, is known to far less than its change.
+    """
+    one = 1e-6 * np.arange(6)
+    law = rm.load_separation(
+        ensemble(-one, radius=5e-5),
+        separation=np.append(1e-6, -one - 0.2e-6),
+        effective_modulus=1e8,
+        work=0.05,
+        variables=["force", "contact_count", "dissipated_energy"],
+    )
+    assert law.contact_count.values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    there = law.roughmdr.at_separation([-1.7e-6, -2.7e-6])
+    for name in ("contact_count", "dissipated_energy"):
+        found, error = there[name].values, there[f"{name}_interpolation_error"].values
+        for i, begin in enumerate((2, 3)):
+            for truth in law[name].values[begin : begin + 2]:
+                assert abs(found[i] - truth) <= error[i] * (1.0 + 1e-9)
+    change = np.diff(law.force.values)[2:4]
+    assert (there.force_interpolation_error.values < 0.5 * np.abs(change)).all()

@@ -81,3 +81,17 @@ def test_a_page_shows_markup_as_text_and_has_no_colours() -> None:
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
     assert not re.search(r"#[0-9a-f]{3}|rgb|black|white", page)
+
+
+def test_a_path_is_told_from_where_it_begins_and_values_from_the_least() -> None:
+    """A path has no number of values; swept ones that fall are told as those that rise."""
+    falls, rises = ["3 um", "2 um", "1 um"], ["1 um", "2 um", "3 um"]
+    for separation, said in ((falls, "3 to 1 um, loading"), (rises, "1 to 3 um, loading and unloading")):
+        law = rm.run(scene(batch=None, path={"separation": separation}))
+        assert lines(law.roughmdr)["path"] == f"separation {said}"
+    for works in (["10 mJ/m^2", "20 mJ/m^2", "50 mJ/m^2"], ["50 mJ/m^2", "20 mJ/m^2", "10 mJ/m^2"]):
+        swept = rm.run(scene(batch=None, path={"separation": falls}, sweep={"adhesion.work": works}))
+        assert lines(swept.roughmdr)["sweep"] == "adhesion_work 10 to 50 mJ/m^2 (3 values)"
+    path = {"separation": {"start": "3 um", "stop": "1 um", "steps": 4}}
+    stops = rm.run(scene(batch=None, path=path, sweep={"path.separation.stop": ["1 um", "0.5 um"]}))
+    assert lines(stops.roughmdr)["path"] == "separation 3 to 0.5 um, loading"

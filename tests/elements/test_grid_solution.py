@@ -80,6 +80,23 @@ def test_a_rectangular_patch_of_two_squares_bears_twice_the_force() -> None:
     assert double.patches().contacts == 2
 
 
+def test_the_area_of_a_contact_is_that_of_hertz_on_average() -> None:
+    """Wherever it lies between the points of the grid: cells at its edge that touch are not in it as a whole."""
+    points, side, rng = 64, 4.0, np.random.default_rng(1)
+    x = (np.arange(points) - points / 2) * side / points
+    areas, touched = [], []
+    for _ in range(6):
+        at = rng.uniform(-0.5, 0.5, 2) * side / points
+        grid = BoundaryElements(
+            -0.5 * ((x[:, None] - at[0]) ** 2 + (x - at[1]) ** 2), np.array([side, side]), periodic=False
+        )
+        assert grid.press(-1.0) == pytest.approx(4.0 / 3.0, rel=2e-3)
+        areas.append(grid.patches().area / math.pi)
+        touched.append(np.count_nonzero(grid.pressure) * grid.cell_area / math.pi)
+    assert np.mean(touched) > 1.01
+    assert np.mean(areas) == pytest.approx(1.0, abs=5e-3)
+
+
 def test_contacts_are_connected_across_the_rim() -> None:
     grid = BoundaryElements(np.zeros((8, 8)), np.ones(2))
     grid.pressure[[0, 7, 0, 7, 4], [0, 0, 7, 7, 4]] = 1.0

@@ -90,6 +90,13 @@ def test_jkr_loading_and_unloading_against_plain_quadrature() -> None:
     assert float(got.numerical_error[0]) < 1e-10
 
 
+def test_an_expected_law_is_no_more_right_than_the_kernels_that_it_integrates() -> None:
+    """Though the integral over equal paraboloids changes by less with the number of nodes."""
+    asked = scene({"shape": "paraboloid", "radius": 50.0 * UM}, None)
+    law = rm.run({**asked, "path": {"separation": ["2 um", "0 um"]}, "batch": {"estimator": "expected"}})
+    assert 2e-13 < float(law.numerical_error[0]) < 1e-11
+
+
 LAWS = [
     ({"shape": "paraboloid", "radius": LOGNORMAL}, None),
     ({"shape": "paraboloid", "radius": LOGNORMAL, "correlation": {"radius": -0.6}}, {"model": "jkr", "work": 0.05}),

@@ -13,6 +13,7 @@ from scenes import SCENE, ensemble, scene
 
 import roughmdr as rm
 from roughmdr.batch import foresee
+from roughmdr.model_error.refusal import Givens, check_contact_fraction, fraction_warnings, likely_cause
 
 TRAPS: list[tuple[dict[str, Any], str]] = [
     ({"material": {"modulus": 3, "poisson": 0.49}}, "effective modulus is 3.948 Pa: is kPa, MPa or GPa meant"),
@@ -61,6 +62,41 @@ def test_of_a_large_sweep_some_cells_are_checked_and_the_others_fail_with_the_re
         rm.run(scene(sweep=sweep, asperities=asperities))
 
 
+def givens(**changes: float) -> Givens:
+    usual = {"effective_modulus": 1e9, "work": 0.05, "height_std": 1e-6, "nominal_area": 1e-6, "contact_radius": 1e-5}
+    return Givens(**(usual | changes))
+
+
+def test_all_of_the_patch_may_be_in_contact_but_no_more() -> None:
+    """Steps without a value are passed over, and the fullest step is told with its separation."""
+    separation = np.array([3e-6, 2e-6, -1e-6, 1e-6])
+    check_contact_fraction(np.array([0.2, np.nan, 1.0, 0.5]), separation, givens())
+    check_contact_fraction(np.full(4, np.nan), separation, givens())
+    with pytest.raises(rm.OutOfRange, match=r"is 1\.2 times the nominal area at a separation of -1 um"):
+        check_contact_fraction(np.array([0.2, np.nan, 1.2, 1.001]), separation, givens())
+    with pytest.raises(rm.OutOfRange, match=r"is 1 times the nominal area at a separation of 3 um"):
+        check_contact_fraction(np.array([np.nextafter(1.0, 2.0), 0.9, 0.9, np.nan]), separation, givens())
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e3])
+def test_the_cause_is_the_same_in_other_units_of_length(unit: float) -> None:
+    """A contact half as wide as the patch is told, one of a fiftieth is not: there is no other cause then."""
+
+    def cause(radius: float, separation: float = 0.0, **changes: float) -> str:
+        lengths = {"height_std": 1e-3 * unit, "nominal_area": unit * unit, "contact_radius": radius * unit}
+        return likely_cause(separation * unit, givens(**(lengths | changes)))
+
+    assert "which is much for the patch" in cause(0.5)
+    assert cause(0.02).startswith("there are too many asperities on the patch")
+    assert cause(0.5, work=50.0) == "the work of adhesion is 50 J/m^2: is mJ/m^2 meant?"
+    assert "is kPa, MPa or GPa meant" in cause(0.02, effective_modulus=3.0)
+    assert "meant" not in cause(0.02, effective_modulus=3.0, work=0.0)
+    assert cause(0.02, separation=-0.04) == "the flat goes down to -40 sigma: end the path higher"
+    assert "sigma" not in cause(0.02, separation=-0.0005)
+    assert "sigma" not in cause(0.02, separation=-0.04, height_std=0.0)
+    assert "sigma" not in cause(0.02, separation=0.04)
+
+
 @pytest.mark.parametrize("estimator", ["expected", "sampled"])
 def test_the_expected_law_and_one_realisation_are_refused_alike(estimator: str) -> None:
     table = scene(
@@ -98,3 +134,13 @@ def test_large_contact_fractions_are_warned_of(stop: str, text: str) -> None:
         table["asperities"]["count"] = 4000
     with pytest.warns(rm.LimitWarning, match=text):
         rm.run(table)
+
+
+def test_a_warning_begins_where_independence_is_off_by_a_fifth() -> None:
+    """Beyond 5 % contact; from 30 % on contacts overlap. Nothing is said where the fraction is not known."""
+    for fraction in (0.0, 0.01, 0.05, float("nan")):
+        assert fraction_warnings(fraction) == []
+    for fraction in (0.051, 0.2, 0.3):
+        assert "taken to be independent" in fraction_warnings(fraction)[0]
+    for fraction in (0.31, 0.9, float("inf")):
+        assert "contacts overlap" in fraction_warnings(fraction)[0]

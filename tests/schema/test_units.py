@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -6,7 +7,7 @@ from hypothesis import strategies as st
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import adheres
-from roughmdr.schema.units import _BASES, dimension_of, format_quantity, quantity, spelled_in_results
+from roughmdr.schema.units import _BASES, axis_unit, dimension_of, format_quantity, quantity, spelled_in_results
 
 
 @pytest.mark.parametrize(
@@ -123,3 +124,62 @@ def test_a_result_spells_a_unit_so_that_its_dimension_is_found_again(unit: str) 
     assert "/" not in spelled_in_results(unit)
     value = quantity(format_quantity(0.25, spelled_in_results(unit)), unit)
     assert value == pytest.approx(0.25)
+
+
+LADDER = ["f", "p", "n", "u", "m", "", "k", "M", "G", "T"]
+POWERS = {"m2": 2, "m-2": -2}
+
+
+@pytest.mark.parametrize("dimension", _BASES)
+def test_prefixes_are_a_thousand_apart_in_every_spelling(dimension: str) -> None:
+    """Squares of lengths have the square of the prefix, and densities its inverse square."""
+    step = 1000.0 ** POWERS.get(dimension, 1)
+    for base, _ in _BASES[dimension]:
+        slash, unit = ("/", base[1:]) if base.startswith("/") else ("", base)
+        sizes = [quantity(f"1 {slash}{prefix}{unit}", dimension) for prefix in LADDER]
+        assert sizes[LADDER.index("")] == 1.0
+        assert [larger / smaller for smaller, larger in pairwise(sizes)] == pytest.approx(
+            [step] * (len(LADDER) - 1), rel=1e-12
+        )
+        centi = quantity(f"1 {slash}c{unit}", dimension)
+        assert centi == pytest.approx(sizes[LADDER.index("m")] * 10.0 ** POWERS.get(dimension, 1), rel=1e-12)
+        assert quantity(f"1 {slash}µ{unit}", dimension) == quantity(f"1 {slash}u{unit}", dimension)
+
+
+@pytest.mark.parametrize("prefix", [*LADDER, "c"])
+def test_so_many_squares_of_a_length_are_a_square_metre(prefix: str) -> None:
+    square = quantity(f"1 {prefix}m^2", "m2")
+    assert quantity(f"1 {prefix}m", "m") ** 2 == pytest.approx(square, rel=1e-12)
+    for spelled in (f"/{prefix}m^2", f"{prefix}m^-2", f"1/{prefix}m^2", f"1 / {prefix}m^2".replace(" / ", "/")):
+        assert quantity(f"4 {spelled}", "m-2") * square == pytest.approx(4.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(("word", "symbol"), [("nano", "n"), ("micro", "u"), ("milli", "m"), ("centi", "c"), ("", "")])
+def test_metres_are_spelled_out(word: str, symbol: str) -> None:
+    for ending in ("metre", "meter", "metres", "meters"):
+        assert quantity(f"2.5 {word}{ending}", "m") == quantity(f"2.5 {symbol}m", "m")
+    assert quantity("3 microns", "m") == quantity("3 micron", "m") == quantity("3 um", "m")
+    assert quantity("3 angstrom", "m") == quantity("0.3 nm", "m")
+
+
+@pytest.mark.parametrize("text", ["1e-400 m", "-1e-400 m", "1e-320 nm", "4e-325 m", "0.1e-323 pm"])
+def test_what_is_too_near_to_0_is_refused_not_taken_for_0(text: str) -> None:
+    with pytest.raises(RoughmdrError, match="too near to 0"):
+        quantity(text, "m")
+
+
+def test_the_smallest_floats_and_0_itself_are_numbers() -> None:
+    assert quantity("5e-324 m", "m") == 5e-324
+    assert quantity("5e-321 km", "m") == pytest.approx(5e-318, rel=1e-3)
+    for zero in ("0 nm", "-0.0 m", 0, "0e-999 m"):
+        assert quantity(zero, "m") == 0.0
+
+
+@pytest.mark.parametrize("unit", _BASES)
+def test_an_axis_has_numbers_from_1_to_1000(unit: str) -> None:
+    """Of squares to a million; its unit is one that is read, of that size."""
+    power = abs(POWERS.get(unit, 1))
+    for largest in (2.5e-9, 3.1e-4, 0.99, 7.0, 4.5e5):
+        size, name = axis_unit(largest, unit)
+        assert quantity(f"1 {name}", unit) == pytest.approx(size, rel=1e-12)
+        assert 1.0 <= largest / size < 1000.0**power

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.special import gamma
 
 import roughmdr as rm
 from roughmdr.springs import Springs
-from roughmdr.springs.profile import mdr_transform
+from roughmdr.springs.profile import FunctionProfile, mdr_transform
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 
@@ -272,3 +273,19 @@ def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     for draw in study.PICTURES.values():
         draw(result).savefig(tmp_path / "one.png", dpi=30)
         assert (tmp_path / "one.png").stat().st_size > 3000
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0, 3.5])
+def test_the_profile_of_a_function_converges_in_second_order(power: float) -> None:
+    """g and its integral G of f = r^n, at any radius: both ends of the row count as they should."""
+    profile, x = FunctionProfile(lambda r: r**power), np.array([0.37, 2.6])
+    kappa = 0.5 * math.sqrt(math.pi) * power * gamma(0.5 * power) / gamma(0.5 * (power + 1.0))
+    exact = kappa * x**power, kappa * x ** (power + 1.0) / (power + 1.0)
+    errors = []
+    for springs in (50, 100, 200, 400):
+        found = profile.at(x, springs)
+        errors.append([np.abs(each / one - 1.0).max() for each, one in zip(found, exact, strict=True)])
+    assert max(errors[-1]) < 1e-4
+    for coarse, fine in pairwise(errors):
+        assert fine[0] < 0.3 * coarse[0] + 1e-13
+        assert fine[1] < 0.3 * coarse[1] + 1e-13

@@ -14,6 +14,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_poisson, check_values
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import check_radii
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@named_keywords
 def pressure(
     shape: Shape,
     *,
@@ -92,6 +94,7 @@ def pressure(
     return _array("pressure", p, values, warn_limits(state.warnings))
 
 
+@named_keywords
 def surface_displacement(
     shape: Shape,
     *,
@@ -147,6 +150,7 @@ def surface_displacement(
     return _array("surface_displacement", u, values, warn_limits(state.warnings))
 
 
+@named_keywords
 def axis_stress(
     shape: Shape,
     *,

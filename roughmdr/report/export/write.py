@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.errors import LimitWarning, StoreError
+from roughmdr.errors import LimitWarning, StoreError, level_outside
 from roughmdr.pictures.select import cell_of, select
 from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
@@ -18,6 +18,7 @@ from roughmdr.report.export.table import Table, table_of
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import swept_sizes, swept_values
+from roughmdr.schema.keywords import with_options
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.units import quantity as number_in_si
@@ -60,6 +61,7 @@ class Export:
         return FORMATS[self.to]
 
 
+@with_options(Export)
 def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh: bool = False, **options: Any) -> None:
     """Write the mean law of a result, or its expected law, as a table for a finite-element code.
 
@@ -109,7 +111,7 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
     check_export(path, file, asked, fresh=fresh)
     document, told = document_of(data, file, asked)
     for warning in told:
-        warnings.warn(warning, LimitWarning, stacklevel=2)
+        warnings.warn(warning, LimitWarning, stacklevel=level_outside())
     write(document, path, asked)
 
 

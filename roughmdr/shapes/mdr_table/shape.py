@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import ShapeError
+from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import TabledShape
+from roughmdr.schema.arguments import texts_in_si
+from roughmdr.shapes.array_shapes import TabledShape
 from roughmdr.shapes.mdr_table import lookup, rows
 
 _MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
@@ -127,8 +128,10 @@ def rising(g: Floats) -> Floats:
 def _row(name: str, values: ArrayLike) -> Floats:
     """Return ``values`` as read-only floats; ShapeError unless they are finite numbers in a row."""
     try:
-        row = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
+        row = np.array(texts_in_si(name, values, "m"), dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, OutOfRange):
+            raise ShapeError(f"mdr_table: {error}") from None
         raise ShapeError(f"mdr_table: {name} is {values!r}; it must be a list of numbers") from None
     if row.ndim != 1 or row.size == 0:
         raise ShapeError(f"mdr_table: {name} has the shape {row.shape}; it must hold numbers in a row")

@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.base import SharedProfile, check_radii
+from roughmdr.schema.arguments import texts_in_si
+from roughmdr.shapes.array_shapes import SharedProfile
+from roughmdr.shapes.base import check_radii
 from roughmdr.shapes.tabulated import lookup
 
 _MIN_POINTS = 3
@@ -153,8 +155,10 @@ def _sine_integral(power: int, angle: Any) -> Any:
 def _column(name: str, values: ArrayLike) -> Floats:
     """Return ``values`` as read-only floats; ShapeError unless they are finite and begin with 0."""
     try:
-        column = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
+        column = np.array(texts_in_si(name, values, "m"), dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, OutOfRange):
+            raise ShapeError(f"tabulated: {error}") from None
         raise ShapeError(f"tabulated: {name} is {values!r}; it must be a list of numbers") from None
     if column.ndim != 1 or column.size < _MIN_POINTS:
         raise ShapeError(f"tabulated: {name} has the shape {column.shape}; it must hold at least 3 numbers in a row")

@@ -1,0 +1,68 @@
+"""Shapes whose parameters are arrays: one profile of all asperities, or a table of each."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+from roughmdr.shapes.base import ProfileShape
+
+
+class ArrayShape(ProfileShape):
+    """A shape whose parameters are arrays. Shapes of equal parameters are equal and have one hash."""
+
+    def _identity(self) -> tuple[object, ...]:
+        """Return the parameters as values that can be compared and hashed."""
+        return tuple(
+            tuple(value.items()) if isinstance(value, Mapping) else tuple(np.atleast_1d(value).tolist())
+            for value in self.parameters.values()
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ArrayShape) and type(other) is type(self) and self._identity() == other._identity()
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._identity()))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore a shape that was pickled; NumPy forgets that its parameters are read-only."""
+        vars(self).update(state)
+        for value in self.parameters.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+
+class SharedProfile(ArrayShape):
+    """A shape whose parameters are arrays, so that all asperities of an ensemble share one profile."""
+
+    shared = True
+    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        """The parameters as equally long arrays."""
+        return dict[str, Any](self.parameters)
+
+    @classmethod
+    def from_columns(cls, columns: dict[str, Floats]) -> Self:
+        """Return the shape of such arrays; ShapeError as the shape itself."""
+        return cls(**columns)
+
+    @classmethod
+    def nondimensionalise(cls, parameters: dict[str, Any]) -> tuple[Any, Any, Any]:
+        return cls(**parameters).nondimensional()
+
+    @property
+    def end(self) -> float:
+        return math.inf
+
+
+class TabledShape(ArrayShape):
+    """A shape whose parameters are arrays, of which each asperity of an ensemble has its own, all equally long.
+
+    Parameters of asperities are arrays [asperity, point], and params a row each.
+    """
+
+    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble, beside ``asperity``
