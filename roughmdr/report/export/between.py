@@ -18,7 +18,6 @@ def between_points(law: Law, part: StablePart, quantity: Quantity) -> Floats:
 
     Over the pressure both curves jump; what counts is the value less the slope times the pressure, the slope from the
     next points but one, as steps of the pressure may be tiny. Over steps that a load jumps the whole line may be off.
-    NaN of fewer than four steps.
     """
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
     steps = np.arange(law.separation.size - 1)[:, None] + np.arange(-REACH, REACH + 2)
@@ -60,5 +59,5 @@ def remedy(law: Law, bent: float, jumps: float) -> str:
     more_runs = max(_MARGIN * jumps / 0.75, 1.0) ** 2
     asked = [f"{math.ceil(steps * more_steps)} steps"] if more_steps > 1.0 else []
     if more_runs > 1.0:
-        asked.append(f"{math.ceil(runs * more_runs)} realisations, or the expected law, which has no jumps")
+        asked.append(f"{math.ceil(runs * more_runs)} realisations of random asperities, or the expected law without jumps")
     return f"compute about {' and '.join(asked)}"

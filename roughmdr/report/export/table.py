@@ -50,9 +50,9 @@ def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_t
     largest = float(np.abs(y).max())
     if not largest > 0.0 or x.size < 2:
         raise StoreError(f"the {branch} has no {quantity.name} at more than one step: there is no law to export")
-    lines = between_points(law, part, quantity)
-    if np.isnan(lines).any():
+    if law.separation.size < 4:
         raise StoreError(f"the {branch} has {law.separation.size} steps: what is between them is known of 4 or more")
+    lines = between_points(law, part, quantity)
     before, after = (np.pad(lines, ((0, 0), end)) for end in ((1, 0), (0, 1)))
     bent, jumps = np.maximum(before, after)
     between, allowed = bent + jumps, tolerances(y, error)
