@@ -59,5 +59,5 @@ def remedy(law: Law, bent: float, jumps: float) -> str:
     more_runs = max(_MARGIN * jumps / 0.75, 1.0) ** 2
     asked = [f"{math.ceil(steps * more_steps)} steps"] if more_steps > 1.0 else []
     if more_runs > 1.0:
-        asked.append(f"{math.ceil(runs * more_runs)} realisations of random asperities, or the expected law without jumps")
+        asked.append(f"{math.ceil(runs * more_runs)} realisations, or take the expected law, which has no jumps")
     return f"compute about {' and '.join(asked)}"
