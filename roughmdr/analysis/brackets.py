@@ -1,63 +1,38 @@
 """The two steps between which a curve first reaches a value, and linear interpolation between them."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.analysis.curves import Legs
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.result.between import AT_A_PLACE, REACH, off_line
 
-WAYS = 3
-"""With all steps, and without every other in both ways."""
 LOWER, UPPER, FRACTION = range(3)
 """Parts of a bracket: its two steps, and how far from the first to the second the value is."""
 
 
-class Steps(NamedTuple):
-    """Some of the steps of a path."""
-
-    kept: NDArray[np.int64]
-    wanted: NDArray[np.bool_]
-    """Whether each is on the branch."""
-    start: NDArray[np.int64]
-    """Where, among all steps, the leg of each begins."""
-
-    @classmethod
-    def ways(cls, legs: Legs) -> "tuple[Steps, ...]":
-        """Return all steps of a path, and those without every other in both ways."""
-        every = np.arange(legs.wanted.size)
-        return tuple(cls(kept, legs.wanted[kept], legs.start[kept]) for kept in (every, *legs.without_every_other()))
+def find_brackets(curve: Floats, values: Floats, *, legs: Legs) -> Floats:
+    """Return where curves [..., step] first reach values [value]: [..., value, part]; NaN where they never do."""
+    before, filled, usable = _joined(curve, legs)
+    return np.stack([_first(filled, value, before, usable) for value in values], axis=-2)
 
 
-def find_brackets(curve: Floats, values: Floats, *, ways: tuple[Steps, ...]) -> Floats:
-    """Return where curves [..., step] first reach values [value]: [..., value, way, part]; NaN where they never do."""
-    found = np.full((*curve.shape[:-1], values.size, WAYS, 3), np.nan)
-    for way, steps in enumerate(ways):
-        y = curve[..., steps.kept] if steps.kept.size < curve.shape[-1] else curve
-        before, filled, usable = _joined(y, steps)
-        for number, value in enumerate(values):
-            found[..., number, way, :] = _first(filled, value, before, usable, steps)
-    return found
-
-
-def _joined(y: Floats, steps: Steps) -> tuple[NDArray[np.int64], Floats, NDArray[np.bool_]]:
+def _joined(y: Floats, legs: Legs) -> tuple[Ints, Floats, NDArray[np.bool_]]:
     """Return, for each step but the first, the last one before it with a value, the curve, and whether the leg holds
     both; steps without a value have that of the last step with one.
     """
-    number = np.arange(steps.kept.size)
+    number = np.arange(y.shape[-1])
     missing = np.isnan(y)
     if not missing.any():
-        return number[:-1], y, steps.wanted[1:]
+        return number[:-1], y, legs.wanted[1:]
     last = np.maximum.accumulate(np.where(missing, 0, number), axis=-1)
     before = last[..., :-1]
-    usable = steps.wanted[1:] & (steps.kept[before] >= steps.start[1:])
-    return before, np.take_along_axis(y, last, axis=-1), usable
+    return before, np.take_along_axis(y, last, axis=-1), legs.wanted[1:] & (before >= legs.start[1:])
 
 
-def _first(y: Floats, value: float, before: NDArray[np.int64], usable: NDArray[np.bool_], steps: Steps) -> Floats:
+def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> Floats:
     """Return the first bracket of a value on each curve: [..., part]."""
-    if steps.kept.size < 2:
+    if y.shape[-1] < 2:
         return np.full((*y.shape[:-1], 3), np.nan)
     below, above = y <= value, y >= value
     crossed = (below[..., :-1] & above[..., 1:]) | (above[..., :-1] & below[..., 1:])
@@ -69,34 +44,50 @@ def _first(y: Floats, value: float, before: NDArray[np.int64], usable: NDArray[n
     rise = second - first
     with np.errstate(divide="ignore", invalid="ignore"):
         fraction = np.where(rise == 0.0, 0.0, (value - first) / rise)
-    parts = np.stack([steps.kept[lower], steps.kept[at + 1], fraction], axis=-1)
-    return np.where(reached[..., None], parts, np.nan)
+    return np.where(reached[..., None], np.stack([lower, at + 1, fraction], axis=-1), np.nan)
 
 
-def interpolate(curve: Floats, brackets: Floats, *, in_jumps: bool) -> tuple[Floats, Floats]:
-    """Return curves [..., step] at brackets [..., value, way, part], and how far that may be off: [..., value].
+def interpolate(
+    curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, legs: Legs, in_jumps: bool
+) -> tuple[Floats, Floats]:
+    """Return curves at brackets [..., value, part] of those that are ``reached``, and how far that may be off.
 
-    A jump may lie anywhere between two steps. To leave out one of them moves the value by half of the part of the jump
-    on its side, so that twice the largest change bounds the error. Of a curve that changes ``in_jumps`` only, and where
-    the value is not reached without the step, it is the difference to the farther of the two steps.
+    Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. At a given
+    value of the one, the other is off as its difference to the line of the bracket, curve over reached, is. Of a curve
+    that changes ``in_jumps`` only, and where too few steps are known, it is the difference to the farther step.
     """
-    curve = curve.reshape((1,) * (brackets.ndim - 2 - curve.ndim) + curve.shape)
-    reached = ~np.isnan(brackets[..., FRACTION])
-    first, second = (_at(curve, np.where(reached, brackets[..., part], 0.0)) for part in (LOWER, UPPER))
+    known = ~np.isnan(brackets[..., FRACTION])
+    lower, upper = (np.where(known, brackets[..., part], 0.0).astype(np.int64) for part in (LOWER, UPPER))
     fraction = brackets[..., FRACTION]
-    with np.errstate(invalid="ignore"):
-        found = np.where(fraction == 0.0, first, first + fraction * (second - first))
-        found = np.where(reached, found, np.nan)
-        value, others = found[..., 0], found[..., 1:]
-        change = np.fmax.reduce(np.abs(others - value[..., None]), axis=-1)
-        farther = np.maximum(np.abs(first - found), np.abs(second - found))[..., 0]
-    error = np.where(in_jumps | np.isnan(others).all(axis=-1), farther, 2.0 * change)
+    first, second = (_at(curve, step[..., None])[..., 0] for step in (lower, upper))
+    rise = second - first
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.where(known, np.where(fraction == 0.0, first, first + fraction * rise), np.nan)
+        error = np.maximum(np.abs(first - value), np.abs(second - value))
+        if not in_jumps:
+            near, there = _near(lower, upper, legs)
+            way = _at(reached, near)
+            over = way[..., REACH + 1] - way[..., REACH]
+            slope = np.where(over == 0.0, 0.0, rise / over)[..., None]
+            around = np.where(there, _at(curve, near) - slope * way, np.nan)
+            off = sum(off_line(_at(path, near), around, spreads=AT_A_PLACE))
+            error = np.where(np.isnan(off), error, off)
     return value, np.where(np.isnan(value), np.nan, error)
 
 
-def _at(curve: Floats, steps: Floats) -> Floats:
-    """Return curves [..., step] at steps [..., value, way]."""
+def _near(lower: Ints, upper: Ints, legs: Legs) -> tuple[Ints, NDArray[np.bool_]]:
+    """Return the steps around brackets, [..., value, step], and whether the leg of the bracket has each."""
+    away = np.arange(REACH + 1)
+    steps = np.concatenate([lower[..., None] - away[::-1], upper[..., None] + away], axis=-1)
+    near = np.clip(steps, 0, legs.start.size - 1)
+    start = legs.start[upper][..., None]
+    return near, (near == steps) & (near >= start) & ((near <= upper[..., None]) | (legs.start[near] == start))
+
+
+def _at(curve: Floats, steps: Ints) -> Floats:
+    """Return curves [..., step] at steps [..., value, step]."""
     runs, points = steps.shape[:-2], steps.shape[-2:]
-    flat = steps.astype(np.int64).reshape((1,) * (curve.ndim - 1 - len(runs)) + (*runs, -1))
-    taken = np.take_along_axis(curve, flat, axis=-1)
+    count = max(curve.ndim - 1, len(runs))
+    flat = steps.reshape((1,) * (count - len(runs)) + (*runs, -1))
+    taken = np.take_along_axis(curve.reshape((1,) * (count + 1 - curve.ndim) + curve.shape), flat, axis=-1)
     return np.asarray(taken.reshape(*taken.shape[:-1], *points))

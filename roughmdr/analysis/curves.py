@@ -125,17 +125,8 @@ class Legs:
             np.concatenate([[0], np.where(turns, np.arange(turns.size), 0)])
         )
         """The step at which the leg of each step begins: the last before the turning point."""
-        ends = np.append(turns, True)
-        ends[0] = True
-        self.ends: NDArray[np.bool_] = ends
-        """Whether each step is the first of the path, or the last of a leg."""
         if not self.wanted.any():
             raise StoreError(f"branch is {branch!r}; the path of this result has no {branch}")
-
-    def without_every_other(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the steps that are kept when every other is left out, in both ways; the ends of legs always are."""
-        even = np.arange(self.ends.size) % 2 == 0
-        return np.flatnonzero(even | self.ends), np.flatnonzero(~even | self.ends)
 
 
 def _holds(dataset: "xr.Dataset", name: str) -> bool:

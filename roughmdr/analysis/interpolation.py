@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.analysis.brackets import Steps, find_brackets, interpolate
+from roughmdr.analysis.brackets import find_brackets, interpolate
 from roughmdr.analysis.curves import (
     PER_AREA,
     Legs,
@@ -20,13 +20,14 @@ from roughmdr.analysis.curves import (
     whole,
 )
 from roughmdr.errors import OutOfRange
+from roughmdr.result.between import CONFIDENCE
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_BRACKET = ("_way", "_part")
+_BRACKET = "_part"
 _IN_JUMPS = ("contact_count", "dissipated_energy", "machine_dissipated_energy")
 """Curves that are constant between jumps."""
 
@@ -43,27 +44,30 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     legs = Legs(dataset, branch)
     own, beside = name.removeprefix("reference_"), " with reference=True" if is_reference(name) else ""
     reached = alone(curve(dataset, name, f"at_{own}{beside} needs"))
+    path = curve(dataset, control_of(dataset), "ds.roughmdr needs")
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
     brackets = xr.apply_ufunc(
         find_brackets,
         reached,
         points,
-        kwargs={"ways": Steps.ways(legs)},
+        kwargs={"legs": legs},
         input_core_dims=[["step"], [name]],
-        output_core_dims=[[name, *_BRACKET]],
+        output_core_dims=[[name, _BRACKET]],
         keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64],
-        dask_gufunc_kwargs={"output_sizes": dict(zip(_BRACKET, (3, 3), strict=True))},
+        dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
     )
     found: dict[str, xr.DataArray] = {}
     for label, array in _curves(dataset, name).items():
         value, error = xr.apply_ufunc(
             interpolate,
             array,
+            reached,
+            path,
             brackets,
-            kwargs={"in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
-            input_core_dims=[["step"], [name, *_BRACKET]],
+            kwargs={"legs": legs, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
+            input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
             output_core_dims=[[name], [name]],
             keep_attrs=False,
             dask="parallelized",
@@ -98,6 +102,7 @@ def _attributes(dataset: "xr.Dataset", name: str, branch: str) -> dict[str, str]
     missing = f"no value where the {branch} never reaches the {name.replace('_', ' ')}, or from steps without a value"
     about = {
         "branch": branch,
-        "comment": f"where it is first reached, by linear interpolation between steps; {missing}",
+        "comment": f"where it is first reached, by linear interpolation between steps; {missing}; "
+        f"interpolation errors, jumps between steps included, hold in {100 * CONFIDENCE:g} % of cases",
     }
     return {key: dataset.attrs[key] for key in ("title",) if key in dataset.attrs} | about

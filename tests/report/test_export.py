@@ -267,7 +267,7 @@ def test_one_cell_of_a_sweep_is_selected(mode: str, tmp_path: Path) -> None:
         ({"to": "csv", "error": 0.0}, "error is 0.0"),
         (
             {"to": "csv", "error": 1e-6},
-            r"known to [\d.e-]+ only: ask for an error of [\d.e-]+, or compute [\d.]+ times",
+            r"known to [\d.e-]+ only: ask for an error of [\d.e-]+, or compute about \d+ steps",
         ),
         ({"to": "csv", "select": {"adhesion.work": 0.05}}, "is not swept"),
     ],

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.report.export.thin import RELATIVE_FROM, chord_errors, knots, tolerances
+from roughmdr.report.export.thin import RELATIVE_FROM, knots, tolerances
 from roughmdr.report.export.units import UnitSystem
 
 Floats = NDArray[np.float64]
@@ -56,8 +56,7 @@ def test_a_curve_between_its_points_is_as_near_as_was_asked(scale: tuple[float, 
 
     t = np.linspace(0.0, 1.0, 1500)
     x, y = scale[0] * t, scale[1] * curve(t)
-    chords = chord_errors(x, y)
-    between = np.maximum(np.append(chords, 0.0), np.append(0.0, chords))
+    between = scale[1] * 144.0 / 8.0 * np.exp(12.0 * (t + t[1])) * t[1] ** 2  # by the second derivative
     kept = knots(x, y, tolerances(y, error) - between)
     fine = np.linspace(0.0, 1.0, 100_001)
     exact = scale[1] * curve(fine)
@@ -71,12 +70,6 @@ def test_knots_grow_as_the_inverse_root_of_the_error() -> None:
     counts = [knots(t, np.exp(5.0 * t), tolerances(np.exp(5.0 * t), error)).size for error in (1e-2, 1e-3, 1e-4, 1e-5)]
     orders = np.log(np.array(counts[:-1]) / counts[1:]) / np.log(10.0)
     np.testing.assert_allclose(orders, -0.5, atol=0.08)
-
-
-def test_the_error_of_chords_is_that_of_a_parabola() -> None:
-    x = np.array([0.0, 1.0, 3.0, 3.5])
-    np.testing.assert_allclose(chord_errors(x, 3.0 * x * x), 3.0 * np.diff(x) ** 2 / 4.0)
-    np.testing.assert_array_equal(chord_errors(x[:2], x[:2]), [0.0])
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from roughmdr.report.export.abaqus import write_abaqus, write_calculix
-from roughmdr.report.export.ansys import write_ansys
 from roughmdr.report.export.document import Document
-from roughmdr.report.export.moose import write_moose
-from roughmdr.report.export.plain import write_csv, write_json
+from roughmdr.report.export.syntax import write_abaqus, write_ansys, write_calculix, write_csv, write_json, write_moose
 
 _INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
 _AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
@@ -66,7 +63,7 @@ FORMATS = {
         Format(
             "moose",
             (".i",),
-            {"pressure": _AS_CALLED, "conductance": _AS_CALLED, "area": _AS_CALLED, "tangential": _AS_CALLED},
+            dict.fromkeys(("pressure", "conductance", "area", "tangential"), _AS_CALLED),
             write_moose,
         ),
         Format(
@@ -81,12 +78,7 @@ FORMATS = {
             with_tension=False,
         ),
         Format("csv", (".csv",), _ALL, write_csv),
-        Format(
-            "json",
-            (".json",),
-            _ALL,
-            write_json,
-        ),
+        Format("json", (".json",), _ALL, write_json),
     )
 }
 """Formats by their names, as --to takes them."""

@@ -12,6 +12,7 @@ from roughmdr.report.export.table import Table
 from roughmdr.report.export.thin import RELATIVE_FROM
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.trust import trust_of_result
+from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.layout import estimator_of, realizations_of
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CONDUCTANCES, TIME
@@ -51,7 +52,8 @@ def table_lines(
     yield (
         "interpolation error",
         f"lines over {over} are within {table.error:.2g} of the largest value, and where that is above "
-        f"{RELATIVE_FROM:g} of it within {table.relative_error:.2g} of the value itself",
+        f"{RELATIVE_FROM:g} of it within {table.relative_error:.2g} of the value itself, jumps between the steps "
+        f"included: estimated from the steps, which holds in {100 * CONFIDENCE:g} % of cases",
     )
     if math.isfinite(table.statistical_error):
         yield (

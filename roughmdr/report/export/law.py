@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
-from roughmdr.result.layout import cells_of, control_of, swept_sizes
+from roughmdr.result.layout import cells_of, control_of, estimator_of, realizations_of, swept_sizes
 from roughmdr.result.means import holds, mean_of
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import SEPARATION
@@ -62,6 +62,8 @@ class Law(NamedTuple):
     """In the dimension of its source, in SI: [step]."""
     standard_error: Floats
     """Of ``value`` over the realisations, NaN of one: [step]."""
+    realizations: int
+    """Number of which it is the mean; 0 of an expected law."""
 
 
 def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
@@ -82,7 +84,8 @@ def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
     steps = _leg(separation, cell.coordinates["branch"].values, branch)
     pressure, _, _ = _mean(cell, _PRESSURE, steps)
     value, error, source = _mean(cell, quantity, steps)
-    return Law(source, separation[steps], pressure, value, error)
+    runs = 0 if estimator_of(cell) == "expected" else realizations_of(cell)
+    return Law(source, separation[steps], pressure, value, error, runs)
 
 
 def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:

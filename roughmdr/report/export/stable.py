@@ -19,6 +19,8 @@ from roughmdr.schema.units import format_quantity
 class StablePart(NamedTuple):
     """A law over its stable steps, from far to near: its pressure rises from point to point."""
 
+    step: Floats
+    """Number of the step of the law, a fraction between two at zero pressure: [point]."""
     overclosure: Floats
     """[m]: [point]; 0 at zero pressure, negative in tension."""
     pressure: Floats
@@ -77,6 +79,7 @@ def stable_part(law: Law, branch: str, *, with_tension: bool, negligible: float)
     whole = np.interp(-law.separation[first:], -separation, stable)
     left_out = pressure[: last + 1] if not tense.size else pressure[:0]
     return StablePart(
+        with_zero(np.arange(pressure.size, dtype=float)),
         datum - separation,
         stable,
         with_zero(law.value),

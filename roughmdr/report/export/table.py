@@ -5,10 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
+from roughmdr.report.export.between import between_points, remedy
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart, stable_part
-from roughmdr.report.export.thin import RELATIVE_FROM, chord_errors, knots, tolerances
+from roughmdr.report.export.thin import RELATIVE_FROM, knots, tolerances
 from roughmdr.schema.units import format_quantity
+
+MOST_ERROR = 0.1
+"""Largest error that a table may have, over the value."""
 
 
 class Table(NamedTuple):
@@ -19,13 +23,13 @@ class Table(NamedTuple):
     steps: int
     """Number of stable steps, from which the knots were chosen."""
     error: float
-    """Largest interpolation error, by thinning and between the steps of the path, over the largest value."""
+    """Largest interpolation error, by thinning and between the steps, with jumps, over the largest value."""
     relative_error: float
     """Likewise over the value itself, where that is in the upper decade."""
     statistical_error: float
     """Largest standard error over the largest value; NaN of a single realisation."""
     departure: float
-    """Difference of the pressure to that of steps left out as a load jumps over them [Pa]; 0 where it is negligible."""
+    """Largest difference of the pressure to that of steps left out as a load jumps over them [Pa]."""
     warnings: tuple[str, ...]
     """Parts of the law that the table leaves out, in words."""
 
@@ -46,16 +50,20 @@ def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_t
     largest = float(np.abs(y).max())
     if not largest > 0.0 or x.size < 2:
         raise StoreError(f"the {branch} has no {quantity.name} at more than one step: there is no law to export")
-    chords = chord_errors(x, y)
-    between = np.maximum(np.append(chords, 0.0), np.append(0.0, chords))
-    allowed = tolerances(y, error)
+    if law.separation.size < 4:
+        raise StoreError(f"the {branch} has {law.separation.size} steps: what is between them is known of 4 or more")
+    lines = between_points(law, part, quantity)
+    before, after = (np.pad(lines, ((0, 0), end)) for end in ((1, 0), (0, 1)))
+    bent, jumps = np.maximum(before, after)
+    between, allowed = bent + jumps, tolerances(y, error)
     if not (np.isfinite(between / allowed).all() and np.isfinite(part.datum)):
         raise StoreError(f"no float holds the {quantity.name} of the {branch}: there is no law to export")
     if (between > allowed).any():
         reached = error * float((between / allowed).max())
+        ask = f"ask for an error of {1.1 * reached:.2g}, or " if 1.1 * reached < MOST_ERROR else ""
         raise StoreError(
             f"error is {error:g}, and between the steps of the path the {quantity.name} is known to {reached:.2g} "
-            f"only: ask for an error of {1.1 * reached:.2g}, or compute {_times(reached / error)} times as many steps"
+            f"only: {ask}{remedy(law, float((bent / allowed).max()), float((jumps / allowed).max()))}"
         )
     kept = knots(x, y, allowed - between)
     off = np.abs(np.interp(x, x[kept], y[kept]) - y) + between
@@ -71,14 +79,9 @@ def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_t
         float(off.max()) / largest,
         float((off[upper] / np.abs(y[upper])).max()),
         float(part.standard_error.max()) / largest,
-        part.departure if part.departure > negligible else 0.0,
+        part.departure,
         tuple(_warnings(part, branch, float(law.pressure.max()) * error)),
     )
-
-
-def _times(ratio: float) -> str:
-    """Return how many times as many steps reduce an error, which falls with their square, by this ratio."""
-    return f"{1.1 * ratio**0.5:.2g}"
 
 
 def _warnings(part: StablePart, branch: str, tolerance: float) -> list[str]:

@@ -18,19 +18,6 @@ def tolerances(y: Floats, error: float) -> Floats:
     return np.asarray(error * np.maximum(size, RELATIVE_FROM * size.max()))
 
 
-def chord_errors(x: Floats, y: Floats) -> Floats:
-    """Return how far a smooth curve departs from the line between neighbouring points: [point - 1].
-
-    That is the squared step times y''/8, y'' the larger of the second divided differences at both ends; 0 of two
-    points.
-    """
-    step = np.diff(x)
-    slope = np.diff(y) / step
-    halved = np.abs(np.diff(slope) / (step[1:] + step[:-1]))  # y''/2 at the inner points
-    ends = np.concatenate([halved[:1], halved, halved[-1:]]) if halved.size else np.zeros(2)
-    return np.asarray(0.25 * step * step * np.maximum(ends[:-1], ends[1:]))
-
-
 def knots(x: Floats, y: Floats, tolerance: Floats) -> NDArray[np.int64]:
     """Return the indices of the fewest points, first and last among them, whose lines stay within ``tolerance``.
 

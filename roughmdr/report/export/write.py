@@ -14,7 +14,7 @@ from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
 from roughmdr.report.export.header import origin_lines, table_lines
 from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
-from roughmdr.report.export.table import Table, table_of
+from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.given import given_result
 from roughmdr.result.layout import swept_sizes, swept_values
@@ -30,7 +30,7 @@ from roughmdr.storage.result_file import check_same_kind
 if TYPE_CHECKING:
     import xarray as xr
 
-_LEAST_ERROR, _MOST_ERROR = 1e-9, 0.1
+_LEAST_ERROR = 1e-9
 _BRANCHES = ("loading", "unloading")
 
 
@@ -49,8 +49,8 @@ class Export:
         _check("to", self.to, list(FORMATS))
         _check("quantity", self.quantity, [*QUANTITIES, "nodes"])
         _check("branch", self.branch, list(_BRANCHES))
-        if not _LEAST_ERROR <= self.error <= _MOST_ERROR:
-            raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {_MOST_ERROR:g}")
+        if not _LEAST_ERROR <= self.error <= MOST_ERROR:
+            raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
         if self.quantity not in self.format.quantities:
             able = [name for name, each in FORMATS.items() if self.quantity in each.quantities]
             raise StoreError(f"{self.to} has no table of quantity {self.quantity!r}; {', '.join(able)} have")

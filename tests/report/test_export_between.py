@@ -1,0 +1,145 @@
+"""Tables of laws with jumps between their steps: within their stated errors against eight times as many steps."""
+
+import contextlib
+import itertools
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner, Result
+from exports import header_of
+from scenes import ASPERITIES, scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.report.export.law import QUANTITIES, law_of
+from roughmdr.report.export.table import table_of
+from roughmdr.report.export.thin import RELATIVE_FROM
+from roughmdr.result.between import CONFIDENCE
+from roughmdr.storage.labelled import Labelled
+
+TIMES = 8
+
+
+def drawn(seed: int, steps: int, **changes: Any) -> dict[str, Any]:
+    """A scene with work, modulus, heights and a wide range of radii at random; ``adhesion`` adds to that of JKR."""
+    rng = np.random.default_rng(seed)
+    adhesion = changes.pop("adhesion", {})
+    made = {
+        "seed": seed,
+        "material": {"modulus": float(10 ** rng.uniform(6.5, 8.0)), "poisson": 0.49},
+        "adhesion": {"model": "jkr", "work": float(10 ** rng.uniform(-2.5, -1.0))},
+        "asperities": {
+            **ASPERITIES,
+            "count": 500,
+            "height": {"distribution": "normal", "std": float(10 ** rng.uniform(-6.5, -5.5))},
+            "radius": {"distribution": "lognormal", "mean": "50 um", "std": f"{rng.choice([5, 15, 30])} um"},
+        },
+        "conduction": {"conductivity": "400 W/m/K"},
+        "path": {"separation": {"start": "clear", "stop": f"{rng.uniform(-0.5, 1.0)} sigma", "steps": steps}},
+        "batch": {"realizations": 4},
+        "output": {"variables": ["force", "contact_area", "thermal_conductance"]},
+    }
+    made["path"]["unload"] = True
+    made["adhesion"] = None if adhesion is None else made["adhesion"] | adhesion
+    return scene(**made | changes)
+
+
+def coarser(fine: xr.Dataset) -> xr.Dataset:
+    half = fine.sizes["step"] // 2
+    return fine.isel(step=[*range(0, half, TIMES), *range(half, 2 * half, TIMES)])
+
+
+def ratio(fine: xr.Dataset, quantity: str, branch: str) -> float | None:
+    """The largest error of a table against the finer path over the smallest one that can be asked for; None if none."""
+    asked = QUANTITIES[quantity]
+    law, exact = (law_of(Labelled.of(each), asked, branch) for each in (coarser(fine), fine))
+    for error in np.geomspace(5e-4, 0.1, 47):
+        try:
+            table = table_of(law, asked, branch, error=error, with_tension=True)
+        except rm.StoreError:
+            continue
+        there = table.law
+        x = there.pressure if asked.over_pressure else there.overclosure - there.datum
+        other, value = (exact.pressure, exact.value) if asked.over_pressure else (-exact.separation, exact.value)
+        if asked.over_pressure:  # where a load comes by: at pressures above all before, or below all after
+            followed = np.maximum.accumulate(other) if branch == "loading" else np.minimum.accumulate(other[::-1])[::-1]
+            other, value = other[other == followed], value[other == followed]
+        within = (other > x[0]) & (other <= x[-1])
+        off = np.abs(np.interp(other[within], x, there.value) - value[within])
+        largest = float(np.abs(there.value).max())
+        over = off / np.maximum(np.abs(value[within]), RELATIVE_FROM * largest)
+        departure = 0.0 if asked.over_pressure else table.departure / law.pressure.max()
+        assert off.max() / largest <= 1.2 * table.error + departure
+        return float(over.max()) / (error + departure / RELATIVE_FROM)
+    return None
+
+
+def judged(seeds: range, **changes: Any) -> list[float]:
+    """The ratios of the tables of all quantities and branches that there are, of scenes with 60, 120 or 240 steps."""
+    found = []
+    for seed in seeds:
+        fine = rm.run(drawn(seed, TIMES * (60, 120, 240)[seed % 3] + 1, **changes))
+        for quantity, branch in itertools.product(("pressure", "area", "conductance"), ("loading", "unloading")):
+            with contextlib.suppress(rm.StoreError):  # in tension all along
+                found.append(ratio(fine, quantity, branch))
+    return [each for each in found if each is not None]
+
+
+def test_sampled_adhesive_tables_are_within_their_error() -> None:
+    found = judged(range(1, 4))
+    assert len(found) > 9
+    assert np.mean(np.array(found) <= 1.0) >= CONFIDENCE
+    assert np.median(found) > 0.5  # not within by far
+
+
+@pytest.mark.large
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"adhesion": {"model": "dugdale", "strength": "2 MPa"}},
+        {"adhesion": None},
+        {"batch": {"estimator": "expected"}},
+        {"batch": {"realizations": 4, "estimator": "stratified"}},
+        {"batch": {"realizations": 32}, "output": {"variables": ["force", "contact_area"], "keep": "statistics"}},
+    ],
+    ids=["jkr", "dugdale", "none", "expected", "stratified", "statistics"],
+)
+def test_tables_of_all_kinds_are_within_their_error(changes: dict[str, Any]) -> None:
+    found = judged(range(1, 21), **changes)
+    assert len(found) > 60
+    assert np.mean(np.array(found) <= 1.0) >= CONFIDENCE
+    assert np.median(found) > 0.5
+
+
+def test_an_error_that_jumps_do_not_allow_is_refused_with_what_would_do(tmp_path: Path) -> None:
+    def exported(name: str) -> Result:
+        call = ["export", str(tmp_path / f"{name}.nc"), "-o", str(tmp_path / f"{name}.csv"), "--to", "csv"]
+        return CliRunner().invoke(main, [*call, "--error", "0.01"])
+
+    rm.run(drawn(6, 60), tmp_path / "few.nc")
+    refused = exported("few")
+    assert refused.exit_code == 2
+    assert not (tmp_path / "few.csv").exists()
+    known, ask, steps, runs = re.search(
+        r"the pressure is known to (\S+) only: ask for an error of (\S+), or compute about (\d+) steps and (\d+) real",
+        " ".join(refused.output.split()),
+    ).groups()
+    assert 0.01 < float(known) < float(ask)
+    rm.export(tmp_path / "few.nc", tmp_path / "few.csv", to="csv", error=float(ask))
+    rm.run(drawn(6, int(steps), batch={"realizations": int(runs)}), tmp_path / "more.nc")
+    done = exported("more")
+    assert done.exit_code == 0, done.output
+    assert "jumps between the steps included: estimated from the steps, which holds in 97 % of cases" in header_of(
+        tmp_path / "more.csv"
+    )
+
+
+def test_of_three_steps_nothing_is_known_between() -> None:
+    few = rm.run(drawn(1, 3))
+    with pytest.raises(rm.StoreError, match="the loading has 3 steps: what is between them is known of 4 or more"):
+        rm.export(few, "few.csv", to="csv", error=0.1)
