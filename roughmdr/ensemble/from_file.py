@@ -94,7 +94,7 @@ class FromFile(Source):
 
     @property
     def sigma(self) -> float:
-        return float(np.std(self.asperities.height))
+        return self.asperities.spread
 
     def extremes(self, chance: float) -> Ensemble:
         return self.asperities

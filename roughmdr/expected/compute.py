@@ -113,6 +113,21 @@ def compute(
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
 
 
+@np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed
+def force_of_equal_shapes(source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion) -> Floats:
+    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn.
+
+    It is that of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
+    """
+    if len(adhesion.candidates) > 1:
+        one = as_ensemble(source, source.nodes(Rule.smooth(1))).nondimensional()
+        validity = jkr_validity(source.shape_name, source.sigma, one, effective_modulus, adhesion)
+        adhesion = adhesion.resolved(validity.jkr_error)
+    nodes = set_up(Problem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
+    total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
+    return np.asarray(source.expected_count * total[FORCE])
+
+
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
     """Return where the asperities have the force that they have under their mean field; None where there is none.
 

@@ -21,6 +21,8 @@ class Found(NamedTuple):
 
     x: Floats
     deviations: Floats
+    slopes: Floats
+    """Derivatives of the deviations: [step, parameter]."""
     converged: bool
 
 
@@ -72,7 +74,7 @@ def _follow(model: Model, start: Floats) -> Found:
         gtol=_GTOL,
         max_nfev=_MAX_STEPS,
     )
-    return Found(result.x, result.fun, result.status > 0)
+    return Found(result.x, result.fun, result.jac, result.status > 0)
 
 
 def _other_starts(model: Model) -> Floats:
