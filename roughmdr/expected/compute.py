@@ -114,10 +114,13 @@ def compute(
 
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed
-def force_of_equal_shapes(source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion) -> Floats:
-    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn.
+def force_of_equal_shapes(
+    source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion
+) -> tuple[Floats, float]:
+    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn, and its error bound
+    over its largest value.
 
-    It is that of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
+    They are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
     """
     if len(adhesion.candidates) > 1:
         one = as_ensemble(source, source.nodes(Rule.smooth(1))).nondimensional()
@@ -125,7 +128,9 @@ def force_of_equal_shapes(source: Source, path: LoadingPath, effective_modulus: 
         adhesion = adhesion.resolved(validity.jkr_error)
     nodes = set_up(Problem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
     total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
-    return np.asarray(source.expected_count * total[FORCE])
+    largest = float(np.abs(total[FORCE]).max())
+    error = _KERNEL_ERROR + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
+    return source.expected_count * total[FORCE], error
 
 
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:

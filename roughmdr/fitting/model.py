@@ -41,8 +41,9 @@ class Model:
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
         source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
         self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
+        self.jumps = source.equal_heights and scene.work > 0.0
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
-        self._step = 0.0
+        self._error = 0.0  # of the last law
         self.exact = True
         self.evaluations = 0
         self._last = _NONE
@@ -74,10 +75,11 @@ class Model:
         scene = self.scene(x)
         path = self._path_in(scene, x)
         if not (self._is_plain and isinstance(path, LoadingPath)):
-            return simulate_realization(scene, path, 0, [self.curve.quantity], "expected").variables[
-                self.curve.quantity
-            ]
-        force = force_of_equal_shapes(scene.asperities, path, scene.effective_modulus, scene.adhesion_model)
+            law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
+            self._error = law.numerical_error
+            return law.variables[self.curve.quantity]
+        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+        force, self._error = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
         return force if self.curve.quantity == "force" else force / (scene.nominal_area or np.nan)
 
     def _path_in(self, scene: Scene, x: Floats) -> LoadingPath | MachinePath:
@@ -117,10 +119,9 @@ class Model:
 
         The step of the differences is that at which they are best, the cube root of the error of the law.
         """
-        if not self._step:
-            self._step = min(max(self.law(x).numerical_error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
         middle = self.deviations(x)
-        return np.stack([self._slope(x, middle, self._step * direction) for direction in np.eye(x.size)], axis=1)
+        step = min(max(self._error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
+        return np.stack([self._slope(x, middle, step * direction) for direction in np.eye(x.size)], axis=1)
 
     def _slope(self, x: Floats, middle: Floats, change: Floats) -> Floats:
         """Return the derivative in one direction from the differences to both sides, or to that which has a law.

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
+_REACH, _CLOSER, _MAX_ROUNDS = 3.0, 0.25, 12  # standard errors within which jumps are sought, at first and closer
+_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])
+_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
+_AT_REST = 1e-4  # slope of the sum of squares, over the sum itself, in standard errors
 _POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
 
 
@@ -33,10 +37,12 @@ def search(model: Model) -> Found:
     machine, whose law takes longer, that is done at the separations which the measured force means.
     """
     if model.curve.control == "separation":
-        return _search(model)
-    with model.at_measured_separations():
-        near = _search(model)
-    return _follow(model, near.x)
+        found = _search(model)
+    else:
+        with model.at_measured_separations():
+            near = _search(model)
+        found = _follow(model, near.x)
+    return _settled(model, found) if model.jumps else found
 
 
 def _search(model: Model) -> Found:
@@ -49,7 +55,35 @@ def _search(model: Model) -> Found:
         if not best and not found:
             raise model.last_error
         found += [_follow(model, x) for x in best]
-    return min(found, key=lambda each: float(np.sum(np.square(each.deviations))))
+    return min(found, key=_cost)
+
+
+def _cost(found: Found) -> float:
+    return float(np.sum(np.square(found.deviations)))
+
+
+def _settled(model: Model, found: Found) -> Found:
+    """Return the least squares within a few standard errors of where the search by slopes has ended.
+
+    Where contacts jump, the sum of squares does so too as a jump passes a measured step: slopes do not see it beyond
+    the next step, and cannot follow its edge.
+    """
+    reach = _REACH
+    for _ in range(_MAX_ROUNDS):
+        left, sizes, right = np.linalg.svd(found.slopes, full_matrices=False)
+        axes = right.T * np.sqrt(_cost(found) / found.deviations.size) / np.maximum(sizes, _FLAT * sizes[0])
+        profiles = axes @ (axes.T / np.linalg.norm(axes, axis=1))
+        low, high = np.transpose([parameter.bounds for parameter in model.parameters])
+        ways = np.outer(_FRACTIONS, np.concatenate([axes, profiles], axis=1).T.ravel()).reshape(-1, found.x.size)
+        trials = np.clip(found.x + reach * ways, low, high)
+        costs = [float(np.sum(np.square(model.deviations(x)))) for x in trials]
+        if min(costs) < (1.0 - _FTOL) * _cost(found):
+            found = _follow(model, trials[int(np.argmin(costs))])
+        elif np.linalg.norm(left.T @ found.deviations) < _AT_REST * np.linalg.norm(found.deviations):
+            break
+        else:
+            reach *= _CLOSER
+    return found
 
 
 def _is_poor(model: Model, found: Found) -> bool:
