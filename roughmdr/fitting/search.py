@@ -1,9 +1,11 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from roughmdr.fitting.jumps import Surroundings, nearest_within
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.numerics.arguments import Floats
@@ -13,10 +15,8 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
-_REACH, _CLOSER, _MAX_ROUNDS = 3.0, 0.25, 12  # standard errors within which jumps are sought, at first and closer
-_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])
-_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
-_AT_REST = 1e-4  # slope of the sum of squares, over the sum itself, in standard errors
+_MAX_ROUNDS = 8  # of the search beside jumps
+_OTHER, _SAME = 1e-5, 1e-7  # changes of the sum of squares by which another interval is better, and by which an edge is
 _POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
 
 
@@ -63,26 +63,28 @@ def _cost(found: Found) -> float:
 
 
 def _settled(model: Model, found: Found) -> Found:
-    """Return the least squares within a few standard errors of where the search by slopes has ended.
-
-    Where contacts jump, the sum of squares does so too as a jump passes a measured step: slopes do not see it beyond
-    the next step, and cannot follow its edge.
-    """
-    reach = _REACH
+    """Return the least squares within a few standard errors of where the search by slopes has ended: see ``jumps``."""
+    low, high = np.transpose([parameter.bounds for parameter in model.parameters])
     for _ in range(_MAX_ROUNDS):
-        left, sizes, right = np.linalg.svd(found.slopes, full_matrices=False)
-        axes = right.T * np.sqrt(_cost(found) / found.deviations.size) / np.maximum(sizes, _FLAT * sizes[0])
-        profiles = axes @ (axes.T / np.linalg.norm(axes, axis=1))
-        low, high = np.transpose([parameter.bounds for parameter in model.parameters])
-        ways = np.outer(_FRACTIONS, np.concatenate([axes, profiles], axis=1).T.ravel()).reshape(-1, found.x.size)
-        trials = np.clip(found.x + reach * ways, low, high)
-        costs = [float(np.sum(np.square(model.deviations(x)))) for x in trials]
-        if min(costs) < (1.0 - _FTOL) * _cost(found):
-            found = _follow(model, trials[int(np.argmin(costs))])
-        elif np.linalg.norm(left.T @ found.deviations) < _AT_REST * np.linalg.norm(found.deviations):
+        near = Surroundings.of(found.deviations, found.slopes)
+
+        def place(u: Floats, near: Surroundings = near, middle: Floats = found.x) -> Floats:
+            return np.asarray(np.clip(middle + near.axes @ u, low, high))
+
+        def cost(u: Floats, near: Surroundings = near, place: Callable[[Floats], Floats] = place) -> float:
+            return float(np.sum(np.square(model.deviations(place(u))))) / near.variance
+
+        trials = near.around()
+        costs = list(map(cost, trials))
+        before = _cost(found) / near.variance
+        if min(costs) < (1.0 - _OTHER) * before:
+            found = _follow(model, place(trials[int(np.argmin(costs))]))
+            continue
+        u = np.zeros_like(near.goal) if near.at_rest else nearest_within(cost, near.goal)
+        if not cost(u) < (1.0 - _SAME) * before:
             break
-        else:
-            reach *= _CLOSER
+        x = place(u)
+        found = Found(x, model.deviations(x), model.slopes(x), found.converged)
     return found
 
 
