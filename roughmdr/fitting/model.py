@@ -134,7 +134,7 @@ class Model:
             raise self.last_error
         sizes = np.abs(pair)
         smaller = np.where(sizes[0] < sizes[-1], pair[0], pair[-1])
-        return np.where(sizes.min(axis=0) < _JUMP * sizes.max(axis=0), smaller, pair.mean(axis=0))
+        return np.asarray(np.where(sizes.min(axis=0) < _JUMP * sizes.max(axis=0), smaller, pair.mean(axis=0)))
 
     def _stretch(self, scene: Scene) -> Floats:
         """Return by how much the measured force stretches the spring of the machine [m]."""

@@ -42,7 +42,7 @@ def search(model: Model) -> Found:
         with model.at_measured_separations():
             near = _search(model)
         found = _follow(model, near.x)
-    return _settled(model, found) if model.jumps else found
+    return _settled(model, found) if model.jumps and _cost(found) > 0.0 and found.slopes.any() else found
 
 
 def _search(model: Model) -> Found:
