@@ -7,6 +7,7 @@ squares are at the point of the interval that is nearest to that.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -69,19 +70,19 @@ def nearest_within(cost: Cost, goal: Floats) -> Floats:
         level = cost(here)
         if cost(aim) <= level:
             return aim
-        far = _until(lambda t, here=here, ahead=ahead, level=level: cost(here + t * ahead) > level, (0.0, way), _INSIDE)
+
+        def beyond(t: float, start: Floats, limit: float, ahead: Floats = ahead) -> bool:
+            return cost(start + t * ahead) > limit
+
+        far = _until(partial(beyond, start=here, limit=level), (0.0, way), _INSIDE)
         jump = cost(here + (far + 2.0 * _INSIDE) * ahead) - level
         if jump < _LEAST_JUMP:
             break
         limit = level + 0.5 * jump
         normal = ahead.copy()
         for side in np.linalg.svd(ahead[None])[2][1:]:
-            start = here + _APART * side
-
-            def beyond(t: float, start: Floats = start, ahead: Floats = ahead, limit: float = limit) -> bool:
-                return cost(start + t * ahead) > limit
-
-            normal -= (_until(beyond, (far - 1.0, far + 1.0), _ROUGHLY) - far) / _APART * side
+            apart = partial(beyond, start=here + _APART * side, limit=limit)
+            normal -= (_until(apart, (far - 1.0, far + 1.0), _ROUGHLY) - far) / _APART * side
         normal /= np.linalg.norm(normal)
         edge = here + far * ahead
         normals.append(normal)
