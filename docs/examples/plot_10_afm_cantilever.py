@@ -26,7 +26,7 @@ SCENE = {
         "shape": "paraboloid",
         "count": 1,
         "patch": "100 um",
-        "height": {"distribution": "uniform", "loc": 0, "scale": "1 pm"},
+        "height": 0,
         "radius": "5 um",
     },
     "path": {"preload": "10 nN", "machine_stiffness": "0.05 N/m", "steps": 400, "unload": True},

@@ -26,8 +26,9 @@ def fit(measured: Path, scene: Path, output: Path, free: str, changes: tuple[str
 
     The curve is that in MEASURED, the law the expected one of SCENE.
 
-    MEASURED is CSV with columns such as "separation [um]", or "remote [um]" of a machine's spring, and "force [mN]" or
-    "pressure [kPa]", in the order of the measurement, loading then unloading; "force_error [mN]" weights the points.
+    MEASURED is CSV with columns such as "separation [um]", "remote [um]" of a machine's spring or "piezo [um]" behind a
+    cantilever (remote is minus that), and "force [mN]" or "pressure [kPa]", in the order of the measurement, loading
+    then unloading; "force_error [mN]" weights the points.
     SCENE gives all else and the values to start from. The fitted scene is in the output: "roughmdr run" computes it.
     """
     from roughmdr.fitting.fit import fit_labelled

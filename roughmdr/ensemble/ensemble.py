@@ -98,9 +98,9 @@ class Ensemble:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the heights [m]."""
+        """Standard deviation of the heights [m]; 0 where all are equal."""
         with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
-            return float(np.std(self.height)) if self.height.size else 0.0
+            return float(np.std(self.height - self.height[0])) if self.height.size else 0.0
 
     def nondimensional(self) -> Columns:
         """Return width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""

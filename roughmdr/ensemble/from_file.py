@@ -9,7 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import AfterValidator
 
 from roughmdr.ensemble.ensemble import Ensemble
@@ -94,7 +93,7 @@ class FromFile(Source):
 
     @property
     def sigma(self) -> float:
-        return float(np.std(self.asperities.height))
+        return self.asperities.spread
 
     def extremes(self, chance: float) -> Ensemble:
         return self.asperities

@@ -42,6 +42,11 @@ class Heights(NamedTuple):
     tail: UpperTail
     origin: float  # [m]
 
+    @classmethod
+    def all_at(cls, height: float) -> "Heights":
+        """Return heights that are all the same [m]."""
+        return cls(np.zeros_like, None, (0.0, 0.0), 0.0, UpperTail(0.0, 0.0), height)
+
     @property
     def low(self) -> float:
         """[m]; a negligible fraction of the summits is lower."""

@@ -135,6 +135,16 @@ class Source(Section):
         return "" if self.is_random else f"nothing of source {self.source!r} is drawn"
 
     @property
+    def equal_heights(self) -> bool:
+        """Whether all asperities of a population have one height."""
+        return False
+
+    @property
+    def all_alike(self) -> bool:
+        """Whether they are a given number of equal asperities, of which nothing is drawn."""
+        return False
+
+    @property
     def one_parameter(self) -> bool:
         """Whether just one shape parameter is random, in one population."""
         return False

@@ -127,6 +127,26 @@ def _neighbours_error(source: Source, total: Floats) -> Floats | None:
     return error_of_few(total[AREA], contacts, contacts * (1.0 - 1.0 / given), mean_inverse_distance(side, side))
 
 
+@np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed
+def force_of_equal_shapes(
+    source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion
+) -> tuple[Floats, float]:
+    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn, and its error bound
+    over its largest value.
+
+    They are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
+    """
+    if len(adhesion.candidates) > 1:
+        one = as_ensemble(source, source.nodes(Rule.smooth(1))).nondimensional()
+        validity = jkr_validity(source.shape_name, source.sigma, one, effective_modulus, adhesion)
+        adhesion = adhesion.resolved(validity.jkr_error)
+    nodes = set_up(Problem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
+    total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
+    largest = float(np.abs(total[FORCE]).max())
+    error = _KERNEL_ERROR + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
+    return source.expected_count * total[FORCE], error
+
+
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
     """Return where the asperities have the force that they have under their mean field; None where there is none.
 

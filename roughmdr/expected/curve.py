@@ -18,12 +18,13 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import ORDER, AdaptiveTable
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.profile import layout
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 
 # Of the largest value on a piece: about the error of the kernels themselves away from a fold.
 _RTOL, _RTOL_STIFFNESS = 2e-12, 1e-10
 _FOLD = 2.0**-9  # in s: a fold is smooth on its own scale, 1, and nearer to it roundings are seen
 _ROUNDING = 2.0**-44
+_ABOVE_FOLD = 2.0**-52  # in x: the rounding of an indentation, nearer to a fold than which no contact is known to be
 _NEGLIGIBLE_INDENTATION = 1e-7  # of the width of the heights
 _FIRST_EDGE = 1e-2  # likewise: the indentation at which the first piece ends without adhesion
 _LOG_COMMON_RANGE = math.log(1e6)  # heights over depths that differ by less share a table
@@ -186,6 +187,21 @@ def quantities_at(contact: Contact, x: Floats, branch: int, rows: tuple[int, ...
     if ENERGY in rows:
         quantities[ENERGY] = apply(kernels.energy, state, params)
     return np.array([quantities[row] for row in rows])
+
+
+def quantities_of(contact: Contact, indentation: Floats, branch: Ints, rows: tuple[int, ...]) -> Floats:
+    """Return the quantities [SI] of contacts at indentations [m] on their branches: [row, contact].
+
+    At a fold, where the stiffness is infinite, it is that beside it.
+    """
+    x = contact.reduced(indentation, contact.depth)
+    if STIFFNESS in rows and contact.law.adhesive:
+        x = np.maximum(x, _ABOVE_FOLD)
+    found = np.empty((len(rows), x.size))
+    for number in np.unique(branch).tolist():
+        on = branch == number
+        found[:, on] = quantities_at(contact, x[on], number, rows)
+    return np.asarray(scales_of(contact, rows)[:, None] * found)
 
 
 def over_s(quantities: Floats, s: Floats, rows: tuple[int, ...]) -> Floats:

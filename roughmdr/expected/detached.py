@@ -179,6 +179,8 @@ def _is_monotone(values: Floats) -> bool:
 
 def _are_smooth(heights: HeightTable) -> bool:
     """Return whether heights fade out towards the lowest and the highest, and their density has no kink between."""
+    if heights.all_equal:
+        return False
     low, high = heights.low[0], heights.high[-1]
     near = _NEAR_END * (high - low)
     if heights.between(np.array([low, high - near]), np.array([low + near, high])).max() > _NO_HEIGHTS:

@@ -32,6 +32,8 @@ def points_of(heights: HeightTable, lowest: float, count: int, name: str) -> Poi
 
     Heights are differences to the origin of the table. None where no summit is so high.
     """
+    if heights.all_equal:
+        return (np.zeros(1), np.ones(1)) if lowest <= 0.0 else (np.empty(0), np.empty(0))
     low, high = np.maximum(heights.low, lowest), heights.high
     kept = low < high
     parts = max(1, -(-_POINTS_PER_NODE[name] * count // (max(int(kept.sum()), 1) * _NODES.size)))
@@ -54,6 +56,8 @@ def rule_of(points: Points, count: int, name: str, offset: float) -> Points:
     those of others: equal fractions begin at that part of a cell, Gauss's rule has one height more from 1/2 on.
     """
     y, fractions = points
+    if y.size == 1:
+        return points
     if name == "gauss":
         return _gauss(points, count + int(offset >= 0.5))
     below = np.cumsum(fractions) - 0.5 * fractions

@@ -49,6 +49,9 @@ class HeightTable(NamedTuple):
     @classmethod
     def of(cls, heights: Heights) -> "HeightTable":
         """Tabulate heights; OutOfRange where no float holds their density."""
+        if heights.edges[0] == heights.edges[-1]:
+            none, one, zeros = np.zeros(1), np.array([0.0, 1.0]), np.zeros((1, 1, ORDER))
+            return cls(none, none, zeros, np.zeros((1, 3)), one, heights.origin, heights.tail)
 
         def density(y: Floats) -> Floats:
             return heights.density(y)[None]
@@ -88,8 +91,15 @@ class HeightTable(NamedTuple):
         below = np.concatenate([[0.0], np.cumsum(fraction)])
         return cls(table.low, table.high, coefficients, doubt, below, heights.origin, heights.tail)
 
+    @property
+    def all_equal(self) -> bool:
+        """Whether all heights are at the origin, where they have no density."""
+        return bool(self.low[0] == self.high[-1])
+
     def between(self, begin: Floats, end: Floats) -> Floats:
         """Return the fraction of all heights from ``begin`` to ``end``, as differences to the origin [m]."""
+        if self.all_equal:
+            return np.where((begin <= 0.0) & (end > 0.0), 1.0, 0.0)
         ends = np.array([begin, end])
         low, high = _fractions_below(self, ends.ravel()).reshape(ends.shape)
         return np.asarray(high - low)

@@ -36,6 +36,12 @@ class Intervals(NamedTuple):
         step, before, branch, begin, end = self
         return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
 
+    def around(self, height: float) -> "Intervals":
+        """Return the intervals that hold a height [m], at most one a step."""
+        kept = (self.begin <= height) & (height < self.end)
+        step, before, branch, begin, end = self
+        return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
+
     def up_to(self, ends: Floats) -> "Intervals":
         """Return the part of each interval below ``ends`` [step]; those that begin there are left out."""
         ends = ends[self.step]
@@ -72,10 +78,15 @@ def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, I
 
 
 def _without_branches(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
-    """Return one interval a step: all summits above the lowest height that a pair of the staircase holds."""
+    """Return one interval a step: all summits above the lowest height that a pair of the staircase holds.
+
+    A summit that the flat just touches is in contact only with adhesion.
+    """
     depth = contact.depth[0] if contact.law.adhesive else 0.0
     memory = path.memory
     lowest = np.minimum.reduceat(np.maximum(memory.bottom, memory.top - depth), memory.first[:-1])
+    if not contact.law.adhesive:
+        lowest = np.nextafter(lowest, math.inf)
     steps = np.arange(lowest.size)
     ones = np.ones_like(steps)
     in_contact = Intervals(steps, ones, ones, lowest, np.full_like(lowest, math.inf))

@@ -10,7 +10,7 @@ from roughmdr.aggregate.totals import ERROR, ROWS, STIFFNESS
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule
-from roughmdr.expected.curve import Curve, curves_of, curves_to_touch, scales_of
+from roughmdr.expected.curve import Curve, curves_of, curves_to_touch, quantities_of, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.integral import integrate
 from roughmdr.expected.intervals import Intervals, contact_intervals, has_branches, jump_energies
@@ -57,7 +57,8 @@ class QuadratureNode(NamedTuple):
     fraction: float
     contact: Contact
     curve: Curve | None
-    """Up to first touch where ``above`` is given; None where there is nothing to it, without adhesion."""
+    """Up to first touch where ``above`` is given; None where there is nothing to it, without adhesion, or where all
+    heights are equal."""
     heights: HeightTable
     above: MeanContact | None
     """The mean contact above first touch of all nodes that were set up with these heights; None where the curve goes
@@ -96,9 +97,10 @@ def _nodes(problem: Problem, rules: tuple[Rule, ...], *, shared: bool) -> list[Q
     nodes, rows, closest = problem.source.nodes(*rules), problem.rows, float(problem.path.separation.min())
     contacts = contacts_of(problem, nodes)
     heights_of = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
-    whole = [number for number, contact in enumerate(contacts) if not shared or _is_apart(contact)]
+    spread = [number for number, heights in enumerate(nodes.heights) if not heights_of[heights].all_equal]
+    whole = [number for number in spread if not shared or _is_apart(contacts[number])]
     groups: dict[Heights, list[int]] = {}
-    for number in sorted(set(range(len(contacts))).difference(whole)):
+    for number in sorted(set(spread).difference(whole)):
         groups.setdefault(nodes.heights[number], []).append(number)
     curves: dict[int, Curve] = {}
     above: dict[int, MeanContact] = {}
@@ -154,7 +156,8 @@ def totals_of(
     for mean in {id(node.above): node.above for node in nodes if node.above is not None}.values():
         products += mean.add_to(found, separation, np.flatnonzero(selected), stiffness_row)
     for node in nodes:
-        products += _add_node(node, found, separation, selected, rows)
+        add = _add_equal if node.heights.all_equal else _add_node
+        products += add(node, found, separation, selected, rows)
     total[[*rows, ERROR]] = found
     return total, products
 
@@ -184,6 +187,16 @@ def _add_node(
     for row, values in enumerate(found):
         total[row] += np.bincount(order, values, separation.size)
     return int(products)
+
+
+def _add_equal(
+    node: QuadratureNode, total: Floats, separation: Floats, selected: NDArray[np.bool_], rows: tuple[int, ...]
+) -> int:
+    """Add the contacts of a node whose heights are all equal to total[row, step]; return their number."""
+    own = node.in_contact.at_steps(selected).around(0.0)
+    indentation = node.heights.origin - separation[own.step]
+    total[:-1, own.step] += node.fraction * quantities_of(node.contact, indentation, own.branch, rows)
+    return own.step.size
 
 
 def undecided_of(nodes: list[QuadratureNode], steps: int) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.preload import Specimen, to_preload
-from roughmdr.aggregate.simulate import OF_MACHINE
+from roughmdr.aggregate.simulate import OF_MACHINE, simulate
 from roughmdr.ensemble import Source
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.expected.compute import compute
@@ -32,9 +32,19 @@ def compute_under_machine(
 ) -> LoadSeparation:
     """Return the expected law along the path of a machine, with the separation; arguments and errors as ``compute``.
 
-    SceneError for an energy that jumps lose: the jumps of a mean law are not those of patches.
+    Asperities of which nothing is drawn are their own mean. For others, SceneError for an energy that jumps lose: the
+    jumps of a mean law are not those of patches.
     """
     names = list(variables)
+    if source.all_alike:
+        return simulate(
+            source.ensemble(0, 0),
+            path,
+            effective_modulus=effective_modulus,
+            adhesion=adhesion,
+            variables=names,
+            interaction=interaction,
+        )
     if path.machine != FIXED_GRIPS and (lost := sorted(LOSSES.intersection(names))):
         raise SceneError(f"variables: {', '.join(lost)} of an expected law under a machine are not available")
     extreme = source.extremes(_CHANCE)

@@ -1,15 +1,14 @@
 """The law of a few asperities with weights, along the path of the flat: a plain sum over their contacts."""
 
-import math
-
 import numpy as np
 
+from roughmdr.aggregate.totals import AREA, COUNT, FORCE
+from roughmdr.expected.curve import quantities_of
 from roughmdr.expected.height_rules import Points
 from roughmdr.expected.node import QuadratureNode
-from roughmdr.kernels.elementwise import apply
-from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.numerics.arguments import Floats
 
-FORCE, AREA, COUNT = range(3)
+_ROWS = (FORCE, AREA, COUNT)
 _AT_ONCE = 2**21  # contacts
 
 
@@ -28,24 +27,7 @@ def weighted_sum(node: QuadratureNode, rule: Points, separation: Floats) -> Floa
         sizes = np.maximum(last[part] - first[part], 0)
         row = np.repeat(part, sizes)
         number = np.arange(row.size) - np.repeat(np.cumsum(sizes) - sizes, sizes) + first[row]
-        force, radius = _contacts(node, y[number] - (separation[steps[row]] - node.heights.origin), branches[row])
-        weight = weights[number]
-        touching = np.where(radius > 0.0, 1.0, 0.0)
-        for quantity, values in ((FORCE, force), (AREA, math.pi * radius * radius), (COUNT, touching)):
-            total[quantity] += np.bincount(steps[row], weight * values, separation.size)
+        indentation = y[number] - (separation[steps[row]] - node.heights.origin)
+        for quantity, values in enumerate(quantities_of(node.contact, indentation, branches[row], _ROWS)):
+            total[quantity] += np.bincount(steps[row], weights[number] * values, separation.size)
     return total
-
-
-def _contacts(node: QuadratureNode, indentation: Floats, branch: Ints) -> tuple[Floats, Floats]:
-    """Return force [N] and radius [m] of contacts at indentations [m] on their branches."""
-    contact = node.contact
-    x = contact.reduced(indentation, contact.depth)
-    if not contact.law.branched:
-        radius, force, _ = contact.radius_force_stiffness(apply(contact.law.state, x, contact.params))
-        return force, radius
-    force, radius = np.zeros_like(x), np.zeros_like(x)
-    for number in np.unique(branch):
-        on = branch == number
-        state = apply(contact.law.state_on_branch, x[on], float(number), contact.params)
-        radius[on], force[on], _ = contact.radius_force_stiffness(state)
-    return force, radius

@@ -42,9 +42,10 @@ def fit(
     Parameters
     ----------
     measured : path, pandas.DataFrame or xarray.Dataset
-        Columns ``separation``, or ``remote`` of a machine's spring, and ``force`` or ``pressure``, in the order of the
-        measurement; ``force_error`` is the standard deviation of each force. Units stand in the names, as in
-        "force [mN]"; without, they are SI. A Dataset has its own.
+        Columns ``separation``, ``remote`` of a machine's spring, or ``piezo`` that moves a cantilever to the surface
+        (``remote`` is minus that), and ``force`` or ``pressure``, in the order of the measurement; ``force_error`` is
+        the standard deviation of each force. Units stand in the names, as in "force [mN]"; without, they are SI. A
+        Dataset has its own.
     scene : path, dict or Scene
         Gives all else; its values are where the search starts. The measured path takes the place of its own.
     free : str or iterable of str

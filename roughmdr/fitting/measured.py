@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-_CONTROLS, _LOADS = ("separation", "remote"), ("force", "pressure")
+_CONTROLS, _LOADS = ("separation", "remote", "piezo"), ("force", "pressure")
 
 
 class MeasuredCurve(NamedTuple):
     """A measured curve in SI, row by row."""
 
     control: str
-    """ "separation", or "remote" of the far end of a machine's spring."""
+    """ "separation", or "remote" of the far end of a machine's spring, which is minus the extension of a piezo."""
     values: Floats
     """Of the control [m]."""
     quantity: str
@@ -53,9 +53,9 @@ def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters
     The message names file, line, column, value and what is allowed.
     """
     columns = read_columns(measured)
-    control = _one_of(columns, _CONTROLS)
+    given = _one_of(columns, _CONTROLS)
     load = _one_of(columns, _LOADS)
-    _check_names(columns, (control, load, f"{load}_error"))
+    _check_names(columns, (given, load, f"{load}_error"))
     numbers = {name: _read(columns, name) for name in columns.names}
     least = parameters + 3
     if len(columns.rows) < least:
@@ -63,15 +63,17 @@ def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters
     if not numbers[load].any():
         raise StoreError(f"{columns.origin}: {load} is 0 in every row; a curve with contact is needed")
     error = numbers.get(f"{load}_error")
-    return MeasuredCurve(control, numbers[control], load, numbers[load], error, columns.origin, columns.file)
+    control, values = ("remote", -numbers[given]) if given == "piezo" else (given, numbers[given])
+    return MeasuredCurve(control, values, load, numbers[load], error, columns.origin, columns.file)
 
 
-def _one_of(columns: Columns, names: tuple[str, str]) -> str:
-    """Return which of two columns there is; StoreError where it is none or both."""
+def _one_of(columns: Columns, names: tuple[str, ...]) -> str:
+    """Return which of some columns there is; StoreError where it is none or several."""
     found = [name for name in names if name in columns.names]
     if len(found) != 1:
         there = " and ".join(found) or f"neither among {', '.join(map(printable, columns.names)) or 'no columns'}"
-        raise StoreError(f"{columns.origin}: needs one column {' or '.join(names)}; it has {there}")
+        listed = " or ".join([", ".join(names[:-1]), names[-1]])
+        raise StoreError(f"{columns.origin}: needs one column {listed}; it has {there}")
     return found[0]
 
 

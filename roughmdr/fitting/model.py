@@ -11,6 +11,7 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.usual_path import machine_path
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
+from roughmdr.expected import force_of_equal_shapes
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OFFSET, Parameter, free_parameters
 from roughmdr.loading.machine import MachinePath
@@ -20,8 +21,9 @@ from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
 
 _NONE: tuple[Floats, Floats] = np.empty(0), np.empty(0)
-_STEP = 1e-4  # of x, in differences
-_FINE_STEP = 1e-3  # where the difference is a central one
+_LEAST_ERROR = 1e-12  # relative error of the force of a contact
+_LONGEST_STEP = 0.01  # of x, in differences
+_JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
 
 
 class Model:
@@ -37,6 +39,11 @@ class Model:
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
+        source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
+        self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
+        self.jumps = source.equal_heights and scene.work > 0.0
+        self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
+        self._error = 0.0  # of the last law
         self.exact = True
         self.evaluations = 0
         self._last = _NONE
@@ -49,25 +56,40 @@ class Model:
     def fitted(self, x: Floats) -> Scene:
         """Return the scene with these parameters along the whole path, whose run is the fitted law."""
         table = self._with(x)
-        table["path"][self.curve.control] = self._steps(x).tolist()
+        table["path"][self.curve.control] = (self.curve.values + self._offset(x)).tolist()
         table["batch"] = {"estimator": "expected"}
         return read(table)
 
     def law(self, x: Floats) -> LoadSeparation:
         """Return the law with these parameters; RoughmdrError where there is none."""
-        self.evaluations += 1
-        scene, steps, quantity = self.scene(x), self._steps(x), self.curve.quantity
+        scene, quantity = self.scene(x), self.curve.quantity
         names = [quantity] if scene.nominal_area is None else [quantity, "model_error_curve"]
-        path: LoadingPath | MachinePath
-        if self.curve.control == "remote" and self.exact:
-            path = machine_path(scene, steps)
-        else:
-            along = steps if self.curve.control == "separation" else steps + self._stretch(scene)
-            path = LoadingPath.along(along, unload=False, adhesive=scene.work > 0.0)
-        law = simulate_realization(scene, path, 0, names, "expected")
+        law = simulate_realization(scene, self._path_in(scene, x), 0, names, "expected")
         if not np.isfinite(law.variables[quantity]).all():
             raise OutOfRange("the expected law is not finite")
         return law
+
+    def _load(self, x: Floats) -> Floats:
+        """Return the load alone of the law with these parameters; RoughmdrError where there is none."""
+        self.evaluations += 1
+        scene = self.scene(x)
+        path = self._path_in(scene, x)
+        if not (self._is_plain and isinstance(path, LoadingPath)):
+            law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
+            self._error = law.numerical_error
+            return law.variables[self.curve.quantity]
+        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
+        force, self._error = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
+        return force if self.curve.quantity == "force" else force / (scene.nominal_area or np.nan)
+
+    def _path_in(self, scene: Scene, x: Floats) -> LoadingPath | MachinePath:
+        """Return the path of the flat or of its machine in the scene."""
+        if self.curve.control == "separation":
+            return self._path.relative_to(-self._offset(x))
+        steps = self.curve.values + self._offset(x)
+        if self.exact:
+            return machine_path(scene, steps)
+        return LoadingPath.along(steps + self._stretch(scene), unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
     def at_measured_separations(self) -> Iterator[None]:
@@ -86,47 +108,43 @@ class Model:
 
     def _deviations(self, x: Floats) -> Floats:
         try:
-            load = self.law(x).variables[self.curve.quantity]
+            found = (self._load(x) - self.curve.load) / self.curve.weight
         except RoughmdrError as error:
             self.last_error = error
-            return np.full(self.curve.load.size, np.inf)
-        return np.asarray((load - self.curve.load) / self.curve.weight)
+            found = np.full(self.curve.load.size, np.inf)
+        return found if np.isfinite(found).all() else np.full(self.curve.load.size, np.inf)
 
     def slopes(self, x: Floats) -> Floats:
-        """Return the derivatives [step, parameter] of the deviations for the search, one evaluation each."""
-        return self._slopes(x, _STEP, central=False)
+        """Return the derivatives [step, parameter] of the deviations; RoughmdrError where the law has none.
 
-    def fine_slopes(self, x: Floats) -> Floats:
-        """Return them with the error of a central difference, two evaluations each."""
-        return self._slopes(x, _FINE_STEP, central=True)
+        The step of the differences is that at which they are best, the cube root of the error of the law.
+        """
+        middle = self.deviations(x)
+        step = min(max(self._error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
+        return np.stack([self._slope(x, middle, step * direction) for direction in np.eye(x.size)], axis=1)
 
-    def _slopes(self, x: Floats, step: float, *, central: bool) -> Floats:
-        columns = [self._slope(x, step * direction, central=central) for direction in np.eye(x.size)]
-        return np.stack(columns, axis=1)
+    def _slope(self, x: Floats, middle: Floats, change: Floats) -> Floats:
+        """Return the derivative in one direction from the differences to both sides, or to that which has a law.
 
-    def _slope(self, x: Floats, change: Floats, *, central: bool) -> Floats:
-        """Return the derivative in one direction; to one side where the law ends, RoughmdrError where it has none."""
-        ends = list[tuple[float, Floats]]()
-        for side in (1.0, -1.0):
-            end = self.deviations(x + side * change)
-            if np.isfinite(end).all():
-                ends.append((side * float(change.sum()), end))
-            if ends and not central:
-                break
-        if not ends:
+        Where a contact jumps within one of them, the other is smaller by far, and alone is taken.
+        """
+        pair = np.array([self._deviations(x + change) - middle, middle - self._deviations(x - change)])
+        pair = pair[np.isfinite(pair).all(axis=1)] / change.sum()
+        if not pair.size:
             raise self.last_error
-        (first, above), (second, below) = [*ends, (0.0, self.deviations(x))][:2]
-        return np.asarray((above - below) / (first - second))
+        sizes = np.abs(pair)
+        smaller = np.where(sizes[0] < sizes[-1], pair[0], pair[-1])
+        return np.asarray(np.where(sizes.min(axis=0) < _JUMP * sizes.max(axis=0), smaller, pair.mean(axis=0)))
 
     def _stretch(self, scene: Scene) -> Floats:
         """Return by how much the measured force stretches the spring of the machine [m]."""
         area = scene.nominal_area if self.curve.quantity == "pressure" else None
         return self.curve.load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
 
-    def _steps(self, x: Floats) -> Floats:
-        """Return the control at each step in the scene [m]."""
-        zero = [p.value(float(number)) for p, number in zip(self.parameters, x, strict=True) if p.key == OFFSET]
-        return self.curve.values + sum(zero)
+    def _offset(self, x: Floats) -> float:
+        """Return what is added to the measured control [m]."""
+        zero = (p.value(float(number)) for p, number in zip(self.parameters, x, strict=True) if p.key == OFFSET)
+        return sum(zero, 0.0)
 
     def _with(self, x: Floats) -> dict[str, Any]:
         table = copy.deepcopy(self._table)

@@ -5,6 +5,8 @@ from functools import reduce
 from operator import getitem
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.scene import Scene
@@ -68,7 +70,7 @@ def free_parameters(free: list[str], scene: Scene, table: dict[str, Any], curve:
             if key in free[:position]:
                 raise RoughmdrError("is given twice")
             is_offset = key == OFFSET
-            parameters.append(_offset(scene, curve) if is_offset else _parameter(key, readers, table, scene))
+            parameters.append(_offset(scene, curve) if is_offset else _parameter(key, readers, table, scene, curve))
         except RoughmdrError as error:
             faults.append(Fault(key, "", str(error), "free"))
     if not free:
@@ -78,7 +80,9 @@ def free_parameters(free: list[str], scene: Scene, table: dict[str, Any], curve:
     return parameters
 
 
-def _parameter(key: str, readers: dict[str, Reader], table: dict[str, Any], scene: Scene) -> Parameter:
+def _parameter(
+    key: str, readers: dict[str, Reader], table: dict[str, Any], scene: Scene, curve: MeasuredCurve
+) -> Parameter:
     reader = readers.get(key)
     if reader is None or not reader.dimension:
         numeric = sorted(name for name, each in readers.items() if each.dimension and _entry(name, table) is not None)
@@ -99,26 +103,31 @@ def _parameter(key: str, readers: dict[str, Reader], table: dict[str, Any], scen
             raise RoughmdrError(f"is {start:g}; it must start above 0")
         most = _WIDEST if high is None else math.log(high / start)
         return Parameter(key, reader.dimension, start, 0.0, (-_WIDEST, min(most, _WIDEST)))
-    scale = _length(scene) if reader.dimension == "m" else abs(start) or 1.0
+    scale = _length(scene, curve) if reader.dimension == "m" else abs(start) or 1.0
     ends = [None if end is None else (end - start) / scale for end in (low, high)]
     bounds = max(-_FARTHEST, -_FARTHEST if ends[0] is None else ends[0]), ends[1] if ends[1] is not None else _FARTHEST
     return Parameter(key, reader.dimension, start, scale, bounds, (-1.0, 1.0))
 
 
 def _offset(scene: Scene, curve: MeasuredCurve) -> Parameter:
-    """Return the zero of the control, sought where the closest step presses some of the asperities."""
-    scale = _length(scene)
-    highest = float(scene.asperities.extremes(1e-3).height.max())
-    closest = (highest - float(curve.values.min())) / scale
-    nearby = closest - 6.0, closest
+    """Return the zero of the control, sought where the highest asperities are touched along the path, or were before
+    it within six standard deviations of their heights.
+    """
+    scale, source = _length(scene, curve), scene.asperities
+    highest, closest = float(source.extremes(1e-3).height.max()), float(curve.values.min())
+    way = max(float(np.ptp(curve.values)), 6.0 * source.sigma if source.sigma < math.inf else 0.0)
+    nearby = (highest - closest - way) / scale, (highest - closest) / scale
     bounds = min(nearby[0], 0.0) - _FARTHEST, max(nearby[1], 0.0) + _FARTHEST
     return Parameter(OFFSET, "m", 0.0, scale, bounds, nearby)
 
 
-def _length(scene: Scene) -> float:
-    """Return the length over which contacts change [m]: the heights' standard deviation, or an asperity's rise."""
-    source = scene.asperities
-    return source.sigma or float(source.extremes(1e-3).nondimensional().rise.max())
+def _length(scene: Scene, curve: MeasuredCurve) -> float:
+    """Return the length [m] over which the measured load changes: the range of the control times the mean load over the
+    largest; the rise of an asperity where the control stays the same.
+    """
+    size = np.abs(curve.load)
+    length = float(np.ptp(curve.values) * size.mean() / size.max())
+    return length or float(scene.asperities.extremes(1e-3).nondimensional().rise.max())
 
 
 def _entry(key: str, table: dict[str, Any]) -> Any:

@@ -1,9 +1,11 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from roughmdr.fitting.jumps import Surroundings, nearest_within
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.numerics.arguments import Floats
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
+_MAX_ROUNDS = 8  # of the search beside jumps
+_OTHER, _SAME = 1e-5, 1e-7  # changes of the sum of squares by which another interval is better, and by which an edge is
 _POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
 
 
@@ -21,6 +25,8 @@ class Found(NamedTuple):
 
     x: Floats
     deviations: Floats
+    slopes: Floats
+    """Derivatives of the deviations: [step, parameter]."""
     converged: bool
 
 
@@ -31,10 +37,12 @@ def search(model: Model) -> Found:
     machine, whose law takes longer, that is done at the separations which the measured force means.
     """
     if model.curve.control == "separation":
-        return _search(model)
-    with model.at_measured_separations():
-        near = _search(model)
-    return _follow(model, near.x)
+        found = _search(model)
+    else:
+        with model.at_measured_separations():
+            near = _search(model)
+        found = _follow(model, near.x)
+    return _settled(model, found) if model.jumps and _cost(found) > 0.0 and found.slopes.any() else found
 
 
 def _search(model: Model) -> Found:
@@ -47,7 +55,37 @@ def _search(model: Model) -> Found:
         if not best and not found:
             raise model.last_error
         found += [_follow(model, x) for x in best]
-    return min(found, key=lambda each: float(np.sum(np.square(each.deviations))))
+    return min(found, key=_cost)
+
+
+def _cost(found: Found) -> float:
+    return float(np.sum(np.square(found.deviations)))
+
+
+def _settled(model: Model, found: Found) -> Found:
+    """Return the least squares within a few standard errors of where the search by slopes has ended: see ``jumps``."""
+    low, high = np.transpose([parameter.bounds for parameter in model.parameters])
+    for _ in range(_MAX_ROUNDS):
+        near = Surroundings.of(found.deviations, found.slopes)
+
+        def place(u: Floats, near: Surroundings = near, middle: Floats = found.x) -> Floats:
+            return np.asarray(np.clip(middle + near.axes @ u, low, high))
+
+        def cost(u: Floats, near: Surroundings = near, place: Callable[[Floats], Floats] = place) -> float:
+            return float(np.sum(np.square(model.deviations(place(u))))) / near.variance
+
+        trials = near.around()
+        costs = list(map(cost, trials))
+        before = _cost(found) / near.variance
+        if min(costs) < (1.0 - _OTHER) * before:
+            found = _follow(model, place(trials[int(np.argmin(costs))]))
+            continue
+        u = np.zeros_like(near.goal) if near.at_rest else nearest_within(cost, near.goal)
+        if not cost(u) < (1.0 - _SAME) * before:
+            break
+        x = place(u)
+        found = Found(x, model.deviations(x), model.slopes(x), found.converged)
+    return found
 
 
 def _is_poor(model: Model, found: Found) -> bool:
@@ -72,7 +110,7 @@ def _follow(model: Model, start: Floats) -> Found:
         gtol=_GTOL,
         max_nfev=_MAX_STEPS,
     )
-    return Found(result.x, result.fun, result.status > 0)
+    return Found(result.x, result.fun, result.jac, result.status > 0)
 
 
 def _other_starts(model: Model) -> Floats:

@@ -10,7 +10,7 @@ from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
 
 _LEVEL = 0.95
-_LEAST_SLOPE = 1e-6  # of the largest: a combination that changes the law by less is not known at all
+_LEAST_SLOPE = 1e-6  # of the largest: a parameter, or a combination, that changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
 
 
@@ -66,12 +66,14 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     """
     from scipy.stats import norm, t
 
-    slopes = model.fine_slopes(found.x)
-    left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
-    if not sizes[0] > 0.0:
+    slopes = found.slopes
+    lengths = np.linalg.norm(slopes, axis=0)
+    if not lengths.max() > 0.0:
         keys = ", ".join(parameter.key for parameter in model.parameters)
         raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact")
-    inverse = right.T @ (left / np.maximum(sizes, _LEAST_SLOPE * sizes[0])).T
+    lengths = np.maximum(lengths, _LEAST_SLOPE * lengths.max())
+    left, sizes, right = np.linalg.svd(slopes / lengths, full_matrices=False)
+    inverse = right.T @ (left / np.maximum(sizes, _LEAST_SLOPE * sizes[0])).T / lengths[:, None]
     probability = 0.5 * (1.0 + _LEVEL)
     if model.curve.error is None:
         rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)

@@ -27,19 +27,22 @@ class Staircase(NamedTuple):
 
 def staircase(separation: Floats) -> Staircase:
     """Return the staircase at each step of a path that comes from infinity; separation is [m]."""
-    pairs: list[tuple[float, float]] = []
-    first, bottom, top = [0], [], []
+    lows, highs = list[float](), list[float]()
+    first, bottom, top = [0], list[float](), list[float]()
     for h in separation.tolist():
         # Later pairs have higher bottoms and lower tops. A flat at h removes pairs with bottom >= h and lifts lower
         # tops to h; of pairs with equal tops the first remains.
-        while pairs and pairs[-1][0] >= h:
-            pairs.pop()
-        lifted = [(low, max(high, h)) for low, high in pairs]
-        pairs = [pair for i, pair in enumerate(lifted) if i == 0 or pair[1] < lifted[i - 1][1]]
-        if not pairs or pairs[-1][1] > h:
-            pairs.append((h, h))
-        bottom += [low for low, _ in pairs]
-        top += [high for _, high in pairs]
+        while lows and lows[-1] >= h:
+            lows.pop()
+            highs.pop()
+        low = h
+        while highs and highs[-1] <= h:
+            low = lows.pop()
+            highs.pop()
+        lows.append(low)
+        highs.append(h)
+        bottom += lows
+        top += highs
         first.append(len(bottom))
     return Staircase(np.array(first, dtype=np.int64), np.array(bottom), np.array(top))
 

@@ -126,6 +126,8 @@ def _check_nominal(scene: Sections) -> None:
         raise mismatch(key, 'must be "expected" with [nominal]: the layer has the expected law of its asperities')
     if reason := scene.reason_against("expected"):
         raise mismatch("nominal", f"needs the expected law of the asperities: {reason}")
+    if scene.asperities.equal_heights:
+        raise mismatch("nominal", "needs asperities whose heights scatter: all heights are the same")
     if scene.asperities.nominal_area is None:
         raise mismatch("nominal", "needs asperities on a patch, which tells how many there are per area")
     if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):

@@ -81,7 +81,7 @@ LAW_VARIABLES = {
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
 """Quantities that a path can control, with their units: the last three by a machine."""
 
-MEASURED = {**CONTROLS, "force_error": "N", "pressure_error": "Pa"}
+MEASURED = {**CONTROLS, "piezo": "m", "force_error": "N", "pressure_error": "Pa"}
 """Columns that a measured curve can have, with their units."""
 
 TRAVEL = Variable("travel", "1", "way of the flat, or of the far end of its spring: clear at 0, at the preload at 1")

@@ -111,7 +111,6 @@ FROM_FILE = dict.fromkeys(("shape", "count", "patch", "height", "radius"))
     ("estimator", "changes", "reason"),
     [
         ("expected", {"realizations": 2}, "realizations: must be 1 with estimator 'expected'"),
-        ("expected", {"asperities": asperities(height="1 um")}, "cannot be 'expected': all heights are the same"),
         (
             "expected",
             {"asperities": asperities(correlation={"radius": 1.0})},

@@ -22,6 +22,7 @@ ROWS = [(3.0, 0.1), (2.0, 0.5), (1.0, 2.0), (2.0, 0.4)]
         ("separation force", " ", (1.0, 1.0)),
         ('"separation [um]","pressure (N/m^2)"', ",", (1e-6, 1.0)),
         ("remote/um, pressure / kPa", " , ", (1e-6, 1e3)),
+        ("piezo [um]\tforce [nN]", "\t", (-1e-6, 1e-9)),
     ],
 )
 def test_any_spelling_is_read(tmp_path: Path, header: str, separator: str, scale: tuple[float, float]) -> None:
@@ -32,7 +33,7 @@ def test_any_spelling_is_read(tmp_path: Path, header: str, separator: str, scale
     np.testing.assert_allclose(curve.values, scale[0] * np.array(ROWS)[:, 0], rtol=1e-15)
     np.testing.assert_allclose(curve.load, scale[1] * np.array(ROWS)[:, 1], rtol=1e-15)
     assert (curve.control, curve.quantity) == (
-        "remote" if "remote" in header else "separation",
+        "separation" if "separation" in header.lower() else "remote",
         "pressure" if "pressure" in header else "force",
     )
     assert curve.error is None
@@ -55,13 +56,16 @@ def test_errors_weight_the_points() -> None:
         ("separation,force,time\n1,2,3\n", r"column 'time': not known; it can be separation, force, force_error"),
         ("separation,force,force\n1,2,3\n", r"column 'force': is given twice"),
         ("separation,forse\n1,2\n", r"needs one column force or pressure; it has neither among separation, forse"),
-        ("separation,remote,force\n1,2,3\n", r"needs one column separation or remote; it has separation and remote"),
+        (
+            "separation,remote,force\n1,2,3\n",
+            r"needs one column separation, remote or piezo; it has separation and remote",
+        ),
         ("separation [kg],force\n1,2\n", r"column 'separation': unknown unit 'kg'; expected a unit of m"),
         ("separation [N],force\n1,2\n", r"column 'separation': 'N' is a unit of N; expected a unit of m"),
         ("separation,force\n1,0\n2,0\n3,0\n4,0\n", r"force is 0 in every row"),
         ("separation,force,force_error\n1,1,0\n2,1,1\n3,1,1\n4,1,1\n", r"line 2: force_error = '0': must be above 0"),
         ("# nothing\n", "is empty"),
-        ("1,2\n2,3\n", r"needs one column separation or remote; it has neither among 1, 2"),
+        ("1,2\n2,3\n", r"needs one column separation, remote or piezo; it has neither among 1, 2"),
     ],
 )
 def test_a_fault_is_told_with_its_place(tmp_path: Path, text: str, message: str) -> None:

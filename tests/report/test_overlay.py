@@ -240,7 +240,6 @@ def test_the_expected_line_is_the_run_with_that_estimator() -> None:
 @pytest.mark.parametrize(
     ("asperities", "reason"),
     [
-        ({**SUMMITS, "height": 1e-6}, "not drawn: all heights are the same"),
         ({**SUMMITS, "radius": 1e-300, "height": {"distribution": "normal", "std": 1e300}}, "not drawn: "),
     ],
 )

@@ -26,6 +26,8 @@ _MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
 
 def heights_of(distribution: Distribution) -> Heights:
     """Return heights of this distribution, whatever the shape parameters."""
+    if distribution.constant is not None:
+        return Heights.all_at(distribution.constant)
     relative = distribution.relative_to_loc
     edges, scale, tail = _edges(relative.from_scores, relative.scale)
     return Heights(relative.density, relative.fractions, edges, scale, tail, distribution.loc)
@@ -33,6 +35,8 @@ def heights_of(distribution: Distribution) -> Heights:
 
 def heights_given(distribution: Distribution, score: float, correlation: float) -> Heights:
     """Return the heights that go with a normal score of another quantity, by a normal copula."""
+    if distribution.constant is not None:
+        return Heights.all_at(distribution.constant)
     relative = distribution.relative_to_loc
     mean, spread = correlation * score, math.sqrt((1.0 - correlation) * (1.0 + correlation))
 

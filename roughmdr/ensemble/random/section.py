@@ -179,14 +179,20 @@ class RandomAsperities(PatchSource):
         return self.populations.sigma
 
     def reason_against(self, estimator: str) -> str:
-        """Return why the expected law is impossible: heights must be random, and more than a function of parameters."""
-        if estimator != "expected":
-            return ""
-        if any(each.height.constant is not None for each in self.populations.members):
-            return "all heights are the same"
-        if abs(self.populations.rank_correlation) == 1.0:
+        """Return why the expected law is impossible: random heights must be more than a function of parameters."""
+        if estimator == "expected" and abs(self.populations.rank_correlation) == 1.0:
             return "the height alone determines the parameter that is correlated with it"
         return ""
+
+    @property
+    def equal_heights(self) -> bool:
+        return any(each.height.constant is not None for each in self.populations.members)
+
+    @property
+    def all_alike(self) -> bool:
+        members = self.populations.members
+        constant = len(members) == 1 and not self.drawn_parameters and self.equal_heights
+        return constant and self.count is not None
 
     @property
     def one_parameter(self) -> bool:
