@@ -1,6 +1,7 @@
 """The law of asperities that feel each other in pairs, with totals as those of the sum over independent ones."""
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -161,6 +162,26 @@ def sum_coupled(
     if found.marked and interaction.beyond == "boundary_elements":
         return _on_grid(found, ensemble, separation, effective_modulus, names)
     return found
+
+
+def response_of_coupled(
+    ensemble: Ensemble, effective_modulus: float, interaction: Interaction
+) -> Callable[[float], tuple[float, float]]:
+    """Return force [N] and stiffness [N/m] of contacts without adhesion as a function of the separation [m], which is
+    asked for one after the other; NaN where there is no equilibrium.
+    """
+    from roughmdr.interaction.solve import Flat
+
+    flat = Flat(ensemble, effective_modulus, interaction, {"stiffness"})
+
+    def law(h: float) -> tuple[float, float]:
+        if interaction.beyond == "boundary_elements":
+            total = sum_coupled(ensemble, np.array([h]), effective_modulus, interaction, ["stiffness"], 0.0).total
+        else:
+            total, _ = _totals([flat.go(h)[0]], ensemble)
+        return float(total[totals.FORCE, 0]), float(total[totals.STIFFNESS, 0])
+
+    return law
 
 
 def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, along: "Adhering") -> CoupledTotals:

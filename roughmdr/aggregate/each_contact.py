@@ -1,6 +1,6 @@
 """The force and the contact radius of each asperity of an ensemble at one step of a path."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,10 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from roughmdr.interaction.jkr.account import Adhering
+    from roughmdr.interaction.solve import Coupled
 
 
 class EachContact(NamedTuple):
@@ -105,17 +109,17 @@ def _coupled(
     interaction: Interaction,
 ) -> tuple[Floats, Floats]:
     """Return force and radius of each asperity at a step, by the solution of all together along the path."""
+    names, path = set[str](), separation[: step + 1]
+    along: Adhering | Coupled
     if work > 0.0:
-        from roughmdr.interaction.jkr import path
+        from roughmdr.interaction.jkr.path import solve_path as solve_adhering
 
-        adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(), at=step)
-        solved, force, radius = adhering.steps[step], adhering.force, adhering.radius
+        along = solve_adhering(ensemble, path, effective_modulus, work, interaction, names, at=step)
     else:
         from roughmdr.interaction.solve import solve_path
 
-        above = np.unique(separation[separation >= separation[step]])[::-1]  # each begins from the one before
-        coupled = solve_path(ensemble, above, effective_modulus, interaction, set())
-        solved, force, radius = coupled.steps[-1], coupled.force, coupled.radius
+        along = solve_path(ensemble, path, effective_modulus, interaction, names, at=step)
+    solved, force, radius = along.steps[step], along.force, along.radius
     if not np.isfinite(solved.error):
         raise OutOfRange(f"there is no equilibrium of the contacts at step {step}, separation {separation[step]:g} m")
     return force, radius

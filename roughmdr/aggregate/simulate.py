@@ -1,6 +1,6 @@
 """The law of an ensemble along a path of the flat, or of the machine that moves it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -13,17 +13,19 @@ from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
+from roughmdr.interaction.mean_field import coupling_in, shift
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.loading import smooth_passage
-from roughmdr.loading.machine import FIXED_GRIPS, Jump, MachinePath
+from roughmdr.loading import steady_passage
+from roughmdr.loading.machine import FIXED_GRIPS, Jump, Machine, MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import LOSSES
 
 OF_MACHINE = {"separation", "remote"}
 """Variables that the machine gives."""
+_OF_ERROR = 0.1  # error of the force that is borne, over that asked for of coupled contacts
 
 
 def simulate(
@@ -113,23 +115,47 @@ def _separations(
     columns = ensemble.nondimensional()
     validity = jkr_validity(ensemble.shape, ensemble.spread, columns, effective_modulus, adhesion)
     adhesion = adhesion.resolved(validity.jkr_error)
+    kernels = choose(ensemble.shape, adhesion, columns.params)
+
+    def independent(machine: Machine) -> tuple[Floats, list[Jump]]:
+        given = kernels, ensemble.height, columns, effective_modulus, adhesion
+        return separations_of(*given, machine, path.demand, jumps=jumps)
+
     if interaction is None or not ensemble.height.size:
-        kernels = choose(ensemble.shape, adhesion, columns.params)
-        return separations_of(
-            kernels, ensemble.height, columns, effective_modulus, adhesion, path.machine, path.demand, jumps=jumps
-        )
+        return independent(path.machine)
+    if interaction.model == "mean_field":
+        return _under_mean_field(ensemble, path, effective_modulus, interaction, independent), []
+    from roughmdr.aggregate.coupled import response_of_coupled
 
-    def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
+    law = response_of_coupled(ensemble, effective_modulus, interaction)
+    highest, depth = float(ensemble.height[0]), ensemble.spread or float(columns.rise[0])
+    error = _OF_ERROR * interaction.error
+    return steady_passage.separations_of(law, path.demand, path.machine, highest, depth, error), []
+
+
+def _under_mean_field(
+    ensemble: Ensemble,
+    path: MachinePath,
+    effective_modulus: float,
+    interaction: Interaction,
+    independent: Callable[[Machine], tuple[Floats, list[Jump]]],
+) -> Floats:
+    """Return the separation at each step of a machine; ``independent`` has that of independent asperities.
+
+    A mean field c in series with a spring 1/k is a softer spring: F = F0(h + c F) with h = X + F/k is
+    F0(X + (c + 1/k) F). Under a dead load the force is known.
+    """
+    coupling = coupling_in(ensemble, interaction, effective_modulus)
+    if path.machine.is_dead_load:
+        return np.asarray(independent(path.machine)[0] + coupling * path.demand)
+
+    def law(separation: Floats) -> tuple[Floats, Floats]:
+        along = LoadingPath.along(separation, unload=False, adhesive=False)
+        names = ["force", "stiffness"]
         found = compute(
-            ensemble,
-            LoadingPath.along(separation, unload=False, adhesive=False),
-            effective_modulus=effective_modulus,
-            adhesion=adhesion,
-            variables=["force", "stiffness"],
-            interaction=interaction,
-        )
-        return found.variables["force"], found.variables["stiffness"]
+            ensemble, along, effective_modulus=effective_modulus, adhesion=Adhesion(), variables=names
+        ).variables
+        return found["force"], found["stiffness"]
 
-    highest = float(ensemble.height[0])
-    depth = ensemble.spread or float(columns.rise[0])
-    return smooth_passage.separations_of(law, path.demand, path.machine, highest, highest, depth), []
+    found = shift(law, path.demand, coupling + path.machine.compliance)
+    return np.asarray(path.demand + path.machine.compliance * found.force)

@@ -162,6 +162,12 @@ class Contact(NamedTuple):
             )
         in_contact = radius > 0.0
         a = np.where(in_contact, radius, self.radius)
+        if self.adhesion.cohesive:
+            delta, force, stiffness = apply_all(law.equilibrium_at_radius, a, self.radius, self.params)
+            c = apply(law.cohesive_at_radius, a, self.radius, self.params)
+            rise = float(shape.nondimensional()[1])
+            results = {"indentation": rise * delta, "force": self.force * force, "cohesive_radius": self.radius * c}
+            return results | {"stiffness": self.stiffness * stiffness}
         state = apply(law.state_of_radius, a, self.radius, self.params)
         beside_fold = state
         if law.adhesive and not law.iterative:  # other folds lie between the floats

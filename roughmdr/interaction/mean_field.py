@@ -96,20 +96,21 @@ def shift(independent: ForceAndStiffness, separation: Floats, coupling: float) -
     F - F0(h + c F) is concave in F, and each step ends at or below its first root, whatever the sign of c. OutOfRange
     where it has none: for c < 0 the contacts are stiffer than the half-space that their mean pressure raises.
     """
-    force, beyond = np.zeros_like(separation), separation
+    force, beyond, moves = np.zeros_like(separation), separation, np.ones(separation.size, np.bool_)
     for _ in range(_MAX_ITERATIONS):
         found, stiffness = independent(beyond)
         slope = 1.0 + coupling * stiffness
         if (unstable := slope <= 0.0).any():
             h = float(separation[unstable].max())
             raise OutOfRange(
-                f"interaction.model = 'mean_field' has no equilibrium at a separation of {h:g} m: the contacts are "
-                "stiffer than the surface, which the pressure between them raises against the flat; they are too near "
-                "to each other for a mean field"
+                f"interaction.model = 'mean_field' has no equilibrium with the flat, or the far end of its spring, at "
+                f"{h:g} m: the contacts are stiffer than the surface, which the pressure between them raises against "
+                "the flat; they are too near to each other for a mean field"
             )
-        step = np.maximum(found - force, 0.0) / slope
+        step = np.where(moves, np.maximum(found - force, 0.0) / slope, 0.0)
         force = force + step
         beyond = separation + coupling * force
-        if not (step > _RTOL * force).any():
+        moves &= step > _RTOL * force  # each by itself: what is asked for beside it changes nothing
+        if not moves.any():
             return Shift(coupling, beyond, force)
     raise OutOfRange("interaction.model = 'mean_field': no equilibrium was found")

@@ -1,7 +1,7 @@
 """Coupled asperities along a path of the flat: who can touch, the equilibrium at each separation, and the totals.
 
-Without adhesion contacts have no memory: each separation is solved once, from the largest down, from the contacts at
-the one before.
+Without adhesion contacts have no memory: each separation is solved once, where the flat first comes to it, from the
+contacts at the one before. What comes later on a path changes nothing.
 """
 
 import math
@@ -38,7 +38,7 @@ class Coupled(NamedTuple):
 
     steps: list[Step]
     radius: Floats
-    """The contact radius [m] of each asperity where the flat is closest."""
+    """The contact radius [m] of each asperity where the flat is closest, or at the step asked for."""
     force: Floats
     """The force [N] of each there."""
     visits: int
@@ -82,40 +82,68 @@ class Candidates(Placed):
         return True
 
 
+class Flat:
+    """A flat that goes from one separation to the next over coupled asperities, E* [Pa]; errors as ``solve_path``.
+
+    Stiffness and conductance where ``names`` asks for them.
+    """
+
+    def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction, names: set[str]) -> None:
+        self.candidates = Candidates(ensemble, effective_modulus, interaction)
+        self._modulus, self._names = effective_modulus, names
+        self._steps = dict[float, Step]()
+        self._last, self._x, self._rate = math.inf, np.empty(0), np.empty(0)
+        self._failures, self._lowest = 0, -math.inf
+        self.visits = 0
+
+    def go(self, separation: float) -> tuple[Step, State | None]:
+        """Return the totals at a separation [m], and the contacts: None where they are not found anew."""
+        h = separation / self.candidates.length
+        if h in self._steps:
+            return self._steps[h], None
+        if h <= self._lowest:
+            return Step(error=math.inf), None
+        found = _settle(self.candidates, h, self._last, self._x, self._rate)
+        self.visits += self.candidates.count
+        self._steps[h] = step = _totals(self.candidates, found, h, self._modulus, self._names)
+        if not math.isfinite(found.error):
+            self._failures += 1
+            self._lowest = h if self._failures == _FAILURES else self._lowest
+            return step, None
+        x, before = found.state.x, self._x
+        known = math.isfinite(self._last)
+        self._rate = (x[: before.size] - before) / (self._last - h) if known else np.full(before.size, np.nan)
+        self._x, self._last, self._failures = x, h, 0
+        return step, found.state
+
+
 def solve_path(
-    ensemble: Ensemble, separation: Floats, effective_modulus: float, interaction: Interaction, names: set[str]
+    ensemble: Ensemble,
+    separation: Floats,
+    effective_modulus: float,
+    interaction: Interaction,
+    names: set[str],
+    at: int | None = None,
 ) -> Coupled:
     """Return coupled asperities at separations [m]; stiffness and conductance where ``names`` asks for them.
 
-    The ensemble has positions. SceneError where two asperities have one position; OutOfRange where a contact is not
-    representable.
+    Each contact is told where the flat is closest, or at step number ``at``. The ensemble has positions. SceneError
+    where two asperities have one position; OutOfRange where a contact is not representable.
     """
-    candidates = Candidates(ensemble, effective_modulus, interaction)
-    length = candidates.length
-    distinct, index = np.unique(-separation, return_inverse=True)
-    steps, visits, x, moved = list[Step](), 0, np.empty(0), np.empty(0)
-    last = math.inf
-    state: State | None = None
-    failures = 0
-    for h in (-distinct / length).tolist():
-        if failures == _FAILURES:
-            steps.append(Step(error=math.inf))
-            continue
-        found = _settle(candidates, h, last, x, moved)
-        visits += candidates.count
-        steps.append(_totals(candidates, found, h, effective_modulus, names))
-        failures += 1
-        if math.isfinite(found.error):
-            state, before, failures = found.state, x, 0
-            x = state.x
-            rate = (x[: before.size] - before) / (last - h) if math.isfinite(last) else np.full(before.size, np.nan)
-            moved, last = rate, h
+    flat = Flat(ensemble, effective_modulus, interaction, names)
+    told, steps, state = math.inf if at is None else separation[at], list[Step](), None
+    for h in separation.tolist():
+        step, found = flat.go(h)
+        steps.append(step)
+        if found is not None and (h < told if at is None else h == told):
+            state, told = found, h
     radius, force = np.zeros_like(ensemble.height), np.zeros_like(ensemble.height)
     if state is not None:
-        load, kept = state.contacts.load, candidates.kept[: state.x.size]
+        candidates = flat.candidates
+        load, kept, length = state.contacts.load, candidates.kept[: state.x.size], candidates.length
         radius[kept] = np.where(load > 0.0, state.contacts.radius, 0.0) * length
         force[kept] = math.pi * effective_modulus * length * length * load
-    return Coupled([steps[i] for i in index.ravel()], radius, force, visits)
+    return Coupled(steps, radius, force, flat.visits)
 
 
 def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Floats) -> Equilibrium:

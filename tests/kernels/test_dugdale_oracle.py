@@ -72,3 +72,18 @@ def test_a_contact_so_small_that_its_square_is_no_float_is_refused() -> None:
         rm.indent(
             shape, effective_modulus=4.76e9, work=0.003745, adhesion="dugdale", strength=2.7e89, indentation=1e-91,
         )  # fmt: skip
+
+
+@pytest.mark.parametrize("shape", [rm.Paraboloid(radius=4e-6), rm.PowerLaw(exponent=1.0, width=3e-6, rise=4e-7)])
+@pytest.mark.parametrize("tabor", [0.1, 1e-4, 1e-8])
+def test_a_given_radius_keeps_its_digits_far_below_the_range(shape: rm.Paraboloid | rm.PowerLaw, tabor: float) -> None:
+    """Contacts from far smaller than their zone to far larger: the indentation to rounding of its two terms."""
+    strength = tabor / rm.tabor(shape, effective_modulus=E, work=W, strength=1.0)
+    exact = DugdalePowerLaw(shape, E, W, strength)
+    for ratio in (1e8, 1e4, 30.0, 1.0, 1e-2):
+        state = exact.at(mp.mpf(ratio))
+        given = {"effective_modulus": E, "work": W, "adhesion": "dugdale", "strength": strength}
+        got = rm.indent(shape, **given, contact_radius=float(state.a))
+        terms = exact.jkr.g(state.a), exact.jkr.g(state.a) - state.delta
+        assert abs(float(got.indentation) - state.delta) <= 4e-15 * max(terms)
+        assert abs(float(got.cohesive_radius) - state.c) <= 4e-15 * state.c

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
@@ -17,11 +16,14 @@ from roughmdr.interaction.jkr.choose import jkr_kernels
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, evaluate
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.interface import JkrKernels
-from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.jumps import Avalanche, avalanche, settled
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
+_LONGEST = 0.5  # way on which pairs that overlap stay as they are where the flat rises, over its depth
+_NEARER, _LEAST = 0.9, 1e-11  # of the way to an event, and of the natural depth: how near it is come to
+_AT_REST = 1e-9  # residual over the natural depth of contacts for which the same pairs overlap as before
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
@@ -46,16 +48,18 @@ class Piece(NamedTuple):
 
 
 class Front:
-    """The highest asperities of an ensemble, under a flat that comes as close as ``lowest``."""
+    """The highest asperities of an ensemble, where the flat is."""
 
-    def __init__(self, placed: Placed, effective_modulus: float, work: float, lowest: float) -> None:
+    def __init__(self, placed: Placed, effective_modulus: float, work: float) -> None:
         self.placed, self._kernels = placed, jkr_kernels(placed.law)
         self._work = work / effective_modulus / placed.length
         if not (self._work > 0.0 and math.isfinite(self._work)):
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
         self._natural, self.made = _lone_scales(self._kernels, self._asperities, self._work)
-        self.bring_down(lowest)
+        self._dense: Dense | None = None
+        self.problem: Problem
+        self.stand_at(self.top)
 
     @property
     def top(self) -> float:
@@ -67,37 +71,61 @@ class Front:
         """The largest natural depth."""
         return float(self._natural.max(initial=0.0))
 
-    def bring_down(self, lowest: float) -> None:
-        """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
-        self.lowest = lowest
-        reach = lowest - self.depth
-        self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
+    def stand_at(self, h: float) -> None:
+        """Have the asperities that a flat may touch at a separation, and the pairs that overlap there."""
+        self._stands = h
+        needed = int(np.searchsorted(-self.placed.height, self.depth - h, side="right"))
+        have = 0 if self._dense is None else self.problem.natural.size
+        self._take(have if have >= needed else math.ceil(_GROWTH * needed))
 
     def _take(self, count: int) -> None:
         """Have the highest asperities."""
-        placed, kernels, interaction = self.placed, self._kernels, self.placed.interaction
+        placed, interaction = self.placed, self.placed.interaction
         count, self.next_height = min(count, placed.height.size), -math.inf
         if count < placed.height.size:
             self.next_height = float(placed.height[count])
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
-        x, y = np.ascontiguousarray(at.T)
-        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
-        depth = np.maximum(few.height - self.lowest, 0.0)
-        bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
-        self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
-        coincident.take_out(self.pairs, coupling.matrices)
-        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count])
+        pairs = coincident.find(at, self._bound(few), placed.sides)
+        if self._dense is None or self.problem.natural.size != count:
+            x, y = np.ascontiguousarray(at.T)
+            self._dense = Dense(x, y, placed.patch, interaction.boundary == "periodic")
+        elif coincident.are_same(pairs, self.problem.pairs):
+            return
+        coupling, natural = coincident.without(pairs, self._dense), self._natural[:count]
+        self.problem = Problem(self._kernels, few, coupling, pairs, interaction.order, self._work, natural)
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
-    def _extend(self, state: State) -> State:
-        """Return the state with more asperities, none of which is in contact."""
-        self._take(math.ceil(_GROWTH * state.t.size) + 1)
+    def _bound(self, asperities: Asperities) -> Floats:
+        """Return the radii of contacts alone under the flat as it stands, at least those with which they are made."""
+        depth, bound = asperities.height - self._stands, self.made[: asperities.height.size].copy()
+        for i in np.flatnonzero(depth > 0.0).tolist():
+            bound[i] = _radius(self._kernels, asperities, i, float(depth[i]), self._work)
+        return bound
+
+    def _fitted(self, state: State) -> State:
+        """Return the state among all asperities there are now, the last of which are not in contact."""
         more = self.problem.natural.size - state.t.size
+        if not more:
+            return state
         inside = np.append(state.inside, np.zeros(more, np.bool_))
         t, load = (np.append(each, np.zeros(more)) for each in (state.t, state.load))
         new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
         return new._replace(factors=state.factors)
+
+    def _settled(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state with those pairs overlapping that do so where the flat stands at h, and what jumps then."""
+        pairs = self.problem.pairs
+        self.stand_at(h)
+        begin, problem = self._fitted(state), self.problem
+        if coincident.are_same(pairs, problem.pairs) or not begin.inside.any():
+            return begin, []
+        known = np.append(state.potential, begin.potential[state.t.size :])
+        rest, one = settled(problem, begin._replace(potential=known))
+        bare = [each._replace(factors=None) for each in (begin, rest)]
+        event = Event("fold", int(np.argmax(begin.inside)), upwards=True)
+        piece = Piece(problem, np.arange(begin.t.size), bare[0], bare[0], event, one, bare[1])
+        return rest, [piece] if one.size else []
 
     def parted(self, separation: float) -> State:
         """Return the asperities without contact."""
@@ -113,16 +141,60 @@ class Front:
         new = evaluate(self.problem, inside, t, load, part.separation, none(self.problem))
         return new._replace(factors=part.factors)
 
+    def stopped(self, kept: NDArray[np.int64], part: State) -> State:
+        """Return the state of all where the flat stops within a piece, with the pairs that overlap there."""
+        self.stand_at(part.separation)
+        new = self.whole(kept, part)
+        return new if new.error <= _AT_REST or not new.inside.any() else settled(self.problem, new)[0]
+
     def go(self, state: State, h: float) -> tuple[State, list[Piece]]:
         """Return the state at a separation, and the way to it.
 
         NoEquilibriumError where no equilibrium is found.
         """
+        state, pieces = self._towards(state, h)
+        while state.separation != h:
+            state, more = self._towards(state, h)
+            pieces += more
+        return state, pieces
+
+    def _towards(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Go towards a separation; where pairs come to overlap on the way, or cease to, no farther than to an event.
+
+        It is narrowed down, so that the pairs overlap as they do where it happens.
+        """
+        begin, target, pairs = state.separation, h, self.problem.pairs
+        if h > begin and pairs.members.size and state.inside.any():
+            target = min(h, begin + _LONGEST * max(self.depth, self.top - begin))
+        least = max(_LEAST * self.depth, 8.0 * float(np.spacing(max(abs(begin), abs(self.top)))))
+        while True:
+            new, pieces = self._tried(state, target)
+            at = next((piece.end.separation for piece in pieces if piece.event is not None), target)
+            deepest = pairs if target > begin else self.problem.pairs
+            if at == target or not deepest.members.size or abs(target - begin) <= 4.0 * least:
+                return new, pieces
+            self.stand_at(at)
+            there = self.problem.pairs
+            self.stand_at(target)
+            if coincident.are_same(there, self.problem.pairs) and coincident.are_same(there, pairs):
+                return new, pieces
+            way = max(_NEARER * abs(at - begin), 2.0 * least)
+            self.stand_at(begin)
+            target = begin + math.copysign(way, h - begin)
+
+    def _tried(self, state: State, h: float) -> tuple[State, list[Piece]]:
+        """Return the state at a separation, and the way to it; the pairs overlap all along as at its lower end."""
+        before, after = list[Piece](), list[Piece]()
+        if h <= state.separation:
+            state, before = self._settled(state, h)
         new, pieces = self._advance(state, h)
         while not self._complete(new):
-            state = self._extend(state)
+            self._take(math.ceil(_GROWTH * state.t.size) + 1)
+            state = self._fitted(state)
             new, pieces = self._advance(state, h)
-        return new, pieces
+        if h > state.separation:
+            new, after = self._settled(new, h)
+        return new, [*before, *pieces, *after]
 
     def _advance(self, state: State, h: float) -> tuple[State, list[Piece]]:
         """Return the state at a separation, and the way to it; only asperities near contact are looked at meanwhile."""

@@ -19,7 +19,7 @@ contact radius a grows with s, on a flat tip as a = s - 1 up to s = 2. Notation 
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 
@@ -96,6 +96,32 @@ def force(s: float, params: Floats) -> float:
 def stiffness(s: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
     return law.radius_force_stiffness(s, params)[2]
+
+
+def edges_at_radius(radius: float, width: float, params: Floats) -> tuple[float, ...]:
+    """Both edges at a contact radius [m], as ``zone_edge`` returns them, but for a scale of s: that has no digits left
+    of a contact that is far smaller than its zone. NaN where there are no equilibria.
+    """
+    if params[COUNT] == 0.0:
+        return math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan
+    t = law.t_of_radius(radius, width, params)
+    a, da, g, dg = law.mdr_profile(t, params)
+    if law.flat and t <= 0.0:
+        t, a, g, da, dg = law.contact_edge(2.0, params)
+    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, 0.0, params)
+    return t, a, m, math.atan2(m, a), g, da, dg
+
+
+def equilibrium_at_radius(radius: float, width: float, params: Floats) -> tuple[float, float, float]:
+    """delta/rise, P/(2 E* width rise) and k/(2 E* width) at a contact radius [m]."""
+    _, delta, rise, push, growth = law.state_between(law.edges_at_radius(radius, width, params), params)
+    return delta, push, growth / rise
+
+
+def cohesive_at_radius(radius: float, width: float, params: Floats) -> float:
+    """c/width at a contact radius [m]."""
+    edges = law.edges_at_radius(radius, width, params)
+    return math.hypot(edges[1], edges[2])
 
 
 def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
