@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
@@ -12,7 +13,8 @@ _SEPARATED, _POWER = 0.18, 2.5
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """To first order: (a/D)^3 likewise, and the factor by which it grows with the contact fraction."""
 _CROWDED = 5.0
-"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``)."""
+"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``); to first
+order they make up for a part of what is left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""
 _SUMMITS = 1.3
@@ -21,6 +23,13 @@ _SUMMITS = 1.3
 _HILLS = 0.06
 """Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
 ratio of the slopes along and across."""
+
+_LOADING, _JUMP_POWER = 98.0, 3.0
+"""Error of the force of adhesive hills on loading, over the largest force and over this power of the radius with which
+they jump on over their wavelength, which goes as the work of adhesion: an attraction that has a range closes them
+earlier (``pipelines/adhesive_hills.py``)."""
+_UNLOADING = 0.12
+"""That on unloading, where the range of the attraction is a half of what JKR stretches a contact by."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -40,12 +49,26 @@ def coupling_error(
     """
     if ensemble is not None and ensemble.origin == "hills":
         return np.where(contact_fraction > 0.0, min(_HILLS * math.sqrt(ensemble.anisotropy), 1.0), 0.0)
-    separated = _SEPARATED * contact_fraction**_POWER
     if order == 1:
-        separated = _FIRST * contact_fraction**_THIRD * (1.0 + _FULLER * contact_fraction)
-    error = np.maximum(separated, crowding * (1.0 + _CROWDED * contact_fraction))
+        error = np.maximum(_FIRST * contact_fraction**_THIRD * (1.0 + _FULLER * contact_fraction), crowding)
+    else:
+        separated = _SEPARATED * contact_fraction**_POWER
+        error = np.maximum(separated, crowding * (1.0 + _CROWDED * contact_fraction))
     origin = "asperities" if ensemble is None else ensemble.origin
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
+
+
+def adhesive_hills_error(jump_on: float, ensemble: Ensemble, loading: NDArray[np.bool_]) -> Floats:
+    """Return what JKR adds to the error of hills at each step, over the largest force [1].
+
+    ``jump_on`` is the median radius [m] with which their contacts are made, 0 of none; ``loading`` the steps that come
+    before the closest approach.
+    """
+    if jump_on == 0.0:
+        return np.zeros(loading.size)
+    wide = min(jump_on / ensemble.wavelength, 1.0) if ensemble.wavelength > 0.0 else 1.0
+    early = _LOADING * wide**_JUMP_POWER
+    return np.minimum(np.where(loading, max(early, _UNLOADING), _UNLOADING), 1.0)
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:

@@ -35,6 +35,8 @@ class Adhering(NamedTuple):
     avalanches: list[Avalanche]
     """In SI."""
     pull_off: PullOff
+    jump_on: float
+    """Median radius [m] with which the contacts of that step are made when they are alone; 0 of none."""
     crowded: str
     """A warning where contacts overlap as soon as they are made; empty where they do not."""
 
@@ -99,6 +101,7 @@ class Account:
             visits,
             self._avalanches,
             self._pull_off(),
+            self._jump_on(),
             self._crowded(),
         )
 
@@ -157,6 +160,10 @@ class Account:
         area = math.pi * length * length * tension.radius_squares
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
+
+    def _jump_on(self) -> float:
+        touching = self._radius[self._front.placed.kept] > 0.0
+        return self._length * float(np.median(self._front.made[touching])) if touching.any() else 0.0
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
