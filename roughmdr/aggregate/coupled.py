@@ -167,7 +167,8 @@ def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, 
     error = found.error
     if ensemble.origin == "hills":
         loading = np.arange(separation.size) <= int(np.argmin(np.nan_to_num(separation, nan=np.inf)))
-        error = np.minimum(error + adhesive_hills_error(along.jump_on, ensemble, loading), 1.0)
+        largest = float(np.nanmax(np.abs(found.total[totals.FORCE]), initial=0.0))
+        error = np.minimum(error + adhesive_hills_error(along.pull_offs, largest, loading), 1.0)
     return found._replace(
         error=error,
         warnings=(along.crowded,) if along.crowded else (),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _SIDES = ("patch", "patch_x", "patch_y")
 _FORCE_PER_RADIUS = 0.5  # exponent: Hertz's force grows as the square root of the radius
-_OF_HILLS = ("resolution_error", "border_error", "area_share", "anisotropy", "wavelength")
+_OF_HILLS = ("resolution_error", "border_error", "area_share", "anisotropy")
 
 
 @dataclass(frozen=True)
@@ -90,11 +90,6 @@ class Ensemble:
     def anisotropy(self) -> float:
         """Ratio of the r.m.s. slopes of the map of hills across and along its ridges [1]."""
         return float(self.attrs.get("anisotropy", 1.0))
-
-    @property
-    def wavelength(self) -> float:
-        """Wavelength of the map of hills [m]; 0 where it is not known."""
-        return float(self.attrs.get("wavelength", 0.0))
 
     @property
     def area_share(self) -> float:

@@ -24,12 +24,9 @@ _HILLS = 0.06
 """Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
 ratio of the slopes along and across."""
 
-_LOADING, _JUMP_POWER = 98.0, 3.0
-"""Error of the force of adhesive hills on loading, over the largest force and over this power of the radius with which
-they jump on over their wavelength, which goes as the work of adhesion: an attraction that has a range closes them
-earlier (``pipelines/adhesive_hills.py``)."""
-_UNLOADING = 0.12
-"""That on unloading, where the range of the attraction is a half of what JKR stretches a contact by."""
+_LOADING, _UNLOADING = 0.7, 0.3
+"""Error of the force of adhesive hills, by legs, over the pull-off forces of their contacts: where the attraction has a
+range contacts close earlier than by JKR, and merge (``pipelines/adhesive_hills.py``, Tabor number 2)."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -58,17 +55,15 @@ def coupling_error(
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
 
 
-def adhesive_hills_error(jump_on: float, ensemble: Ensemble, loading: NDArray[np.bool_]) -> Floats:
+def adhesive_hills_error(pull_offs: float, largest: float, loading: NDArray[np.bool_]) -> Floats:
     """Return what JKR adds to the error of hills at each step, over the largest force [1].
 
-    ``jump_on`` is the median radius [m] with which their contacts are made, 0 of none; ``loading`` the steps that come
-    before the closest approach.
+    ``pull_offs`` is the sum of the pull-off forces of the contacts at closest approach, ``largest`` the largest force
+    [N]; ``loading`` are the steps up to there.
     """
-    if jump_on == 0.0:
+    if not largest > 0.0:
         return np.zeros(loading.size)
-    wide = min(jump_on / ensemble.wavelength, 1.0) if ensemble.wavelength > 0.0 else 1.0
-    early = _LOADING * wide**_JUMP_POWER
-    return np.minimum(np.where(loading, max(early, _UNLOADING), _UNLOADING), 1.0)
+    return np.minimum(np.where(loading, _LOADING, _UNLOADING) * (pull_offs / largest), 1.0)
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:

@@ -35,8 +35,8 @@ class Adhering(NamedTuple):
     avalanches: list[Avalanche]
     """In SI."""
     pull_off: PullOff
-    jump_on: float
-    """Median radius [m] with which the contacts of that step are made when they are alone; 0 of none."""
+    pull_offs: float
+    """About the sum of the pull-off forces [N] of the contacts of that step, each alone."""
     crowded: str
     """A warning where contacts overlap as soon as they are made; empty where they do not."""
 
@@ -101,7 +101,7 @@ class Account:
             visits,
             self._avalanches,
             self._pull_off(),
-            self._jump_on(),
+            self._pull_offs(),
             self._crowded(),
         )
 
@@ -161,9 +161,11 @@ class Account:
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
 
-    def _jump_on(self) -> float:
-        touching = self._radius[self._front.placed.kept] > 0.0
-        return self._length * float(np.median(self._front.made[touching])) if touching.any() else 0.0
+    def _pull_offs(self) -> float:
+        """Return the sum of 3/2 pi w R, R that of the paraboloid that jumps on with as large a contact."""
+        made = self._front.made[self._radius[self._front.placed.kept] > 0.0]
+        alone = 1.5 * math.pi * np.sqrt(self._front.work * made**3 / (2.0 * math.pi))
+        return self._modulus * self._length**2 * math.fsum(alone.tolist())
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""

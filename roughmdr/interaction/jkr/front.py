@@ -50,11 +50,12 @@ class Front:
 
     def __init__(self, placed: Placed, effective_modulus: float, work: float, lowest: float) -> None:
         self.placed, self._kernels = placed, jkr_kernels(placed.law)
-        self._work = work / effective_modulus / placed.length
-        if not (self._work > 0.0 and math.isfinite(self._work)):
+        self.work = work / effective_modulus / placed.length
+        """Work of adhesion over E* and the side of the patch."""
+        if not (self.work > 0.0 and math.isfinite(self.work)):
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
-        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self._work)
+        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
         self.bring_down(lowest)
 
     @property
@@ -83,10 +84,10 @@ class Front:
         x, y = np.ascontiguousarray(at.T)
         coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
         depth = np.maximum(few.height - self.lowest, 0.0)
-        bound = np.array([_radius(kernels, few, i, float(depth[i]), self._work) for i in range(count)]).reshape(count)
+        bound = np.array([_radius(kernels, few, i, float(depth[i]), self.work) for i in range(count)]).reshape(count)
         self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
         coincident.take_out(self.pairs, coupling.matrices)
-        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self._work, self._natural[:count])
+        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self.work, self._natural[:count])
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
