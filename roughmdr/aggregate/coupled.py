@@ -23,6 +23,7 @@ from roughmdr.model_error.coupling import (
     HILLS_MARKED_FRACTION,
     MARKED_FRACTION,
     MARKED_SHARE,
+    adhesive_hills_error,
     coupling_error,
     summits_error,
 )
@@ -187,7 +188,13 @@ def response_of_coupled(
 def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, along: "Adhering") -> CoupledTotals:
     """Return the totals of adhesive contacts along a path."""
     found = _found(ensemble, separation, interaction, along, adhesive=True)
+    error = found.error
+    if ensemble.origin == "hills":
+        loading = np.arange(separation.size) <= int(np.argmin(np.nan_to_num(separation, nan=np.inf)))
+        largest = float(np.nanmax(np.abs(found.total[totals.FORCE]), initial=0.0))
+        error = np.minimum(error + adhesive_hills_error(along.pull_offs, largest, loading), 1.0)
     return found._replace(
+        error=error,
         warnings=(along.crowded,) if along.crowded else (),
         pull_off=along.pull_off,
         avalanches=tuple(each.size for each in along.avalanches),

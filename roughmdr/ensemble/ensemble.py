@@ -119,8 +119,9 @@ class Ensemble:
         return ValidityLimits.of(radius, self._slopes(radius), SHAPES[self.shape].ends(self.parameters))
 
     def relative_loads(self, radius: Floats) -> Floats:
-        """Return about the forces of contacts with these radii [m], 0 for none, over the largest."""
-        return relative_loads(radius, self._slopes(radius))
+        """Return about the forces of contacts with these radii [m], 0 for none, in some unit."""
+        loads = relative_loads(radius, self._slopes(radius))
+        return loads if loads.any() else radius  # of flat punches, whose flanks are no slopes
 
     def _slopes(self, radius: Floats) -> Floats:
         """Return f' at radii [m]."""

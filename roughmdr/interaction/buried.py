@@ -62,12 +62,12 @@ def buried(ensemble: Ensemble, at: Floats, sides: Floats | None) -> Buried:
     farthest = reach(ensemble, height - height.min())
     for i, j, away in within_reach(at, farthest, sides):
         lower = np.flatnonzero(height[j] < height[i])
-        if not lower.size:
-            continue
-        below = height[i[lower]] - drop(ensemble, i[lower], away[lower]) > height[j[lower]]
-        over = lower[below]
-        hidden[j[over]] = True
-        np.minimum.at(emerging, i[over], _emerging(ensemble, i[over], j[over], away[over], farthest[i[over]]))
+        if lower.size:
+            lower = lower[height[i[lower]] - drop(ensemble, i[lower], away[lower]) > height[j[lower]]]
+        if lower.size:
+            hidden[j[lower]] = True
+            out = _emerging(ensemble, i[lower], j[lower], away[lower], farthest[i[lower]])
+            np.minimum.at(emerging, i[lower], out)
     if sides is not None:
         for i, j, away in within_reach(at, np.full(height.size, _NEAREST * sides.max()), sides):
             later = (away < _NEAREST * sides.max()) & (i < j)  # heights descend

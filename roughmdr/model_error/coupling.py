@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
@@ -12,7 +13,8 @@ _SEPARATED, _POWER = 0.18, 2.5
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """To first order: (a/D)^3 likewise, and the factor by which it grows with the contact fraction."""
 _CROWDED = 5.0
-"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``)."""
+"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``); to first
+order they make up for a part of what is left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""
 _SUMMITS = 1.3
@@ -21,6 +23,10 @@ _SUMMITS = 1.3
 _HILLS = 0.06
 """Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
 ratio of the slopes along and across."""
+
+_LOADING, _UNLOADING = 0.7, 0.3
+"""Error of the force of adhesive hills, by legs, over the pull-off forces of their contacts: where the attraction has a
+range contacts close earlier than by JKR, and merge (``pipelines/adhesive_hills.py``, Tabor number 2)."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -40,12 +46,24 @@ def coupling_error(
     """
     if ensemble is not None and ensemble.origin == "hills":
         return np.where(contact_fraction > 0.0, min(_HILLS * math.sqrt(ensemble.anisotropy), 1.0), 0.0)
-    separated = _SEPARATED * contact_fraction**_POWER
     if order == 1:
-        separated = _FIRST * contact_fraction**_THIRD * (1.0 + _FULLER * contact_fraction)
-    error = np.maximum(separated, crowding * (1.0 + _CROWDED * contact_fraction))
+        error = np.maximum(_FIRST * contact_fraction**_THIRD * (1.0 + _FULLER * contact_fraction), crowding)
+    else:
+        separated = _SEPARATED * contact_fraction**_POWER
+        error = np.maximum(separated, crowding * (1.0 + _CROWDED * contact_fraction))
     origin = "asperities" if ensemble is None else ensemble.origin
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
+
+
+def adhesive_hills_error(pull_offs: float, largest: float, loading: NDArray[np.bool_]) -> Floats:
+    """Return what JKR adds to the error of hills at each step, over the largest force [1].
+
+    ``pull_offs`` is the sum of the pull-off forces of the contacts at closest approach, ``largest`` the largest force
+    [N]; ``loading`` are the steps up to there.
+    """
+    if not largest > 0.0:
+        return np.zeros(loading.size)
+    return np.minimum(np.where(loading, _LOADING, _UNLOADING) * (pull_offs / largest), 1.0)
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:

@@ -6,7 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.model_error.coupling import WARNED_FRACTION, WARNED_SHARE, coupling_error, coupling_warnings
+from roughmdr.model_error.coupling import (
+    WARNED_FRACTION,
+    WARNED_SHARE,
+    adhesive_hills_error,
+    coupling_error,
+    coupling_warnings,
+)
 
 share = st.floats(0.0, 1.0)
 
@@ -37,6 +43,16 @@ def test_it_grows_with_each_share_and_stays_a_fraction(fraction: float, overlap:
     assert error(fraction, overlap, of_surface=1) >= here
 
 
+@given(st.floats(0.0, 1e3), st.floats(1e-9, 1e3), st.floats(1e-6, 1e6))
+def test_adhesive_hills_are_off_by_a_share_of_the_pull_off_forces(
+    pull_offs: float, largest: float, unit: float
+) -> None:
+    loading, unloading = adhesive_hills_error(pull_offs * unit, largest * unit, np.array([True, False]))
+    assert 0.0 <= unloading <= loading <= 1.0
+    assert loading == pytest.approx(min(0.7 * pull_offs / largest, 1.0), rel=1e-9)
+    assert adhesive_hills_error(pull_offs, 0.0, np.array([True])).tolist() == [0.0]
+
+
 def test_without_contact_there_is_none() -> None:
     assert error(0.0, 0.0) == error(0.0, 0.0, of_surface=1) == 0.0
 
@@ -47,9 +63,9 @@ def test_separated_contacts_are_within_what_the_lattice_showed() -> None:
         assert measured < error(fraction, 0.0) < 6.0 * measured
 
 
-@given(share, share)
-def test_the_first_order_has_the_larger_error(fraction: float, crowding: float) -> None:
-    columns = np.array([fraction]), np.array([crowding])
+@given(share)
+def test_the_first_order_of_separated_contacts_has_the_larger_error(fraction: float) -> None:
+    columns = np.array([fraction]), np.zeros(1)
     assert coupling_error(*columns, order=1)[0] >= coupling_error(*columns)[0]
 
 

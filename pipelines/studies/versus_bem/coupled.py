@@ -47,17 +47,17 @@ def report_coupled(result: xr.Dataset) -> str:
     ]
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
     finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
-    error, stated = np.abs(signed_errors(result, "force_second")), result["stated"].to_numpy()
-    known = np.isfinite(error) & np.isfinite(stated)
     unknown = np.fmax(grid_errors(result), _NEGLIGIBLE)
     judged = []
-    for name in GROUPS:
-        own = known & (group == name)
+    for order, name in itertools.product((1, 2), GROUPS):
+        force, told = ("force_first", "stated_first") if order == 1 else ("force_second", "stated")
+        error, stated = np.abs(signed_errors(result, force)), result[told].to_numpy()
+        own = np.isfinite(error) & np.isfinite(stated) & (group == name)
         if own.any():
             e, s, least = error[own], stated[own], unknown[own]
             near = (s <= FACTOR * np.maximum(e, least)) & (e <= FACTOR * np.maximum(s, least))
             bounded = f"{100.0 * np.mean(e <= np.maximum(s, least)):.0f} %"
-            judged.append([name, str(e.size), bounded, f"{100.0 * np.mean(near):.0f} %"])
+            judged.append([str(order), name, str(e.size), bounded, f"{100.0 * np.mean(near):.0f} %"])
     seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))
     head = ["placement", "f", *_NAMES.values()]
     fine_head = ["f", *_NAMES.values(), "of the grid", "area", "contacts"]
@@ -69,9 +69,9 @@ Separated paraboloids of lognormal radii on the finest grid, largest errors of a
 
 {table(fine_head, finest)}
 
-The error that second order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
+The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
 
-{table(["placement", "errors", "below the estimate", f"within a factor of {FACTOR:g}"], judged)}
+{table(["order", "placement", "errors", "below the estimate", f"within a factor of {FACTOR:g}"], judged)}
 
 A load to second order and by boundary elements takes {seconds} (median).
 """

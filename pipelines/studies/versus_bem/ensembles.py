@@ -19,7 +19,8 @@ class Case(NamedTuple):
     """An ensemble, by its ratios."""
 
     placement: str
-    """random, hexagonal, square, or hard_core with the smallest distance over the mean spacing: "hard_core 0.7"."""
+    """random, hexagonal, square, or hard_core with the smallest distance over the mean spacing: "hard_core 0.7"; or at
+    random on a part of the side of the patch: "crowd 0.6"."""
     shape: str
     """paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, quartic (r^4), or nayak."""
     asperities: int
@@ -61,15 +62,17 @@ class Case(NamedTuple):
                 shape = {"shape": "paraboloid", "radius": lognormal if name == "lognormal" else _RADIUS}
                 drop = 0.5 * self.spacing**2 / _RADIUS
         placement, _, distance = self.placement.partition(" ")
-        if distance:
+        if placement == "hard_core":
             shape["min_distance"] = float(distance) * self.spacing
         section = {
             "source": "random", "count": self.asperities, "patch": SIZE, **shape,
-            "placement": "random" if placement == "square" else placement,
+            "placement": "random" if placement in ("square", "crowd") else placement,
             "height": {"distribution": "normal", "std": self.roughness * drop},
         }  # fmt: skip
         ensemble = rm.generate(section, seed=self.seed)
-        if placement == "square":
+        if placement == "crowd":
+            ensemble = ensemble.assign({axis: ensemble[axis] * float(distance) for axis in "xy"})
+        elif placement == "square":
             along = (np.arange(math.isqrt(self.asperities)) + 0.5) * self.spacing
             order = np.random.default_rng(self.seed).permutation(self.asperities)
             for axis, values in zip("xy", np.meshgrid(along, along), strict=True):

@@ -11,11 +11,12 @@ from roughmdr.numerics.arguments import Floats
 
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
-GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map")
+GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crowd")
 FACTOR = 3.0
 """Within which the estimate is to be."""
 _MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more
 _CELLS = {"hexagonal": "separated", "hard_core 0.5": "separated", "hard_core 0.7": "separated"}
+_CELLS |= {"crowd 0.5": "crowd", "crowd 0.7": "crowd"}
 
 
 def estimates(contact_fraction: Floats, group: NDArray[np.str_]) -> Floats:
@@ -58,7 +59,7 @@ def groups(result: xr.Dataset) -> NDArray[np.str_]:
     """Return the group of each case and step."""
     placed = np.array([_CELLS.get(name, name) for name in result["placement"].to_numpy().tolist()])
     whole = np.broadcast_to(placed[:, None], result["force"].shape)
-    few = (result["contact_count"].to_numpy() <= FEW_CONTACTS) & (whole != "map")
+    few = (result["contact_count"].to_numpy() <= FEW_CONTACTS) & (whole != "map") & (whole != "crowd")
     return np.where(few, "few contacts", whole)
 
 

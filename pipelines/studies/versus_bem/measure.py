@@ -44,6 +44,8 @@ CASES: list[Case | MapCase] = [
     *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
     *(Case(where, "paraboloid", count, 0.1, points, 5)
       for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),
+    *(Case(where, "paraboloid", 40, rough, 256, 9)
+      for rough, where in product((0.02, 0.2), ("crowd 0.5", "crowd 0.7"))),
     *(Case("hard_core 0.7", "lognormal", count, 0.2, FINE, seed)
       for seed, count in enumerate((40, 52, 64, 80, 100), start=11)),
 ]  # fmt: skip
@@ -67,6 +69,8 @@ _NAMES = {
     "contact_count_second": ("contacts to second order", "1"),
     "contact_count_bem": ("contacts of boundary elements", "1"),
     "stated": ("stated model error to second order", "1"),
+    "stated_first": ("stated model error to first order", "1"),
+    "stated_alone": ("stated model error of independent asperities with positions", "1"),
     "seconds_second": ("run time of a load to second order", "s"),
     "seconds_bem": ("run time of a load by boundary elements", "s"),
     "seconds_coarse": ("run time of a load with half as many points a side", "s"),
@@ -94,6 +98,8 @@ class Step(NamedTuple):
     contact_count_second: float
     contact_count_bem: float
     stated: float
+    stated_first: float
+    stated_alone: float
     seconds_second: float
     seconds_bem: float
     seconds_coarse: float
@@ -202,6 +208,8 @@ def compare(case: Case | MapCase) -> list[Step]:
             contact_count_second=second["contact_count"],
             contact_count_bem=found.contact_count,
             stated=second["model_error_curve"],
+            stated_first=float(laws["force_first"]["model_error_curve"][i]),
+            stated_alone=alone["model_error_curve"],
             seconds_second=seconds,
             seconds_bem=found.seconds,
             seconds_coarse=rough.seconds,

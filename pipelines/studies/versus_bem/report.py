@@ -13,7 +13,7 @@ from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_er
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLOURS = dict(zip(GROUPS, ("0.6", "#1b6ca8", "#2e8b57", "#c8553d", "#c9a227", "#8a5fb0"), strict=True))
+_COLOURS = dict(zip(GROUPS, ("0.6", "#1b6ca8", "#2e8b57", "#c8553d", "#c9a227", "#8a5fb0", "k"), strict=True))
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 """Contact fractions from above the first to the second."""
 
@@ -30,11 +30,11 @@ def draw(result: xr.Dataset) -> "Figure":
         left.loglog(along, interaction_error(along, kind), color="k", lw=1.2, ls=style, label=name)
     for name, colour in _COLOURS.items():
         own = group == name
-        left.plot(fraction[own], error[own], "o", color=colour, ms=4, mec="w", mew=0.3, label=name)
+        left.plot(fraction[own], np.abs(error[own]), "o", color=colour, ms=4, mec="w", mew=0.3, label=name)
         overlap, expected = (result[part].to_numpy()[own] for part in ("overlap", "overlap_poisson"))
         right.plot(expected, overlap, "o", color=colour, ms=4, mec="w", mew=0.3)
     left.set(xlim=(5e-4, 1.0), ylim=(0.005, 1.3), title="Asperities that do not feel each other")
-    left.set(xlabel="summed contact area over nominal area", ylabel="force too low by (relative)")
+    left.set(xlabel="summed contact area over nominal area", ylabel="force too low, of crowds too high, by (relative)")
     left.legend(fontsize=9)
     right.plot([0.0, 1.0], [0.0, 1.0], color="k", lw=1)
     right.set(xlabel="1 - exp(-n pi <(a_i + a_j)^2>)", ylabel="share of contacts that meet another", title="Overlap")
@@ -60,7 +60,8 @@ def report(result: xr.Dataset) -> str:
             cells.append(middle)
         coefficients.append(cells)
         if own.any():
-            judged = judge(error[own], estimates(fraction, group)[own])
+            told = result["stated_alone"].to_numpy() if name == "crowd" else estimates(fraction, group)
+            judged = judge(np.abs(error[own]), told[own])
             percent = (f"{100.0 * share:.0f} %" for share in (judged.bounded, judged.within))
             shares.append([name, str(judged.number), *percent])
     grid = grid_errors(result)

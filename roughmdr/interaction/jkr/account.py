@@ -35,6 +35,8 @@ class Adhering(NamedTuple):
     avalanches: list[Avalanche]
     """In SI."""
     pull_off: PullOff
+    pull_offs: float
+    """About the sum of the pull-off forces [N] of the contacts of that step, each alone."""
     crowded: str
     """A warning where contacts overlap as soon as they are made; empty where they do not."""
 
@@ -99,6 +101,7 @@ class Account:
             visits,
             self._avalanches,
             self._pull_off(),
+            self._pull_offs(),
             self._crowded(),
         )
 
@@ -157,6 +160,12 @@ class Account:
         area = math.pi * length * length * tension.radius_squares
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
+
+    def _pull_offs(self) -> float:
+        """Return the sum of 3/2 pi w R, R that of the paraboloid that jumps on with as large a contact."""
+        made = self._front.made[self._radius[self._front.placed.kept] > 0.0]
+        alone = 1.5 * math.pi * np.sqrt(self._front.work * made**3 / (2.0 * math.pi))
+        return self._modulus * self._length**2 * math.fsum(alone.tolist())
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""

@@ -52,11 +52,12 @@ class Front:
 
     def __init__(self, placed: Placed, effective_modulus: float, work: float) -> None:
         self.placed, self._kernels = placed, jkr_kernels(placed.law)
-        self._work = work / effective_modulus / placed.length
-        if not (self._work > 0.0 and math.isfinite(self._work)):
+        self.work = work / effective_modulus / placed.length
+        """Work of adhesion over E* and the side of the patch."""
+        if not (self.work > 0.0 and math.isfinite(self.work)):
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
-        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self._work)
+        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
         self._dense: Dense | None = None
         self.problem: Problem
         self.stand_at(self.top)
@@ -92,7 +93,7 @@ class Front:
         elif coincident.are_same(pairs, self.problem.pairs):
             return
         coupling, natural = coincident.without(pairs, self._dense), self._natural[:count]
-        self.problem = Problem(self._kernels, few, coupling, pairs, interaction.order, self._work, natural)
+        self.problem = Problem(self._kernels, few, coupling, pairs, interaction.order, self.work, natural)
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
@@ -100,7 +101,7 @@ class Front:
         """Return the radii of contacts alone under the flat as it stands, at least those with which they are made."""
         depth, bound = asperities.height - self._stands, self.made[: asperities.height.size].copy()
         for i in np.flatnonzero(depth > 0.0).tolist():
-            bound[i] = _radius(self._kernels, asperities, i, float(depth[i]), self._work)
+            bound[i] = _radius(self._kernels, asperities, i, float(depth[i]), self.work)
         return bound
 
     def _fitted(self, state: State) -> State:
