@@ -23,6 +23,7 @@ _FEWEST, _TIMES = 10, 5.0
 _JUMP = 2.5
 """Median step from such points to their neighbours, over the median step of the map, beyond which they are a mark; at a
 clipped top it is about 1."""
+_LEAST_KNOWN = 5  # neighbours of a point that may be a spike: those at an edge, not at a corner
 _NEAR = 10  # distinct heights next to a value that its number of points is compared with
 _MOST_MARKS = 8  # different marks in one map
 _SAMPLE = 2**16  # points of the map that its steps and the numbers of equal heights are taken from
@@ -162,7 +163,7 @@ def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
         known = sum((np.isfinite(each).view(np.int8) for each in around), np.zeros(inner.shape, np.int8))
         for sign, found in ((1.0, up), (-1.0, down)):
             below = sum(((sign * (inner - each) > least).view(np.int8) for each in around), np.zeros_like(known))
-            at = np.nonzero((below >= known - 1) & (known >= 3))
+            at = np.nonzero((below >= known - 1) & (known >= _LEAST_KNOWN))
             beside = np.sort(np.stack([sign * each[at] for each in around]), axis=0)  # undefined ones come last
             second = np.take_along_axis(beside, known[at][None].astype(np.intp) - 2, 0)[0]
             spiky = sign * inner[at] - second > _SPIKE * (second - beside[1])
