@@ -139,6 +139,9 @@ def test_coordinates_among_the_heights_are_refused(tmp_path: Path) -> None:
     for keys in ({}, {"outliers": "undefined"}):
         with pytest.raises(rm.SceneError, match=r"first row and first column .* by 0.5 and 0.5: .* 63 x 95 heights"):
             generate(tmp_path, height, **keys)
+    height[0], height[:, 0] = np.round(0.039 * np.arange(96), 2), np.round(0.039 * np.arange(64), 2)
+    with pytest.raises(rm.SceneError, match="first row and first column"):
+        generate(tmp_path, height)
     with pytest.raises(rm.SceneError, match=r"the first column of numbers.* 64 x 95 heights"):
         generate(tmp_path, np.insert(rough()[:, 1:], 0, np.arange(64.0), axis=1))
 

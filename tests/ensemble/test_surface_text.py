@@ -140,6 +140,9 @@ def test_points_that_are_not_there_are_undefined_and_scattered_ones_refused(tmp_
     np.savetxt(path, [*columns, columns[7]], fmt="%.6g")
     with pytest.raises(rm.errors.RoughmdrError, match="lines 8 and 241 give a height to one point"):
         read_map(path, unit="um")
+    np.savetxt(path, np.insert(columns, 3, 1.0, axis=1), fmt="%.6g")
+    with pytest.raises(rm.errors.RoughmdrError, match="begin with x and y on a grid, and have 2 numbers more; keep z"):
+        read_map(path, unit="um")
     np.savetxt(path, np.random.default_rng(0).normal(size=(200, 3)))
     with pytest.raises(rm.errors.RoughmdrError, match=r"200 different x and 200 different y, .* interpolate scattered"):
         read_map(path, unit="um")

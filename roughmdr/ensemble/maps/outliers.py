@@ -28,8 +28,9 @@ _NEAR = 10  # distinct heights next to a value that its number of points is comp
 _MOST_MARKS = 8  # different marks in one map
 _SAMPLE = 2**16  # points of the map that its steps and the numbers of equal heights are taken from
 _FEWEST_STEPS = 7  # between numbers of a row that may be coordinates
-_EVEN, _UNEVEN = 0.1, 0.5
-"""Relative range of the steps of coordinates at most, with their rounding, and of heights in the next row at least."""
+_EVEN, _UNEVEN, _LESS_EVEN = 0.3, 0.5, 4.0
+"""Relative range of the steps of coordinates at most, with their rounding; of heights in the next row at least, and
+over that of the coordinates."""
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 _REMEDY = 'outliers = "undefined" leaves them out, outliers = "kept" takes them as they are'
 
@@ -81,7 +82,11 @@ def _refuse_coordinates(height: Floats) -> None:
     """RoughmdrError where the first row or column counts up evenly, and the next one does not."""
     which = {"row": height[0, 1:], "column": height[1:, 0]}
     after = {"row": height[1, 1:], "column": height[1:, 1]}
-    found = [name for name in which if _unevenness(which[name]) <= _EVEN and _unevenness(after[name]) > _UNEVEN]
+    found = []
+    for name, values in which.items():
+        uneven = _unevenness(values)
+        if uneven <= _EVEN and _unevenness(after[name]) > max(_UNEVEN, _LESS_EVEN * uneven):
+            found.append(name)
     if found:
         steps = " and ".join(f"{float(np.mean(np.diff(which[name]))):.4g}" for name in found)
         names, those = " and first ".join(found), "they are" if len(found) > 1 else "it is"
