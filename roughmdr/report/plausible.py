@@ -1,4 +1,4 @@
-"""What of a plan cannot be meant: sizes and units of maps, and pressures in contacts that no solid bears."""
+"""Implausible numbers of a plan: sizes and units of maps, and pressures in contacts that no solid bears."""
 
 from typing import TYPE_CHECKING
 

@@ -1,6 +1,7 @@
 """Surfaces on any grid, maps that end, and the error that a grid is refined to."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from studies.hills.maps import SIDE as SIDE_OF_CASES
 from studies.hills.press import square
 from studies.hills.separations import separations
 
+from roughmdr.elements import refine
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.elements.path import GridPath, solve_on_grid
 from roughmdr.elements.refine import LARGEST_GRID, errors, first_points, solve_to_error
@@ -102,6 +104,29 @@ def test_the_error_asked_for_is_met(periodic: bool, error: float) -> None:
 def test_a_smaller_error_takes_a_finer_grid_up_to_the_largest() -> None:
     assert first_points(100, 0.005) == pytest.approx(2.0 * first_points(100, 0.02))
     assert first_points(1e9, 0.02) == LARGEST_GRID
+
+
+def test_an_error_out_of_reach_takes_no_more_than_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A spike of one point bears the force: finer grids show its spline ever better, and never to 0.1 %."""
+    height_map, whole = of(64, periodic=False), refine.solve_on_grid
+    height_map.height[20, 30] += 8.0 * height_map.height.std()
+    top = float(height_map.height.max())
+    surface, path = surface_of_map(height_map, np.array([top]), periodic=False), top * np.linspace(0.9, 0.3, 12)
+    solved = list[GridPath]()
+
+    def counted(*arguments: Any, **keys: Any) -> GridPath:
+        solved.append(whole(*arguments, **keys))
+        return solved[-1]
+
+    monkeypatch.setattr(refine, "solve_on_grid", counted)
+    for budget in (1e6, 2e7):
+        monkeypatch.setattr(refine, "BUDGET", budget)
+        solved.clear()
+        found = solve_to_error(surface, path, 1e9, 1e-3, stiffness=False)
+        assert errors(found).max() > 1e-3
+        assert sum(each.work for each in solved[1:]) <= 3.0 * budget
+        assert len(found.steps) == path.size
+    assert found.shape[0] > solved[0].shape[0], "as fine as the budget allows"
 
 
 def test_asperities_that_stand_alone_end_beyond_their_contacts() -> None:

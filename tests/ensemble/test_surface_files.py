@@ -291,7 +291,7 @@ class Instrument(SimpleNamespace):
 
 def opened(monkeypatch: pytest.MonkeyPatch, path: Path, instrument: Instrument) -> Path:
     path.write_text("of an instrument")
-    module = SimpleNamespace(open_topography=lambda _: instrument)
+    module = SimpleNamespace(open_topography=lambda *_: instrument)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", SimpleNamespace(IO=module))
     monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", module)
     return path

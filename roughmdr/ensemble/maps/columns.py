@@ -11,6 +11,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import unit_factor
 
 _FEWEST = 9  # points of the smallest map
+_MOST_COLUMNS = 8  # of points with further numbers; a map is wider
 _LEAST_SHARE = 0.5
 """Share of the points of a grid that a file must hold: instruments leave out those that they could not measure."""
 _OFF_GRID = 0.2
@@ -20,8 +21,18 @@ _UNITS = re.compile(r"(lateral|xy|value|z)[ -]units?\s*[:=]\s*(\S+)", re.IGNOREC
 
 
 def is_of_points(table: TextTable) -> bool:
-    """Return whether rows are points with three coordinates: not a map that is three points wide."""
-    return table.numbers.shape[1] == 3 and len(table.numbers) >= _FEWEST
+    """Return whether rows are points with three coordinates: not a map that is three points wide.
+
+    RoughmdrError where they are points with further numbers.
+    """
+    count, columns = table.numbers.shape
+    if count < _FEWEST or not 3 <= columns <= _MOST_COLUMNS:
+        return False
+    if columns > 3:
+        of_x, of_y = _grid(table.numbers[:, 0]), _grid(table.numbers[:, 1])
+        if of_x is not None and of_y is not None and (of_x[0].max() + 1) * (of_y[0].max() + 1) == count:
+            raise RoughmdrError(f"its rows begin with x and y on a grid, and have {columns - 2} numbers more; keep z")
+    return bool(columns == 3)
 
 
 def map_of_points(table: TextTable) -> RawMap:

@@ -60,7 +60,10 @@ class SizeReader:
         side = self._side.json_schema()
         named = {
             "type": "object",
-            "properties": dict.fromkeys(Sides._fields, side),
+            "properties": {
+                "across": {**side, "description": "Length of a row of numbers of the file"},
+                "down": {**side, "description": "Length from the first row to the last"},
+            },
             "required": list(Sides._fields),
             "additionalProperties": False,
         }

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks
@@ -23,6 +24,7 @@ class _Fits(NamedTuple):
     second: Floats  # h_xx + h_yy
     fourth: Floats  # h_xxyy
     candidates: int  # the number of points above their neighbours, saddles included
+    blind: int  # the number of points beside undefined ones, which cannot be told to be summits
 
 
 def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
@@ -35,11 +37,12 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     summit.
 
     Attributes: ``points_per_summit``; ``saddles``, their number; ``misfit``, the fourth difference h_xxyy over the
-    second, h_xx + h_yy, both r.m.s. over the summits: the residual of the fit over the curvature.
+    second, h_xx + h_yy, both r.m.s. over the summits: the residual of the fit over the curvature; and, of a map with
+    undefined points, ``blind_share``, those beside them over all that are defined: about the share of summits missed.
     """
     dx, dy = surface.dx, surface.dy
     nx, ny = surface.height.shape
-    *columns, candidates = zip(*(_fit(*part, noise) for part in _parts(surface)), strict=True)
+    *columns, candidates, blind = zip(*(_fit(*part, noise) for part in _parts(surface)), strict=True)
     height, x, y, determinant, second, fourth = map(np.concatenate, columns)
     if not height.size:
         raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")
@@ -53,6 +56,8 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
         "saddles": sum(candidates) - height.size,
         "misfit": float(np.linalg.norm(fourth) / np.linalg.norm(second)),
     }
+    if any(blind):
+        attrs["blind_share"] = sum(blind) / defined
     radii = {"radius": dx * dy / np.sqrt(determinant)}
     return Ensemble("paraboloid", height, radii, defined * dx * dy, positions, attrs).sorted()
 
@@ -107,4 +112,8 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
     row, column = rows[domed], columns[domed]
     height = inner[row, column] + 0.5 * (p * i_top + q * j_top)
     x, y = row + first + edge + i_top, column + edge + j_top
-    return _Fits(height, x, y, determinant, second[domed], fourth[domed], rows.size)
+    undefined = np.isnan(part)
+    beside = np.isfinite(inner) & (
+        sliding_window_view(undefined, (3, 3)).any(axis=(2, 3)) if undefined.any() else False
+    )
+    return _Fits(height, x, y, determinant, second[domed], fourth[domed], rows.size, int(np.sum(beside)))

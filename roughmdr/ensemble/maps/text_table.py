@@ -146,7 +146,8 @@ def _by_words(rows: list[Line], delimiter: str | None) -> list[list[float]]:
             raise RoughmdrError(f"line {number}, column {column + 1}: {words[column].strip()!r} is no number")
         table.append([value for value in values if value is not None])
         if len(values) != len(table[0]):
+            hint = "; coordinates in the first row and column are no heights" if len(table) == 2 else ""
             raise RoughmdrError(
-                f"line {number} has {len(values)} numbers, but line {rows[0].number} has {len(table[0])}"
+                f"line {number} has {len(values)} numbers, but line {rows[0].number} has {len(table[0])}{hint}"
             )
     return table

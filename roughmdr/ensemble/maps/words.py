@@ -37,7 +37,9 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
         else (verdict(attrs),)
     )
     rows = f", rows of the file along {attrs['rows_along']}" if "rows_along" in attrs else ""
-    outliers = f", among them {attrs['outliers']} outliers" if "outliers" in attrs else ""
+    outliers = f", {attrs['outliers']} outliers among them" if "outliers" in attrs else ""
+    if "blind_share" in attrs:
+        outliers += f", and {attrs['blind_share']:.1%} of the others beside them, where no summits are found"
     remarks = (implausible(attrs), str(attrs.get("doubtful", "")))
     return (
         *filter(None, remarks),
