@@ -58,6 +58,18 @@ def test_over_realisations_it_is_their_mean_and_standard_error() -> None:
     assert float(law.points) == 120.0
 
 
+def test_realisations_that_reach_other_forces_are_compared_at_one() -> None:
+    """At x0, the geometric mean of all forces, each law has the value that its exponent takes it to."""
+    force = np.array([np.geomspace(1e-6, 1e-4, 20), np.geomspace(1e-5, 1e-2, 20)])
+    exponents, factors = np.array([0.5, 0.8]), np.array([2.0, 300.0])
+    stiffness = factors[:, None] * force ** exponents[:, None]
+    law = made(stiffness, force, ("realization", "step")).roughmdr.fit_power_law("stiffness", "force")
+    x0 = np.exp(np.log(force).mean())
+    assert float(law.x0) == pytest.approx(x0, rel=1e-12)
+    assert float(law.coefficient) == pytest.approx((factors * x0**exponents).mean(), rel=1e-12)
+    assert float(law.exponent) == pytest.approx(exponents.mean(), abs=1e-12)
+
+
 def test_only_steps_in_range_count_and_above_zero() -> None:
     force = np.array([-1.0, 0.0, 1e-3, 2e-3, 4e-3, 8e-3, np.nan])
     stiffness = np.array([1.0, 1.0, 7.0, 2e-3, 4e-3, 8e-3, 1.0])

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import scipy.stats
-from scenes import ASPERITIES
+from scenes import ASPERITIES, ensemble
 
 import roughmdr as rm
+from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.random.distribution_families import find_family
 from roughmdr.ensemble.streams import SMALLEST_UNIFORM, uniforms
 
@@ -155,3 +156,17 @@ def test_fast_families_are_those_of_scipy_to_the_bit(name: str, own: tuple[float
     np.testing.assert_array_equal(fast.isf(levels, *own), slow.isf(levels, *own))
     np.testing.assert_allclose(fast.moments(*own), slow.stats(*own, moments="mv"), rtol=1e-14)
     assert fast.is_defined(*own)
+
+
+def test_the_nominal_area_is_that_of_the_sides_unless_it_is_given() -> None:
+    """Of a square patch its square, of a rectangle the product, in any unit; without sides it is not known."""
+    for unit in (1e-6, 1.0):
+        made = ensemble([0.0], None, radius=unit)
+        for attrs, area in (
+            ({"patch": 3.0 * unit}, 9.0),
+            ({"patch_x": 2.0 * unit, "patch_y": 5.0 * unit}, 10.0),
+            ({"patch_x": 2.0 * unit, "patch_y": 5.0 * unit, "nominal_area": 7.0 * unit**2}, 7.0),
+        ):
+            assert Ensemble.from_dataset(made.assign_attrs(attrs)).nominal_area == pytest.approx(area * unit**2)
+        for attrs in ({}, {"patch_x": 2.0 * unit}, {"patch_y": 2.0 * unit}):
+            assert Ensemble.from_dataset(made.assign_attrs(attrs)).nominal_area is None

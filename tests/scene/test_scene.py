@@ -217,3 +217,29 @@ def test_the_scene_of_a_sweep() -> None:
     assert asked.sweep.sizes == {"adhesion_work": 3, "asperities_height_std": 5}
     assert len(asked.cells) == 15
     assert asked.cells[1].asperities.sigma == pytest.approx(10.0**-6.5)
+
+
+@pytest.mark.parametrize(
+    ("shares", "allowed"), [([0.25, 0.75], True), ([1.0], True), ([0.0], True), ([0.5, 0.6], False)]
+)
+def test_all_of_the_modulus_may_relax_but_no_more(shares: list[float], allowed: bool) -> None:
+    """A liquid in the end, as the shares of 1 together have it."""
+    relaxation = [{"time": "1 s", "share": share} for share in shares]
+    path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 4}}
+    table = scene(adhesion=None, path=path, viscoelastic={"relaxation": relaxation, "speed": "1 um/s"})
+    if allowed:
+        assert len(read(table).viscoelastic.relaxation) == len(shares)
+    else:
+        with pytest.raises(rm.SceneError, match=r"has shares of 1\.1 together; they must be at most 1"):
+            read(table)
+
+
+def test_a_target_is_one_of_contact_fraction_and_pressure() -> None:
+    both = {"contact_fraction": 0.01, "pressure": "1 MPa"}
+    for stop in ({"contact_fraction": 0.01}, {"pressure": "1 MPa"}):
+        assert (
+            read(scene(path={"separation": {"start": "clear", "stop": stop, "steps": 5}})).path.control == "separation"
+        )
+    for stop in ({}, both):
+        with pytest.raises(rm.SceneError, match="either contact_fraction or pressure"):
+            read(scene(path={"separation": {"start": "clear", "stop": stop, "steps": 5}}))
