@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material, law
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import once, specialise
 from roughmdr.numerics.summation import BLOCK
 
 _MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
@@ -43,7 +42,7 @@ def _fill(columns: Columns, material: Material, prepare: Callable[..., Any], fou
                 radius[i] = size * law.radius(law.state(0.0, own), own) if depth[i] > 0.0 else 0.0
 
 
-@cache
+@once
 def _compiled(kernels: Kernels) -> Callable[..., None]:
     return specialise(_fill, kernels)
 

@@ -7,7 +7,6 @@ terms and their order depend on the asperities and the path alone.
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -61,7 +60,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.loading.staircase import Staircase, no_memory
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import njit, specialise
+from roughmdr.numerics.jit import njit, once, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 
 _NOT_REPRESENTABLE = -1
@@ -176,7 +175,7 @@ def _loop(
     return visits
 
 
-@cache
+@once
 def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     """Return the kernels with the parts of the sum, compiled with them; without energies where not ``energetic``."""
     name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together

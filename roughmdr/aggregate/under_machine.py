@@ -1,7 +1,5 @@
 """The separations of a flat that hangs on a machine, from what the machine demands at each step."""
 
-from functools import cache
-
 import numpy as np
 
 from roughmdr.aggregate import machine_stand, response
@@ -15,13 +13,13 @@ from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import as_argument, specialise
+from roughmdr.numerics.jit import as_argument, once, specialise
 
 _BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
 _NONE = np.zeros(0)
 
 
-@cache
+@once
 def _compiled(kernels: Kernels) -> SumKernels:
     """Return the kernels with the parts of the response, compiled with them."""
     whole = SumKernels(kernels.name)

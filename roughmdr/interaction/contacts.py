@@ -15,14 +15,13 @@ it would carry its load alone; below 0 the distance to first touch.
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import once, specialise
 
 _NODES, _WEIGHTS = unit_gauss(20)
 _RTOL, _MAX_ITERATIONS = 1e-14, 100
@@ -238,7 +237,7 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
     return lost
 
 
-@cache
+@once
 def coupled_kernels(kernels: Kernels) -> CoupledKernels:
     """Return the kernels of a shape without adhesion with what a displaced surface needs, and both loops, compiled."""
     whole = CoupledKernels(f"coupled_{kernels.name}")

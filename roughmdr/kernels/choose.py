@@ -1,6 +1,5 @@
 """Which kernels compute which shape, with and without adhesion. A new shape with a profile needs no line here."""
 
-from functools import cache
 from types import ModuleType
 
 from roughmdr.errors import OutOfRange
@@ -10,7 +9,7 @@ from roughmdr.kernels.dugdale import flat_punch as dugdale_flat_punch
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.build import build
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import once, specialise
 from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape, Shape
 
 _NAMES = tuple(Kernels.__annotations__)
@@ -24,7 +23,7 @@ def _of_module(name: str, module: ModuleType, suffix: str = "") -> Kernels:
     return law
 
 
-@cache
+@once
 def _closed(shape: str, adhesive: bool) -> Kernels:
     """Return the kernels of a shape whose states have a closed form."""
     module, suffix = {
@@ -51,7 +50,7 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
     return law
 
 
-@cache
+@once
 def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
     law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
@@ -62,7 +61,7 @@ def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     return law
 
 
-@cache
+@once
 def _dugdale(shape: type[Shape]) -> Kernels:
     """Return the kernels of a shape under adhesion with a range."""
     if shape is not FlatPunch:

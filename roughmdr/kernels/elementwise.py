@@ -1,14 +1,13 @@
 """A scalar kernel over an array."""
 
 from collections.abc import Callable
-from functools import cache
 from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import once, specialise
 
 
 class _Kernel(ModuleType):
@@ -30,7 +29,7 @@ def _loop_of_three(values: Floats, arguments: tuple[Any, ...], out: Floats) -> N
         out[0, i], out[1, i], out[2, i] = law.kernel(values[i], *arguments)
 
 
-@cache
+@once
 def _compiled(loop: FunctionType, kernel: Callable[..., Any]) -> Callable[..., Any]:
     one = _Kernel(f"{kernel.__module__.removeprefix('roughmdr.')}_{kernel.__qualname__}".replace(".", "_"))
     one.kernel = kernel

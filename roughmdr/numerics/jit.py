@@ -12,7 +12,7 @@ import shutil
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache, partial
+from functools import partial, wraps
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
@@ -29,7 +29,28 @@ from roughmdr.numerics.rebind import rebuilt
 
 let_collector_rest()
 _config: Any = numba.config
+_Made = TypeVar("_Made")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def once(make: Callable[..., _Made]) -> Callable[..., _Made]:
+    """Keep what a function has made for its arguments, so that it makes each once in a process, whichever threads ask.
+
+    Threads wait on the lock under which numba compiles. With a lock of its own, a thread that compiles and another that
+    makes something could wait for each other; and Python's parser of syntax trees fails where two threads are in it.
+    """
+    made: dict[Any, _Made] = {}
+
+    @wraps(make)
+    def kept(*arguments: Any, **named: Any) -> _Made:
+        key = arguments, tuple(sorted(named.items()))
+        if key not in made:
+            with global_compiler_lock:
+                if key not in made:
+                    made[key] = make(*arguments, **named)
+        return made[key]
+
+    return kept
 
 
 _FOLDER = re.compile(r"[0-9a-f]{16}-[0-9.]+\w*")  # the name of a cache folder
@@ -37,7 +58,7 @@ _UNUSED = 30.0 * 86400.0
 """Seconds after which the folder of other sources is removed."""
 
 
-@cache
+@once
 def _cache_folder() -> str | None:
     """Return the folder for code compiled from these sources; None where no folder can be written.
 
@@ -89,7 +110,7 @@ def _let_compiled_code_call(whole: Any, decorator: Callable[..., Any]) -> None:
     never need.
     """
 
-    @cache
+    @once
     def bare() -> Any:
         return _kept_on_disk(partial(decorator, no_cpython_wrapper=True), _renamed(whole.py_func, "_bare"))
 
@@ -122,7 +143,7 @@ def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -
             _config.CACHE_DIR = before
 
 
-@cache
+@once
 def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[..., Any]:
     """Compile a plain function, ``small`` or not, and the plain functions of roughmdr that it calls, which are."""
     copy = rebuilt(function, {}, partial(compiled, small=True))
@@ -162,7 +183,9 @@ def specialise(
     the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
     plain = cast(FunctionType, loop)
-    copy = FunctionType(_with_literals(plain, law), {**plain.__globals__, "law": law}, loop.__name__)
+    with global_compiler_lock:
+        code = _with_literals(plain, law)
+    copy = FunctionType(code, {**plain.__globals__, "law": law}, loop.__name__)
     copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{law.__name__}"
     return njit(copy, inline=inline, small=small)
 
@@ -191,10 +214,11 @@ def as_argument(function: Callable[..., Any], *arguments: object) -> Callable[..
     if _config.DISABLE_JIT:
         return function
     key = function, compute_fingerprint(cast(Any, arguments))  # their types, sooner found than by ``typeof``
-    if key not in _ARGUMENTS:
-        plain = cast(Any, function).py_func
-        called = _kept_on_disk(partial(numba.njit, no_cpython_wrapper=True), _renamed(plain, "_argument"))
-        types = tuple(map(cast(Any, numba.typeof), arguments))
-        called.compile(types)
-        _ARGUMENTS[key] = _Addressed(called.overloads[types])
+    with global_compiler_lock:
+        if key not in _ARGUMENTS:
+            plain = cast(Any, function).py_func
+            called = _kept_on_disk(partial(numba.njit, no_cpython_wrapper=True), _renamed(plain, "_argument"))
+            types = tuple(map(cast(Any, numba.typeof), arguments))
+            called.compile(types)
+            _ARGUMENTS[key] = _Addressed(called.overloads[types])
     return cast(Callable[..., Any], _ARGUMENTS[key])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import StoreError
+from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import axis_unit, format_quantity
 from roughmdr.schema.wording import escape_controls, short_repr, suggestion
@@ -26,6 +26,7 @@ BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 COLOUR_MAP = "viridis"
 _LETTERS_PER_INCH = 12.0  # of a title
 _DPI = 160
+_REASON_LETTERS = 200  # of what matplotlib says, in a message
 _SALT = "roughmdr"  # so that an SVG of one figure is always the same
 
 
@@ -88,19 +89,51 @@ def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
 
 @contextmanager
 def styled(style: str | None) -> Iterator[None]:
-    """Draw in a style of matplotlib, by its name or file; StoreError if there is none."""
+    """Draw in a style of matplotlib, by its name or file; StoreError if there is none, or none to draw with here."""
     if style is None:
         yield
         return
     from matplotlib import style as styles
 
-    if style not in styles.available and style != "default" and not Path(style).is_file():
-        raise StoreError(f"style {short_repr(style)}: no style of matplotlib{suggestion(style, [*styles.available])}")
+    shown = short_repr(style)
+    if style not in styles.available and style != "default":
+        if not Path(style).is_file():
+            raise StoreError(f"style {shown}: no style of matplotlib{suggestion(style, [*styles.available])}")
+        _check_style_file(style)
     try:
         with styles.context(style):
             yield
-    except OSError as error:
-        raise StoreError(f"style {short_repr(style)}: cannot be read: {error}") from None
+    except RoughmdrError:
+        raise
+    except Exception as error:  # a style can ask for what this machine does not have, and set what cannot be drawn
+        reason = str(error).partition("\n")[0][:_REASON_LETTERS]
+        raise StoreError(f"style {shown}: matplotlib cannot draw with it here: {reason}") from None
+
+
+def _check_style_file(style: str) -> None:
+    """Raise StoreError unless a file sets parameters of matplotlib, and nothing else."""
+    import logging
+
+    from matplotlib import rc_params_from_file
+
+    log, faults = logging.getLogger("matplotlib"), list[str]()
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = lambda record: faults.append(record.getMessage())  # type: ignore[method-assign]
+    before = log.propagate
+    log.addHandler(handler)
+    log.propagate = False
+    try:
+        parameters = rc_params_from_file(style, use_default_template=False)
+    except (OSError, ValueError, KeyError) as error:
+        raise StoreError(f"style {short_repr(style)}: cannot be read as a style of matplotlib: {error}") from None
+    finally:
+        log.propagate = before
+        log.removeHandler(handler)
+    if faults:
+        reason = " ".join(faults[0].split())[:_REASON_LETTERS]
+        raise StoreError(f"style {short_repr(style)}: is no style of matplotlib: {reason}")
+    if not parameters:
+        raise StoreError(f"style {short_repr(style)}: sets no parameter of matplotlib")
 
 
 def save(figure: "Figure", path: Path) -> None:

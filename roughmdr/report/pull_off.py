@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.result import layout
-from roughmdr.result.means import holds, mean_of
+from roughmdr.result.means import holds, mean_of, pull_off_counts
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LATERAL, TRAVEL
@@ -57,7 +57,7 @@ def _definition(result: Labelled) -> str:
 def _describe_cell(result: Labelled, cell: tuple[int, ...]) -> str:
     """Describe the pull-off of a cell; empty where no run was computed."""
     runs = _runs(result)[cell]
-    having = int(result.variables["pull_off_count"].values[cell])
+    having = int(pull_off_counts(result)[cell])
     if not runs:
         return ""
     if not having:

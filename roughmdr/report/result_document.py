@@ -20,7 +20,7 @@ from roughmdr.report.reference import reference_lines
 from roughmdr.report.summary import describe_failed, first_remark, resolution_error
 from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
-from roughmdr.result.means import holds, mean_of
+from roughmdr.result.means import holds, mean_of, pull_off_counts
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import STATUSES
 
@@ -105,14 +105,14 @@ def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
 
 def _pull_off(result: Labelled, cell: tuple[int, ...]) -> PullOffTable | None:
     """Return the pull-off of a cell; None where no realisation has one."""
-    if "pull_off_count" not in result.variables or not result.variables["pull_off_count"].values[cell] > 0.0:
+    if "pull_off_count" not in result.variables or not (count := int(pull_off_counts(result)[cell])):
         return None
 
     def mean(name: str, statistic: int = 0) -> float:
         return float(mean_of(result, name)[statistic][cell]) if holds(result, name) else np.nan
 
     return {
-        "count": int(result.variables["pull_off_count"].values[cell]),
+        "count": count,
         "force": mean("pull_off_force"),
         "standard_error": mean("pull_off_force", 1),
         "of_mean": float(result.variables["pull_off_force_of_mean"].values[cell]),

@@ -13,6 +13,13 @@ def holds(result: Labelled, name: str) -> bool:
     return name in result.variables or f"{name}_mean" in result.variables
 
 
+def pull_off_counts(result: Labelled) -> Floats:
+    """Return how many realisations of each cell have a pull-off, in a part of a result those that it holds."""
+    if "pull_off_force" in result.variables:
+        return np.isfinite(result.variables["pull_off_force"].values).sum(axis=-1).astype(np.float64)
+    return np.asarray(result.variables["pull_off_count"].values)
+
+
 def mean_of(result: Labelled, name: str) -> tuple[Floats, Floats]:
     """Return the mean of a variable and its standard error, over the swept keys, and over step for a curve.
 

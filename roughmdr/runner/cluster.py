@@ -7,7 +7,7 @@ import threading
 import time
 import uuid
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 _WINDOW = 2  # tasks submitted for each thread of the cluster: one that runs, one that is ready
 _COUNT_INTERVAL = 1.0  # between counts of the threads [s]
 _TIMEOUT = 30.0  # for an answer of the scheduler [s]
+_GREETING_TIMEOUT = 5.0  # for the first bytes of a scheduler, so that a wrong address is told within ten seconds [s]
+_GREETING = b"pickle-protocol"  # key of the handshake with which a dask scheduler opens a connection
+_GREETING_BYTES = 2**12  # within which it is
 
 
 class Tls(NamedTuple):
@@ -89,12 +92,22 @@ class Cluster:
             sink(future.result())
 
 
-def _check_listening(address: str, context: "ssl.SSLContext | None") -> None:
-    """OSError where nobody listens, or one without a valid certificate; a client would try on and on."""
-    url = urlsplit(address)
-    with socket.create_connection((url.hostname or "", url.port or 0), _TIMEOUT) as plain:
+def _check_scheduler(address: str, context: "ssl.SSLContext | None") -> None:
+    """OSError where no dask scheduler listens, or one without a valid certificate; a client would try on and on."""
+    url, deadline = urlsplit(address), time.monotonic() + _GREETING_TIMEOUT
+    with ExitStack() as opened:
+        connection = opened.enter_context(
+            socket.create_connection((url.hostname or "", url.port or 0), _GREETING_TIMEOUT)
+        )
         if context is not None and address.startswith("tls://"):
-            context.wrap_socket(plain, server_hostname=url.hostname).close()
+            connection = opened.enter_context(context.wrap_socket(connection, server_hostname=url.hostname))
+        heard = b""
+        while _GREETING not in heard:
+            connection.settimeout(max(deadline - time.monotonic(), 1e-3))
+            part = connection.recv(_GREETING_BYTES)
+            heard += part
+            if not part or len(heard) > _GREETING_BYTES:
+                raise ConnectionError("another server listens there")
 
 
 @contextmanager
@@ -118,7 +131,7 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
             raise RoughmdrError(f"scheduler is {address!r}: with certificates it must be tls://HOST:PORT")
         if secure and context is None:
             raise RoughmdrError(f"scheduler is {address!r}: it needs --tls-ca, --tls-cert and --tls-key")
-        _check_listening(address, context)
+        _check_scheduler(address, context)
         client = Client(address, security=security, timeout=_TIMEOUT, set_as_default=False)
     except RoughmdrError:
         raise

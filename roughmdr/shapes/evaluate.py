@@ -1,7 +1,6 @@
 """f, f', g and G of a ``Profile`` over arrays of radii; compiled, so that it is imported when it is first used."""
 
 from collections.abc import Callable
-from functools import cache
 from types import ModuleType
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import two_product
-from roughmdr.numerics.jit import compiled, specialise
+from roughmdr.numerics.jit import compiled, once, specialise
 from roughmdr.shapes.profile import Params, Profile
 
 
@@ -37,7 +36,7 @@ def _loop(r: Floats, width: Floats, rise: Floats, params: Floats, f: Floats, slo
         slope[i] = rise[k] / width[k] * steepness
 
 
-@cache
+@once
 def _compiled_loop(profile: Profile, name: str) -> Callable[..., Any]:
     kernels = _Kernel(name)
     kernels.f_and_slope = compiled(profile.f_and_slope)

@@ -3,6 +3,7 @@
 import os
 import stat
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 from roughmdr.errors import RoughmdrError, StoreError
 
 NETCDF_ENDINGS = (".nc", ".nc4", ".cdf", ".netcdf")
+_UMASK_LOCK = threading.Lock()
 _TEMPORARY_PREFIX = ".roughmdr."
 
 
@@ -121,13 +123,19 @@ def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]
             yield temporary
             with temporary.open("rb") as written:
                 os.fsync(written.fileno())
-            mask = os.umask(0)
-            os.umask(mask)
-            temporary.chmod(0o666 & ~mask)
+            temporary.chmod(0o666 & ~_umask())
             temporary.replace(path)
             sync_folder(path.parent)
         finally:
             temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    """Return the mask of new files; it can only be read by setting it, for the whole process."""
+    with _UMASK_LOCK:
+        mask = os.umask(0)
+        os.umask(mask)
+    return mask
 
 
 def sync_folder(folder: Path) -> None:

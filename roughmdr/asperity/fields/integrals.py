@@ -9,7 +9,6 @@ converges fast. A panel on which the last Legendre coefficients are not small is
 
 import math
 from collections.abc import Callable
-from functools import cache
 from types import ModuleType
 from typing import NamedTuple
 
@@ -17,7 +16,7 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import gauss, last_coefficients
-from roughmdr.numerics.jit import compiled, specialise
+from roughmdr.numerics.jit import compiled, once, specialise
 from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
 
@@ -243,7 +242,7 @@ def field(point: float, weight: int, a: float, t: float, width: float, params: F
     return total
 
 
-@cache
+@once
 def field_kernel(shape: type[Shape]) -> Callable[..., float]:
     """Return ``field`` compiled for a shape that is not a flat punch."""
     profile, kernels = profile_of(shape), FieldKernels(shape.name)

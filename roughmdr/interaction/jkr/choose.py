@@ -1,17 +1,16 @@
 """The kernels of adhesive contacts that feel each other, for a shape."""
 
 from collections.abc import Callable
-from functools import cache
 
 from roughmdr.interaction.contacts import coupled_kernels
 from roughmdr.interaction.jkr import contacts, lone
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
-from roughmdr.numerics.jit import specialise
+from roughmdr.numerics.jit import once, specialise
 
 
-@cache
+@once
 def jkr_kernels(kernels: Kernels) -> JkrKernels:
     """Return the kernels of a shape without adhesion with those of its adhesive contacts, compiled."""
     coupled = coupled_kernels(kernels)

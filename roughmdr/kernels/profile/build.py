@@ -3,7 +3,6 @@
 import inspect
 import math
 from collections.abc import Callable
-from functools import cache
 from types import ModuleType
 from typing import Any
 
@@ -18,7 +17,7 @@ from roughmdr.kernels.profile.interface import ProfileKernels, law
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, NUMBER, RANGE, STRENGTH, TENSION, first_node
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import Pair
-from roughmdr.numerics.jit import compiled, specialise
+from roughmdr.numerics.jit import compiled, once, specialise
 from roughmdr.shapes import Cone, Paraboloid, Shape, Sphere, TabledShape
 from roughmdr.shapes.power_profiles import profile_of
 from roughmdr.shapes.profile import Profile
@@ -172,7 +171,7 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
     }
 
 
-@cache
+@once
 def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> ProfileKernels:
     """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range; ``similar`` for
     asperities without adhesion that share one row.

@@ -1,0 +1,220 @@
+"""Results and fits of which each array and attribute in turn is removed, renamed, or of another type or value."""
+
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+from foreign import undefined
+from foreign_commands import RESULTS
+from measurements import CASES, noise_of
+from scenes import ASPERITIES, CONDUCTION, scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.errors import RoughmdrError
+from roughmdr.fitting.stored import as_fit
+from roughmdr.fitting.words import describe_fit
+from roughmdr.report.cite import describe_papers
+from roughmdr.report.error_table import error_rows
+from roughmdr.report.export.write import Export, document_of
+from roughmdr.report.info import describe
+from roughmdr.report.result_document import result_table
+from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.result_form import forms_of
+from roughmdr.storage.result_validation import as_result
+from roughmdr.variables import STATED
+
+FEW = {**ASPERITIES, "count": 6, "patch": "0.3 mm", "placement": "hard_core", "min_distance": "20 um"}
+PATH = {"separation": {"start": "2.5 um", "stop": "0 um", "steps": 4}, "unload": True}
+SCENES = {
+    "curves": RESULTS["curves"],
+    "statistics": RESULTS["statistics"],
+}
+LARGE = {
+    "accuracy": RESULTS["accuracy"],
+    "conducting": scene(
+        asperities={**ASPERITIES, "count": 5},
+        adhesion=None,
+        conduction=CONDUCTION,
+        path={"separation": {"start": "3 um", "stop": "0 um", "steps": 4}},
+        output={"variables": ["force", "contact_area", "thermal_conductance"]},
+        batch={"realizations": 2},
+    ),
+    "pairs": scene(asperities=FEW, path=PATH, interaction={"model": "pairwise"}, batch={"realizations": 2}),
+    "lateral": scene(
+        asperities={**ASPERITIES, "count": 20},
+        adhesion=None,
+        tangential={"friction": 0.3},
+        path={"separation": "1 sigma", "lateral": ["0 nm", "40 nm", "-20 nm"]},
+        output={"variables": ["tangential_force", "friction_energy", "force"]},
+        batch={"realizations": 2},
+    ),
+    "elements": scene(
+        asperities={**ASPERITIES, "count": 4, "patch": "100 um"},
+        adhesion=None,
+        reference={"model": "boundary_elements", "error": 0.3},
+        path={"separation": ["0.5 um", "0 um"]},
+        batch=None,
+    ),
+}
+OTHER_VALUES = (None, 5, "text")
+NUMBERS = (np.nan, np.inf, -1.0, 0.0, 1e300)
+READERS: dict[str, Callable[[Labelled], object]] = {
+    "info": lambda data: describe(data, None, cells=False),
+    "cells": lambda data: describe(data, None, cells=True),
+    "json": lambda data: bool(result_table(data, None)),
+    "cite": lambda data: describe_papers(data.attrs["scene"], data, bibtex=False),
+    "errors": lambda data: str(list(error_rows(data))),
+    "export": lambda data: str(document_of(data, None, Export(to="json", error=0.1))[0].header),
+}
+
+
+def made(name: str) -> Labelled:
+    with warnings.catch_warnings(action="ignore"):
+        return Labelled.of(rm.run((SCENES | LARGE)[name]))
+
+
+def alterations(data: Labelled) -> Iterator[tuple[str, Labelled]]:
+    """All single changes of the arrays and attributes that are there."""
+    for place in ("variables", "coordinates"):
+        arrays: dict[str, Array] = getattr(data, place)
+        for name, array in arrays.items():
+            others = {key: each for key, each in arrays.items() if key != name}
+
+            def placed(new: dict[str, Array], place: str = place) -> Labelled:
+                return data._replace(**{place: new})
+
+            yield f"no {name}", placed(others)
+            yield f"{name} renamed", placed({**others, "renamed": array})
+            for change, other in _others(array):
+                yield f"{name} {change}", placed({**others, name: other})
+            for key in {*array.attrs, "units"}:
+                kept = {each: value for each, value in array.attrs.items() if each != key}
+                for value in OTHER_VALUES:
+                    attrs = kept if value is None else {**kept, key: value}
+                    yield f"{name}.{key} = {value!r}", placed({**others, name: array._replace(attrs=attrs)})
+    for key in {*data.attrs, *STATED}:
+        kept = {each: value for each, value in data.attrs.items() if each != key}
+        for value in OTHER_VALUES:
+            yield f"{key} = {value!r}", data._replace(attrs=kept if value is None else {**kept, key: value})
+
+
+def _others(array: Array) -> Iterator[tuple[str, Array]]:
+    values = array.values
+    yield "over one dimension more", Array(("odd", *array.dims), values[None], array.attrs)
+    if values.dtype.kind in "OU":
+        yield "of numbers", array._replace(values=np.zeros(values.shape))
+        return
+    yield "of texts", array._replace(values=np.full(values.shape, "text", dtype=object))
+    for kind in {"f8", "f4", "i8"} - {values.dtype.str[1:]}:
+        yield f"of {kind}", array._replace(values=np.nan_to_num(values).astype(kind))
+    for number in NUMBERS if values.dtype.kind == "f" else (0, 1, 7, -1):
+        yield f"all {number}", array._replace(values=np.full_like(values, number))
+
+
+def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, Callable[[Labelled], object]]) -> None:
+    """Whatever is accepted is told by every reader, or refused in words, without a number that is none."""
+    for change, altered in alterations(data):
+        try:
+            accepted = of(altered)
+        except RoughmdrError:
+            continue
+        for name, reader in readers.items():
+            try:
+                said = str(reader(accepted))
+            except RoughmdrError:
+                continue
+            except Exception as error:
+                raise AssertionError(f"{name} of a file with {change}") from error
+            assert not undefined(said), (change, name)
+
+
+@pytest.mark.parametrize("name", [*SCENES, *(pytest.param(name, marks=pytest.mark.large) for name in LARGE)])
+def test_every_array_and_attribute_in_turn(name: str) -> None:
+    data = made(name)
+    assert as_result(data) == data
+    read(data, as_result, READERS)
+
+
+@pytest.fixture(scope="module")
+def fit(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file, case = tmp_path_factory.mktemp("fit") / "fit.nc", CASES["adhesive"]
+    force = case.force()
+    measured = case.measure(noise_of("constant", force), force)
+    rm.fit(measured, case.scene, ["adhesion.work", "material.modulus"], out=file)
+    return file
+
+
+def test_every_array_and_attribute_of_a_fit_in_turn(fit: Path) -> None:
+    with xr.open_dataset(fit) as stored:
+        data = Labelled.of(stored.load())
+    cite = {"cite": lambda each: describe_papers(each.attrs["scene"], None, bibtex=False)}
+    read(data, as_fit, {"info": describe_fit, **cite})
+    required = ("no trust", "no kind", "no material_modulus_low", "no residual")
+    altered = dict(alterations(data)) | {f"no {name}": each for name, each in _without_attributes(data)}
+    for change in required:
+        with pytest.raises(RoughmdrError, match=f"it has {change}"):
+            as_fit(altered[change])
+
+
+def _without_attributes(data: Labelled) -> Iterator[tuple[str, Labelled]]:
+    for name in data.attrs:
+        yield name, data._replace(attrs={key: value for key, value in data.attrs.items() if key != name})
+
+
+def test_all_that_is_declared_has_a_form() -> None:
+    """Every variable of a result is declared, with its unit, so that another unit is not read as its own."""
+    data = made("curves")
+    forms = forms_of(data.variables["status"].dims)
+    assert set(data.variables) <= set(forms)
+    for name, array in data.variables.items():
+        assert array.attrs.get("units", "") == forms[name].units
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda data: data["material_modulus"].__imul__(1000.0), "outside its own interval"),
+        (lambda data: data["material_modulus"].attrs.update(units="GPa"), "not those that were written"),
+        (lambda data: [data[f"material_modulus{end}"].__imul__(2.0) for end in ("", "_high")], "not those that were"),
+        (lambda data: data.attrs.update(trust="force within about 0.1 %"), "not those that were written"),
+    ],
+)
+def test_a_fit_is_held_to_its_checksum(fit: Path, tmp_path: Path, change: Callable[[Any], None], says: str) -> None:
+    with xr.open_dataset(fit) as stored:
+        data = stored.load()
+    change(data)
+    data.to_netcdf(tmp_path / "fit.nc")
+    for command in ("info", "cite", "plot"):
+        picture = ["-o", str(tmp_path / "a.png")] if command == "plot" else []
+        assert says in CliRunner().invoke(main, [command, str(tmp_path / "fit.nc"), *picture]).stderr
+    unchanged = CliRunner().invoke(main, ["info", str(fit)])
+    assert unchanged.exit_code == 0
+    assert not unchanged.stderr
+
+
+def test_what_users_do_with_xarray_is_read(tmp_path: Path) -> None:
+    """A copy is as it was written, notes of one's own included; a part is read, and is said to be another."""
+    out, copy = tmp_path / "out.nc", tmp_path / "copy.nc"
+    rm.run(RESULTS["accuracy"], out)
+    changed = {
+        "copy": (lambda data: data, ""),
+        "note": (lambda data: data.assign_attrs(note="of sample 3", title="Sample 3", history="ncks"), ""),
+        "cell": (lambda data: data.isel(cell=[0]), "not those that were written"),
+        "realisation": (lambda data: data.isel(realization=[0], cell=0), "not those that were written"),
+        "steps": (lambda data: data.isel(step=slice(3)), "not those that were written"),
+        "factor": (lambda data: data.assign(force=2.0 * data.force), "not those that were written"),
+        "more": (lambda data: data.assign(own=data.force**2), "not those that were written"),
+    }
+    for name, (change, says) in changed.items():
+        with xr.open_dataset(out) as stored:
+            change(stored.load()).to_netcdf(copy)
+        done = CliRunner().invoke(main, ["info", str(copy)])
+        assert done.exit_code == 0, (name, done.output)
+        assert says in done.stderr, name
+        assert bool(says) == bool(done.stderr), name
