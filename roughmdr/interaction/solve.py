@@ -21,6 +21,7 @@ from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
 from roughmdr.interaction.totals import Overlap, Step
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
 
 DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
@@ -96,7 +97,7 @@ def solve_path(
     last = math.inf
     state: State | None = None
     failures = 0
-    for h in (-distinct / length).tolist():
+    for h in each_step((-distinct / length).tolist()):
         if failures == _FAILURES:
             steps.append(Step(error=math.inf))
             continue
