@@ -14,6 +14,7 @@ from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import as_argument, once, specialise
+from roughmdr.numerics.underway import filling
 
 _BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
 _NONE = np.zeros(0)
@@ -77,7 +78,8 @@ def separations_of(
         asperities.far.number[:] = 0
         filled = separation[leg.first : leg.first + leg.demand.size]
         room = _room(events.size + 1 if jumps and kernels.adhesive else 0)
-        follow(h, leg.demand, search, filled, room)
+        with filling(filled):
+            follow(h, leg.demand, search, filled, room)
         if np.isnan(filled).any():
             raise OutOfRange(
                 f"the contact of an asperity is not representable: {kernels.name} with "

@@ -10,14 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import (
-    jump_seconds,
-    law_seconds,
-    locates_jumps,
-    reference_bytes,
-    reference_seconds,
-    search_factor,
-)
+from roughmdr.batch.costs import along_seconds, law_seconds, reference_bytes, reference_seconds
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
@@ -34,7 +27,6 @@ _PARTS = (
 _RIGHT_TO = 3.0  # factor to which the costs of ``costs`` are right: small parts may be lost in the noise of the clock
 _LONG = 0.5  # seconds of a first run that is not repeated for the sake of the clock
 _REPEATS = 10  # of the last part
-_HEIGHTS = 1000  # of which a share touches
 _MARGIN = 2.5  # runs of a part for which there must be time left: one with the memory traced
 
 
@@ -64,18 +56,9 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``, as is
     that of a reference. RoughmdrError where the cell cannot be computed.
     """
-    cost = _measure_law(cell, estimator, variables, budget)
-    law = cost.seconds * search_factor(cell, estimator)  # parts are run along separations
-    if locates_jumps(cell, variables):
-        law += jump_seconds(touching(cell, estimator))
+    cost = _measure_law(cell, estimator, variables, budget)  # along separations
+    law = cost.seconds * law_seconds(cell, estimator) / along_seconds(cell, estimator)
     return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
-
-
-def touching(cell: Cell, estimator: str) -> float:
-    """Return about how many asperities the flat reaches."""
-    heights = _drawn(cell.scene, _HEIGHTS, estimator).height
-    reached = np.count_nonzero(heights > cell.path.separation.min())
-    return cell.scene.asperities.expected_count * reached / max(heights.size, 1)
 
 
 def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
@@ -83,7 +66,7 @@ def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float
     if cell.scene.viscoelastic is not None:
         elastic = cell._replace(scene=cell.scene.model_copy(update={"viscoelastic": None}))
         cost = _measure_law(elastic, estimator, variables, budget)
-        more = law_seconds(cell, estimator) / law_seconds(elastic, estimator)
+        more = along_seconds(cell, estimator) / along_seconds(elastic, estimator)
         return cost._replace(seconds=cost.seconds * more)
     if estimator == "expected" or cell.scene.needs_positions:
         return _in_proportion(cell, estimator, variables, budget)
@@ -106,7 +89,7 @@ def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float
     least = run_part(1, 1)
     size, times, memory = _grow(run, lambda size, taken: scaled(taken, size, *sizes[size + 1]), len(sizes), budget)
     taken = _Time(*np.median(times, axis=0).tolist())
-    least_known = law_seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
+    least_known = along_seconds(cell, estimator) / _RIGHT_TO if size == 0 and len(sizes) > 1 else 0.0
     whole = max(scaled(taken, size, count, cell.steps), least_known)
     return Cost(whole, memory * count / sizes[size][0], *sizes[size])
 
@@ -123,7 +106,7 @@ def _in_proportion(cell: Cell, estimator: str, variables: list[str], budget: flo
         _thinned(cell, steps)._replace(scene=cell.scene.model_copy(update={"asperities": section}))
         for section, (_, steps) in zip(sections, sizes, strict=True)
     ]
-    foreseen = [law_seconds(part, estimator) for part in (*parts, cell)]
+    foreseen = [along_seconds(part, estimator) for part in (*parts, cell)]
     if _MARGIN * foreseen[0] > budget:
         return Cost(foreseen[-1], 0.0)
 

@@ -4,7 +4,6 @@ Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipeli
 about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +47,10 @@ _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
-_JUMP = 1e-4  # of a contact whose loss on a machine is located: 0.4e-4 s, and 2.7e-4 s where each is lost by itself
+_JUMP, _JUMP_VISITS = 3e-5, 14.0
+"""Seconds for each contact whose loss on a machine is located, and visits that it takes of each other contact: 12
+evaluations of those that are left, half of all on average, each twice as long as in a sum, and a part of the sum."""
+_HEIGHTS = 1000  # asperities that are drawn to tell which share touches
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/coupling.py``).
@@ -72,7 +74,13 @@ def seconds(cell: Cell, estimator: str) -> float:
 
 
 def law_seconds(cell: Cell, estimator: str) -> float:
-    """Return about how long the law of one run takes [s]."""
+    """Return about how long the law of one run takes [s], with the search for its separations and jumps."""
+    found = along_seconds(cell, estimator) * _search_factor(cell, estimator)
+    return found + _jump_seconds(cell) if locates_jumps(cell, estimator) else found
+
+
+def along_seconds(cell: Cell, estimator: str) -> float:
+    """Return about how long the law of one run takes [s] along separations that are given."""
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
     if cell.lateral is not None:  # whose law is computed once at each amplitude
         steps = np.unique(cell.lateral.memory.amplitude).size
@@ -90,7 +98,7 @@ def law_seconds(cell: Cell, estimator: str) -> float:
     return begin + section.expected_count * (_DRAW + _visit_seconds(adhesion, section.shape_name) * steps)
 
 
-def search_factor(cell: Cell, estimator: str) -> float:
+def _search_factor(cell: Cell, estimator: str) -> float:
     """Return how many times as long a run takes whose separations a load, a spring or a preload leads to."""
     if cell.scene.path.control == "separation" or cell.lateral is not None or estimator == "expected":
         return 1.0
@@ -99,15 +107,26 @@ def search_factor(cell: Cell, estimator: str) -> float:
     return _SOUGHT_ADHERING if cell.scene.work > 0.0 else _SOUGHT_PAIRS
 
 
-def locates_jumps(cell: Cell, variables: Iterable[str]) -> bool:
-    """Return whether jumps of the flat are located, since ``variables`` has the energy that they lose."""
+def locates_jumps(cell: Cell, estimator: str) -> bool:
+    """Return whether jumps of the flat are located, since the energy that they lose is asked for."""
     pulled = cell.machine is not None and not cell.fixed_grips and bool((np.diff(cell.machine.demand) > 0.0).any())
-    return pulled and cell.scene.work > 0.0 and not cell.scene.needs_positions and not LOSSES.isdisjoint(variables)
+    alone = estimator != "expected" and not cell.scene.needs_positions
+    return pulled and alone and cell.scene.work > 0.0 and not LOSSES.isdisjoint(cell.scene.output.variables)
 
 
-def jump_seconds(contacts: float) -> float:
-    """Return about how long it takes to locate the jumps by which so many contacts are lost [s]."""
-    return _JUMP * contacts
+def _jump_seconds(cell: Cell) -> float:
+    """Return about how long it takes to locate the jumps by which all contacts are lost [s]."""
+    scene, contacts = cell.scene, touching(cell)
+    visit = _visit_seconds(scene.adhesion_model, scene.asperities.shape_name)
+    return contacts * (_JUMP + _JUMP_VISITS * contacts * visit)
+
+
+def touching(cell: Cell) -> float:
+    """Return about how many asperities the flat reaches, as a few of them tell."""
+    source = cell.scene.asperities
+    heights = source.limited_to(_HEIGHTS).ensemble(cell.scene.seed, 0).height
+    reached = np.count_nonzero(heights > cell.path.separation.min())
+    return source.expected_count * reached / max(heights.size, 1)
 
 
 def _visit_seconds(adhesion: Adhesion, shape: str) -> float:

@@ -135,6 +135,12 @@ class Plan(NamedTuple):
         return count_by_cell((text for cell in self.cells for text in neglected(cell.scene, names)), len(self.cells))
 
     @property
+    def lattice_lines(self) -> list[str]:
+        """Lines on the lattices that asperities fill, with the number of cells where not of all."""
+        lines = (cell.scene.asperities.lattice_in_words for cell in self.cells)
+        return count_by_cell((line for line in lines if line), len(self.cells))
+
+    @property
     def map_lines(self) -> list[str]:
         """Lines on the maps of the asperities, with the number of cells where not of all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.map_lines), len(self.cells))

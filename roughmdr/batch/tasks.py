@@ -175,6 +175,7 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
         "grid_points": result.grid_points,
         "reference_points": result.reference_points,
         "conductance_error": result.conductance_error,
+        "tangential_error": result.tangential_error,
         "avalanche_count": result.avalanche_count,
         "avalanche_size_max": result.avalanche_size_max,
         "remark": "\n".join(result.warnings),

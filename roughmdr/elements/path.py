@@ -9,6 +9,7 @@ from roughmdr.elements.half_space import BoundaryElements, Patches
 from roughmdr.elements.surface import Surface
 from roughmdr.interaction.totals import Step
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.underway import each_step
 
 _OF_COARSER = 0.5
 """Error of the force on a grid over what changes on every other point of it: of order 1.6 in the cells. On maps the
@@ -66,7 +67,7 @@ def _along(
 ) -> list[Step]:
     """Return the totals in units of the side and E*, with the error by what a coarser grid finds."""
     steps, changes = list[Step](), list[float]()
-    for h in downwards:
+    for h in each_step(downwards):
         force, coarse = grid.press(h), coarser.press(h)
         rigidity = grid.stiffness(h) if stiffness and math.isfinite(force) else 0.0
         changes.append(abs(coarse / force - 1.0) if force > 0.0 and math.isfinite(coarse + force) else 0.0)

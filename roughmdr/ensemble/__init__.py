@@ -15,7 +15,8 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FileAsperities
 from roughmdr.ensemble.gaussian.section import NayakAsperities
 from roughmdr.ensemble.maps.section import SurfaceAsperities
-from roughmdr.ensemble.random.section import AnyRandomAsperities, RandomAsperities
+from roughmdr.ensemble.random.section import RandomAsperities
+from roughmdr.ensemble.random.sections_of_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.errors import SceneError, warn_limits

@@ -1,4 +1,4 @@
-"""Positions of asperities on a square patch that repeats periodically."""
+"""Positions of asperities on a square patch that repeats periodically; ``lattice`` has those that fill a lattice."""
 
 import math
 
@@ -20,7 +20,7 @@ def random_positions(streams: Streams, count: int, patch: float) -> tuple[Floats
     return x, y
 
 
-def hexagonal_positions(count: int, patch: float) -> tuple[Floats, Floats]:
+def nearly_hexagonal_positions(count: int, patch: float) -> tuple[Floats, Floats]:
     """Return x and y [m] of ``count`` points in rows, as near to a hexagonal lattice as a square patch [m] allows.
 
     Every second row is shifted by half a site, and the number of rows is even, so that the patch is periodic. Where the

@@ -5,23 +5,26 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, StrictBool, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.lattice import LATTICES, Lattice, at_most, lattice_of, nearest_that_fit
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.streams import Streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.quantities import Length, Quantity, Section
+from roughmdr.schema.quantities import EntryError, Length, Quantity, Section
+from roughmdr.schema.units import format_quantity
 from roughmdr.shapes import SharedProfile
 
 MAX_COUNT = 1_000_000_000
 """Asperities that a patch may hold."""
 
-HEXAGONAL_CONSTANT = 3.92103158
-"""Minus the sum of 1/r over a hexagonal lattice of unit density in a uniform background of the opposite sign: twice the
-energy of an electron in such a crystal (L. Bonsall, A. A. Maradudin, Phys. Rev. B 15 (1977) 1959).
+_SIDES = "patch_x", "patch_y"
+LATTICE_CONSTANTS = {"square": 3.90026492, "hexagonal": 3.92103158}
+"""Minus the sum of 1/r over a lattice of unit density in a uniform background of the opposite sign: twice the energy of
+an electron in such a crystal (L. Bonsall, A. A. Maradudin, Phys. Rev. B 15 (1977) 1959).
 """
 
 
@@ -74,6 +77,11 @@ class Source(Section):
         return ()
 
     @property
+    def lattice_in_words(self) -> str:
+        """The lattice that the asperities fill, with its pitch and patch; empty where they fill none."""
+        return ""
+
+    @property
     def repeats(self) -> bool:
         """Whether the surface is one period of one without end."""
         return True
@@ -96,6 +104,12 @@ class Source(Section):
     def nominal_area(self) -> float | None:
         """[m2]; None where it is unknown."""
         raise NotImplementedError
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Sides of the patch along x and y [m]; of a square where only the nominal area is known, which must be."""
+        side = math.sqrt(self.nominal_area or 0.0)
+        return side, side
 
     @property
     def exclusion_distance(self) -> float:
@@ -185,15 +199,16 @@ class Source(Section):
 
 
 class PatchSource(Source):
-    """A source whose asperities lie on a square of side ``patch``."""
+    """A source whose asperities lie on a square of side ``patch``, or fill a lattice on an oblong of that area."""
 
     has_usual_distance: ClassVar[bool] = False
     """Whether ``core_distance`` is known without min_distance."""
 
     shape: str
     patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]  # its square is a float
-    placement: Literal["random", "hard_core", "hexagonal"] = "random"
+    placement: Literal["random", "hard_core", "square", "hexagonal"] = "random"
     min_distance: Length | None = None
+    vacancies: StrictBool = False
 
     @field_validator("min_distance")
     @classmethod
@@ -208,6 +223,42 @@ class PatchSource(Source):
             raise RoughmdrError('placement = "hard_core" needs min_distance')
         return self
 
+    @model_validator(mode="after")
+    def _vacancies_are_of_a_lattice(self) -> "PatchSource":
+        if self.vacancies and self.placement != "hexagonal":
+            raise EntryError("vacancies", True, 'goes with placement = "hexagonal" only')
+        return self
+
+    def check_lattice(self) -> None:
+        """Raise EntryError where the asperities fill no lattice though they are placed on one."""
+        if self.placement in LATTICES and not self.vacancies and self.lattice is None:
+            count = round(self.expected_count)
+            others = " or ".join(map(str, nearest_that_fit(self.placement, count)))
+            message = f"{count} asperities fill no {self.placement} lattice on a patch that repeats; {others} do"
+            vacancies = "; vacancies = true leaves sites empty" if self.placement == "hexagonal" else ""
+            raise EntryError("placement", self.placement, f"{message}{vacancies}")
+
+    def at_most(self, count: int) -> int:
+        """Return how many asperities are ``count`` at most, or all; on a lattice, as many as fill one."""
+        whole = round(self.expected_count)
+        return at_most(self.placement, count) if self.lattice is not None and count < whole else min(count, whole)
+
+    @property
+    def lattice(self) -> Lattice | None:
+        """The lattice that the asperities fill; None where they fill none."""
+        if self.placement not in LATTICES or self.vacancies:
+            return None
+        return lattice_of(self.placement, round(self.expected_count), self.nominal_area)
+
+    @property
+    def lattice_in_words(self) -> str:
+        lattice = self.lattice
+        if lattice is None:
+            return ""
+        sides = " x ".join(format_quantity(side, "m") for side in lattice.sides)
+        pitch = format_quantity(lattice.pitch, "m")
+        return f"{lattice.kind} lattice, {lattice.rows} rows of {lattice.columns}, pitch {pitch}, patch {sides}"
+
     @property
     def shape_name(self) -> str:
         return self.shape
@@ -219,8 +270,8 @@ class PatchSource(Source):
 
     @property
     def exclusion_distance(self) -> float:
-        if self.placement == "hexagonal":
-            return 0.5 * HEXAGONAL_CONSTANT / math.pi * self.patch / math.sqrt(self.expected_count)
+        if self.placement in LATTICES:
+            return 0.5 * LATTICE_CONSTANTS[self.placement] / math.pi * self.patch / math.sqrt(self.expected_count)
         return self.core_distance
 
     @property
@@ -228,18 +279,25 @@ class PatchSource(Source):
         return self.patch * self.patch
 
     @property
-    def exclusion_attr(self) -> dict[str, float | int | str]:
-        """``exclusion_distance`` as an attribute of ensembles that have one."""
-        return {"exclusion_distance": self.exclusion_distance} if self.exclusion_distance > 0.0 else {}
+    def sides(self) -> tuple[float, float]:
+        return (self.patch, self.patch) if (lattice := self.lattice) is None else lattice.sides
+
+    @property
+    def patch_attrs(self) -> dict[str, float | int | str]:
+        """The sides of the patch, and ``exclusion_distance`` where there is one, as attributes of ensembles."""
+        sides = {"patch": self.patch} if self.lattice is None else dict(zip(_SIDES, self.sides, strict=True))
+        return {**sides, **({"exclusion_distance": self.exclusion_distance} if self.exclusion_distance > 0.0 else {})}
 
     def positions(self, streams: Streams, count: int) -> dict[str, Floats]:
         """Return x and y [m] of ``count`` asperities; OutOfRange where they do not fit at the distance asked for."""
         from roughmdr.ensemble import placement
 
-        if self.placement == "hard_core":
+        if (lattice := self.lattice) is not None:
+            x, y = lattice.positions()
+        elif self.placement == "hard_core":
             x, y = placement.hard_core_positions(streams, count, self.patch, self.core_distance)
         elif self.placement == "hexagonal":
-            x, y = placement.hexagonal_positions(count, self.patch)
+            x, y = placement.nearly_hexagonal_positions(count, self.patch)
         else:
             x, y = placement.random_positions(streams, count, self.patch)
         return {"x": x, "y": y}

@@ -155,8 +155,7 @@ def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
     source, modulus = problem.source, problem.effective_modulus
     if interaction is None or source.nominal_area is None:
         return None
-    sides = math.sqrt(source.nominal_area), math.sqrt(source.nominal_area)
-    coupling = coupling_of(interaction, modulus, sides, source.exclusion_distance)
+    coupling = coupling_of(interaction, modulus, source.sides, source.exclusion_distance)
     if coupling == 0.0:
         return None
     problem = problem._replace(rows=(FORCE, STIFFNESS), unjudged=())

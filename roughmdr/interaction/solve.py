@@ -22,6 +22,7 @@ from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
 from roughmdr.interaction.totals import Overlap, Step
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
 
 DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
@@ -132,7 +133,7 @@ def solve_path(
     """
     flat = Flat(ensemble, effective_modulus, interaction, names)
     told, steps, state = math.inf if at is None else separation[at], list[Step](), None
-    for h in separation.tolist():
+    for h in each_step(separation.tolist()):
         step, found = flat.go(h)
         steps.append(step)
         if found is not None and (h < told if at is None else h == told):

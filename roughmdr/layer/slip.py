@@ -62,9 +62,9 @@ class Tangential(NamedTuple):
         """The approach of the normal contacts over the lateral displacement that unloads as much: c [1]."""
         return self.stiffness_ratio / self.friction
 
-    def stiffness(self, contact_radius_sum: Floats) -> Floats:
-        """Return the tangential stiffness [N/m] of contacts that stick, from the sum of their radii [m]: 2 G* a."""
-        return 2.0 * self.stiffness_ratio * self.effective_modulus * contact_radius_sum
+    def stiffness(self, radius: Floats) -> Floats:
+        """Return the tangential stiffness [N/m] of contacts that stick, from their conductance radius [m]: 2 G* a."""
+        return 2.0 * self.stiffness_ratio * self.effective_modulus * radius
 
 
 def partial_slip(

@@ -5,10 +5,12 @@ from collections.abc import Callable, Iterable, Iterator
 
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.errors import OutOfRange
-from roughmdr.layer.slip import Tangential, normal_variables, partial_slip
+from roughmdr.layer.conductance import RADIUS
+from roughmdr.layer.slip import Tangential, partial_slip
 from roughmdr.loading.lateral import LateralPath
 from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
+from roughmdr.model_error.conductance import sticking_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.tangential import bodies_of, ratio_of
@@ -18,7 +20,8 @@ from roughmdr.variables import TANGENTIAL_VARIABLES
 Path = LoadingPath | MachinePath | LateralPath
 NormalLaw = Callable[[LoadingPath | MachinePath, list[str]], LoadSeparation]
 """A path of the flat, or of a machine, and the variables asked for -> the law along it."""
-_STICKING = "tangential_stiffness"
+_STICKING, _LONE_RADIUS = "tangential_stiffness", "contact_radius_sum"
+_ISOTROPIC = ("random", "nayak")  # sources whose asperities stand in no direction rather than in another
 
 
 def tangential_of(scene: Scene) -> Tangential | None:
@@ -59,17 +62,40 @@ def with_tangential(scene: Scene, normal: NormalLaw, path: Path, names: list[str
     """
     if not isinstance(path, LateralPath) and _STICKING not in names:
         return normal(path, names)
+    if not isinstance(path, LateralPath):
+        return _sticking(scene, normal, path, names)
     tangential = tangential_of(scene)
     assert tangential is not None  # as ``Scene`` validates
-    if not isinstance(path, LateralPath):
-        law = normal(path, normal_variables(names))
-        sticking = {_STICKING: tangential.stiffness(law.variables["contact_radius_sum"])}
-        return law._replace(variables=law.variables | sticking).only(names)
 
     def along(separation: Floats, names: list[str]) -> LoadSeparation:
         return normal(LoadingPath.along(separation, unload=False, adhesive=False), names)
 
     return partial_slip(along, _separation(normal, path), path.memory, tangential, names)
+
+
+def _sticking(scene: Scene, normal: NormalLaw, path: LoadingPath | MachinePath, names: list[str]) -> LoadSeparation:
+    """Return the law with the stiffness of contacts that stick: 2 G* times their conductance radius, and its error.
+
+    Along x a tangential force moves the surface by [1 + (1 - G*/E*) cos(2 theta)]/(pi G* r), a normal one by
+    1/(pi E* r) (Cerruti and Boussinesq: K. L. Johnson, Contact Mechanics (1985), sections 3.2 and 3.6). On average over
+    the directions theta contacts are coupled alike along both.
+    """
+    tangential, of_contacts = tangential_of(scene), [name for name in names if name != _STICKING]
+    assert tangential is not None  # as ``Scene`` validates
+    law = normal(path, list(dict.fromkeys([*of_contacts, RADIUS, _LONE_RADIUS, "contact_area", "contact_count"])))
+    radius, lone, area, count = (
+        law.variables[name] for name in (RADIUS, _LONE_RADIUS, "contact_area", "contact_count")
+    )
+    touching = lone > 0.0
+    isotropic = scene.asperities.source in _ISOTROPIC
+    error = sticking_error(
+        law.conductance_error,
+        tangential.stiffness_ratio,
+        1.0 - radius[touching] / lone[touching],
+        area[touching] / (scene.nominal_area or math.nan) / (count[touching] if isotropic else 1.0),
+    )
+    sticking = {_STICKING: tangential.stiffness(radius)}
+    return law._replace(variables=law.variables | sticking, tangential_error=error).only(names)
 
 
 def _separation(normal: NormalLaw, path: LateralPath) -> float:

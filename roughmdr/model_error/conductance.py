@@ -40,6 +40,20 @@ def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensembl
     return np.minimum(error, 1.0)
 
 
+def sticking_error(conductance_error: float, ratio: float, coupled: Floats, share: Floats) -> float:
+    """Return the error of the stiffness of contacts that stick, as normal ones times G*/E*, the ``ratio``; NaN as that
+    of the conductance.
+
+    The directions of neighbours add at most 1 - G*/E* of what they change. That is ``coupled``, the share by which they
+    lower the conductance radius; where a patch repeats, whose counter pressure hides it, at random about the change of
+    a conductance by neighbours, over the root of the number of contacts (30 patches of 10, 40 and 160 discs each, 0.2
+    and 2 % contact: 0.5 to 0.8 of that at most). ``share`` is the contact fraction over that number; shape (n,) each.
+    """
+    by_chance = _INDEPENDENT["asperities"] * np.sqrt(share)
+    directions = float(np.max(np.maximum(np.abs(coupled), by_chance), initial=0.0))
+    return min(conductance_error + abs(1.0 - ratio) * directions, 1.0)
+
+
 def conductance_error(assumptions: Assumptions, model_error: ModelError, contact_fraction: Floats | None) -> float:
     """Return the largest error along a path, with the parts that are not by interaction; NaN without a nominal area."""
     if contact_fraction is None:

@@ -85,6 +85,7 @@ class ResultTable(TypedDict):
     variables: list[str]
     cells: list[CellTable]
     path: list[str]  # which separations "clear" and targets came to
+    lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
     sample: str | None  # where few contacts carry the load
@@ -142,6 +143,7 @@ class PlanTable(TypedDict):
     accuracy: dict[str, float | str] | None  # "relative", "max_realizations", "method"
     cells: list[ForeseenTable]  # those that were tried
     path: list[str]
+    lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]
     sample: str | None  # where few contacts carry the load

@@ -41,6 +41,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "accuracy": None if accuracy is None else accuracy.model_dump(),
         "cells": [_foreseen(plan, cell) for cell in prospect.foreseen],
         "path": list(plan.path_notes),
+        "lattice": plan.lattice_lines,
         "map": plan.map_lines,
         "trust": trust_table(prospect_lines(prospect)),
         "sample": paragraphs(foreseen_sample(plan, prospect)).get("sample"),

@@ -40,6 +40,7 @@ def result_table(result: Labelled, file: Path | None, elapsed: float | None = No
         "variables": layout.stored_variables(result),
         "cells": [_cell(result, cell) for cell in layout.cells_of(result)],
         "path": attrs.get("path", "").splitlines(),
+        "lattice": attrs.get("lattice", "").splitlines(),
         "map": attrs.get("map", "").splitlines(),
         "trust": trust_table(trust_of_result(result)),
         "sample": paragraphs(sample_of_result(result)).get("sample"),

@@ -39,6 +39,7 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
         *_required_accuracy(plan),
+        *_indent("lattice", plan.lattice_lines),
         ("output", f"{', '.join(plan.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
@@ -116,6 +117,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield "variables", ", ".join(layout.stored_variables(result))
     yield from _indent("path", attrs.get("path", "").splitlines())
     yield from _motion(result.coordinates)
+    yield from _indent("lattice", attrs.get("lattice", "").splitlines())
     yield from _indent("map", attrs.get("map", "").splitlines())
     yield from describe_pull_off(result, _NOT_KNOWN)
     yield from _avalanches(result)

@@ -84,7 +84,7 @@ def assemble(
         attrs["interaction"] = scene.interaction.model
     if scene.nominal is not None:
         attrs["nominal"] = scene.nominal.shape
-    notes = {"path": plan.path_notes, "slip": plan.slip_notes, "map": plan.map_lines}
+    notes = {"path": plan.path_notes, "slip": plan.slip_notes, "lattice": plan.lattice_lines, "map": plan.map_lines}
     attrs |= {name: "\n".join(lines) for name, lines in notes.items() if lines}
     if scene.accuracy is not None:
         data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])

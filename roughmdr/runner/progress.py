@@ -1,11 +1,20 @@
-"""Progress of a batch: a bar on a terminal, a line now and then elsewhere."""
+"""Progress of a batch: a bar on a terminal, a line now and then elsewhere; with the steps of runs that last.
+
+Runs in threads of this process tell their steps. Those in other processes, here or on a cluster, are counted when they
+are done.
+"""
 
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
+from roughmdr.numerics.underway import steps_done
+
 _SECONDS_BETWEEN_LINES = 10.0
+_SECONDS_OF_A_RUN = 3.0  # without one that is done, after which the bar shows their steps
+_MAX_SHOWN = 4  # of the runs that are under way
 
 
 class Progress:
@@ -21,6 +30,13 @@ class Progress:
 
     def update(self) -> None:
         """Show the counts, if it is time for it."""
+
+    @property
+    def _under_way(self) -> str:
+        """How far the runs are that are under way, as "; step 3 of 40"; empty where nothing is known."""
+        shown = [f"step {done} of {steps}" for done, steps in steps_done()]
+        more = f" and {len(shown) - _MAX_SHOWN} more" if len(shown) > _MAX_SHOWN else ""
+        return f"; {', '.join(shown[:_MAX_SHOWN])}{more}" if shown else ""
 
 
 def tell_compiling(title: str, *, quiet: bool) -> None:
@@ -40,27 +56,52 @@ def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
     if quiet or sys.stderr is None:
         yield Progress(title)
     elif sys.stderr.isatty():
-        with _bar(title) as display:
+        with _bar(title) as display, _updated(display, 0.5 * _SECONDS_OF_A_RUN):
             yield display
     else:
         lines = _Lines(title)
-        yield lines
+        with _updated(lines, 0.1 * _SECONDS_BETWEEN_LINES):
+            yield lines
         lines.print()
+
+
+@contextmanager
+def _updated(display: Progress, interval: float) -> Iterator[None]:
+    """Update a display every ``interval`` [s] from a thread of its own."""
+    ended = threading.Event()
+
+    def update() -> None:
+        while not ended.wait(interval):
+            display.update()
+
+    thread = threading.Thread(target=update, name="roughmdr-progress", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 class _Lines(Progress):
     def __init__(self, title: str) -> None:
         super().__init__(title)
-        self._printed = time.monotonic()
+        self._printed, self._last, self._lock = time.monotonic(), "", threading.Lock()
 
     def update(self) -> None:
-        if self.done and time.monotonic() - self._printed >= _SECONDS_BETWEEN_LINES:
-            self.print()
+        with self._lock:
+            line = f"{self._counts}{self._under_way}"
+            if self.total and line != self._last and time.monotonic() - self._printed >= _SECONDS_BETWEEN_LINES:
+                self._printed, self._last = time.monotonic(), line
+                _tell(line)
+
+    @property
+    def _counts(self) -> str:
+        more = f", {self.reused} used again" if self.reused else ""
+        return f"{self.title}: {self.done} of {self.total} runs{more}"
 
     def print(self) -> None:
-        more = f", {self.reused} used again" if self.reused else ""
-        self._printed = time.monotonic()
-        _tell(f"{self.title}: {self.done} of {self.total} runs{more}")
+        _tell(self._counts)
 
 
 @contextmanager
@@ -74,8 +115,14 @@ def _bar(title: str) -> Iterator[Progress]:
         task = bar.add_task(title, total=0)
 
         class Display(Progress):
+            changed, last = time.monotonic(), 0
+
             def update(self) -> None:
+                if self.done != self.last:
+                    self.changed, self.last = time.monotonic(), self.done
+                lasts = time.monotonic() - self.changed >= _SECONDS_OF_A_RUN
                 more = f" ({self.reused} used again)" if self.reused else ""
+                more += self._under_way if lasts else ""
                 bar.update(task, total=self.total, completed=self.done, description=f"{title}{more}")
 
         yield Display(title)

@@ -13,7 +13,8 @@ from roughmdr.variables import CONTROLS, CURVE_VARIABLES, PRELOADS
 def asperities_in_words(section: Source) -> str:
     """Return how many there are, their shape and source, or the files that they are read from."""
     if section.is_random:
-        return f"{section.expected_count:.10g} of shape {section.shape_name}, source {section.source}"
+        lattice = f", {section.lattice_in_words}" if section.lattice_in_words else ""
+        return f"{section.expected_count:.10g} of shape {section.shape_name}, source {section.source}{lattice}"
     return f"source {section.source}: {', '.join(printable(str(file)) for file in section.inputs)}"
 
 

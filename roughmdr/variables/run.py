@@ -32,6 +32,10 @@ def _conducting(scene: Any) -> bool:
     return not {"conductance_radius", *CONDUCTANCES}.isdisjoint(scene.output.variables)
 
 
+def _sticking(scene: Any) -> bool:
+    return "tangential_stiffness" in scene.output.variables and scene.path.lateral is None
+
+
 def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
     return {row.name: row for row in rows}
 
@@ -59,6 +63,12 @@ RUN_DIAGNOSTICS = _diagnostics(
         "1",
         "estimated relative error of the conductance at given separation by the assumptions of the model, at most",
         in_result=_conducting,
+    ),
+    Diagnostic(
+        "tangential_error",
+        "1",
+        "estimated relative error of the tangential stiffness of contacts that stick, at given separation, at most",
+        in_result=_sticking,
     ),
     Diagnostic(
         "overlap_fraction",

@@ -11,7 +11,7 @@ from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
 import roughmdr as rm
-from roughmdr.ensemble.source import HEXAGONAL_CONSTANT
+from roughmdr.ensemble.source import LATTICE_CONSTANTS
 from roughmdr.interaction import Interaction
 from roughmdr.interaction.mean_field import coupling_of, mean_inverse_distance, shift
 
@@ -60,11 +60,13 @@ def test_the_constant_of_the_hexagonal_lattice_is_its_ewald_sum() -> None:
         row, column = np.divmod(np.arange(rows * columns), columns)
         across, along = (column + 0.5 * (row % 2)) / columns, row / rows
         total = float(periodic_green(across, along, 1.0, 1.0)[0].sum()) * math.pi / math.sqrt(rows * columns)
-        assert total == pytest.approx(-HEXAGONAL_CONSTANT, rel=2e-4)
+        assert total == pytest.approx(-LATTICE_CONSTANTS["hexagonal"], rel=2e-4)
+    (own,) = periodic_green(np.zeros(1), np.zeros(1), 1.0, 1.0)[0]
+    assert own * math.pi == pytest.approx(-LATTICE_CONSTANTS["square"], rel=1e-8)
 
 
 def test_of_a_lattice_the_mean_field_is_the_field_of_all_sites() -> None:
-    section = {**SECTION, "placement": "hexagonal", "count": 56}
+    section = {**SECTION, "placement": "hexagonal", "count": 56, "vacancies": True}
     placed = rm.generate(section, seed=1)
     green = periodic_green(placed.x.to_numpy(), placed.y.to_numpy(), 1e-3, E)
     distance = float(placed.attrs["exclusion_distance"])
@@ -106,7 +108,8 @@ def test_the_force_is_that_of_independent_asperities_at_the_shifted_separation(b
     names = ["force", "contact_area", "contact_count", "stiffness", "energy", "contact_radius_sum", "pressure"]
     curve = solved(asperities, {"model": "mean_field", "boundary": boundary}, variables=names)
     distance = float(asperities.attrs["exclusion_distance"])
-    c = coupling_of(Interaction("mean_field", boundary), E, (1e-3, 1e-3), distance)  # type: ignore[arg-type]
+    sides = asperities.attrs["patch_x"], asperities.attrs["patch_y"]
+    c = coupling_of(Interaction("mean_field", boundary), E, sides, distance)  # type: ignore[arg-type]
     assert (c > 0.0) == (boundary == "free")
     radius, height = 5e-5, asperities.height.to_numpy()
 

@@ -77,7 +77,11 @@ def test_nothing_touches_or_attracts_at_both_ends(shape: str, adhesion: Any) -> 
 )
 def test_heights_of_any_distribution(height: Any, adhesion: Any) -> None:
     second = {"share": 0.2, "height": {"distribution": "normal", "mean": "1 um", "std": "0.3 um"}, "radius": "200 um"}
-    for more in ({}, {"second": second}, {"count": None, "density": "1000 /mm^2", "placement": "hexagonal"}):
+    for more in (
+        {},
+        {"second": second},
+        {"count": None, "density": "1000 /mm^2", "placement": "hexagonal", "vacancies": True},
+    ):
         asperities = {
             key: value for key, value in {**ASPERITIES, "height": height, **more}.items() if value is not None
         }

@@ -203,7 +203,10 @@ _NORMAL = {"separation": ["1 sigma"]}
         ({"tangential": {"friction": 0.3, "stiffness_ratio": 0.8}}, "stiffness_ratio: follows from the modulus"),
         ({"material": {"effective_modulus": 1e9}}, "tangential.stiffness_ratio: is missing; path.lateral needs G"),
         ({"adhesion": {"model": "jkr", "work": 0.05}}, "path.lateral: does not go with adhesion"),
-        ({"interaction": {"model": "mean_field"}}, "interaction: does not go with path.lateral"),
+        (
+            {"interaction": {"model": "mean_field"}},
+            "interaction: does not go with path.lateral: contacts that feel each other begin to slip",
+        ),
         ({"reference": {"model": "boundary_elements"}}, "reference: does not go with path.lateral"),
         ({"path": {"lateral": CYCLES}}, "path.separation: is missing"),
         ({"path": {"separation": ["1 sigma"], "lateral": CYCLES}}, "path.separation: must be a single value"),
@@ -228,14 +231,6 @@ _NORMAL = {"separation": ["1 sigma"]}
         (
             {"path": _NORMAL, "output": {"variables": ["tangential_stiffness"]}, "tangential": None},
             "tangential: is missing; tangential_stiffness among output.variables needs it",
-        ),
-        (
-            {
-                "path": _NORMAL,
-                "output": {"variables": ["tangential_stiffness"]},
-                "interaction": {"model": "pairwise"},
-            },
-            "interaction: does not go with tangential_stiffness",
         ),
     ],
     ids=str,

@@ -118,11 +118,12 @@ def test_an_empty_ensemble_bears_no_force() -> None:
 
 
 def nearest(data: xr.Dataset) -> float:
-    """The smallest distance between two summits of a periodic patch, over its side."""
-    places = np.column_stack([data.x, data.y]) / data.attrs["patch"]
+    """The smallest distance between two summits of a periodic patch, over the root of its area."""
+    sides = np.array([data.attrs.get("patch", data.attrs.get(f"patch_{name}")) for name in "xy"])
+    places = np.column_stack([data.x, data.y])
     apart = np.abs(places[:, None] - places[None])
-    apart = np.hypot(*np.minimum(apart, 1.0 - apart).T)
-    return float(apart[np.triu_indices(len(places), 1)].min())
+    apart = np.hypot(*np.minimum(apart, sides - apart).T)
+    return float(apart[np.triu_indices(len(places), 1)].min() / np.sqrt(sides.prod()))
 
 
 def test_positions() -> None:
@@ -138,10 +139,10 @@ def test_positions() -> None:
         np.testing.assert_array_equal(data.height, plain.height)
         for name in ("x", "y"):
             assert float(data[name].min()) >= 0.0
-            assert float(data[name].max()) < data.attrs["patch"]
+            assert float(data[name].max()) < data.attrs.get("patch", data.attrs.get(f"patch_{name}"))
     assert nearest(data) >= 0.03
     lattice = generate(count=780, placement="hexagonal")  # 30 rows of 26
-    assert nearest(lattice) == pytest.approx(np.sqrt(2.0 / (np.sqrt(3.0) * 780)), rel=0.02)
+    assert nearest(lattice) == pytest.approx(np.sqrt(2.0 / (np.sqrt(3.0) * 780)), rel=1e-9)
     assert nearest(generate(count=780, placement="random")) < 0.1 * nearest(lattice)
 
 

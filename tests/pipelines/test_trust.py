@@ -50,7 +50,7 @@ def test_twelve_scenes_have_a_force() -> None:
 def hexagonal() -> xr.Dataset:
     section = {
         "source": "random", "shape": "paraboloid", "count": 12, "patch": 2e-3, "radius": 0.5e-3,
-        "placement": "hexagonal", "height": {"distribution": "normal", "std": 1e-8},
+        "placement": "hexagonal", "vacancies": True, "height": {"distribution": "normal", "std": 1e-8},
     }  # fmt: skip
     return rm.generate(section, seed=1)
 

@@ -141,7 +141,11 @@ def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
             name, ends = next(iter(PARAMETERS[shape].items()))
             section["second"][name] = number(draw, *ends, 1.0 if name == "slope" else frame.size)
     if seldom(draw, 20):
-        section |= draw(st.sampled_from(({"placement": "hexagonal"}, {"placement": "hard_core", "min_distance": 1e-9})))
+        section |= draw(
+            st.sampled_from(
+                ({"placement": "hexagonal", "vacancies": True}, {"placement": "hard_core", "min_distance": 1e-9})
+            )
+        )
     return section | parameters
 
 

@@ -144,7 +144,8 @@ CASES = (
         "hexagonal",
         _own(
             "Hexagonal",
-            {"count": 100, "patch": "1 mm", "radius": "0.1 mm", "placement": "hexagonal", "height": _normal("0.2 um")},
+            {"count": 100, "patch": "1 mm", "radius": "0.1 mm", "height": _normal("0.2 um")}
+            | {"placement": "hexagonal", "vacancies": True},
             _stop(0.03),
         ),
         "boundary elements",

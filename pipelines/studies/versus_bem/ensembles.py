@@ -64,6 +64,8 @@ class Case(NamedTuple):
         placement, _, distance = self.placement.partition(" ")
         if placement == "hard_core":
             shape["min_distance"] = float(distance) * self.spacing
+        elif placement == "hexagonal":
+            shape["vacancies"] = True  # the patch is a square
         section = {
             "source": "random", "count": self.asperities, "patch": SIZE, **shape,
             "placement": "random" if placement in ("square", "crowd") else placement,

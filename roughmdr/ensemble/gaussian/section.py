@@ -49,7 +49,7 @@ class NayakAsperities(PatchSource):
 
     source: Literal["nayak"]
     shape: Literal["paraboloid"] = "paraboloid"
-    placement: Literal["random", "hard_core", "hexagonal"] = "hard_core"
+    placement: Literal["random", "hard_core", "square", "hexagonal"] = "hard_core"
     m0: Annotated[float, BeforeValidator(Quantity("m2", above=0.0))] | None = None
     m2: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
     m4: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
@@ -94,6 +94,7 @@ class NayakAsperities(PatchSource):
             raise EntryError("patch", self.patch, message)
         if expected > MAX_COUNT:
             raise EntryError("patch", self.patch, f"holds {expected:.3g} summits; at most {MAX_COUNT:g} are allowed")
+        self.check_lattice()
         return self
 
     def _given(self, keys: tuple[str, ...]) -> dict[str, float]:
@@ -128,7 +129,8 @@ class NayakAsperities(PatchSource):
         return self.summits.density * self.patch * self.patch
 
     def limited_to(self, count: int) -> "NayakAsperities":
-        return self.model_copy(update={"patch": self.patch * math.sqrt(min(1.0, count / self.count))})
+        fewer = self.at_most(count)
+        return self.model_copy(update={"patch": self.patch * math.sqrt(min(1.0, fewer / self.count))})
 
     @property
     def expected_count(self) -> float:
@@ -177,8 +179,8 @@ class NayakAsperities(PatchSource):
         streams = make_streams(seed, realization, _STREAMS if stratified else ())
         summits = self.summits.draw(*(streams(stream, self.count) for stream in _STREAMS))
         positions = self.positions(streams, self.count) if with_positions else {}
-        attrs: dict[str, float | int | str] = {"patch": self.patch, "seed": seed, "realization": realization}
+        attrs: dict[str, float | int | str] = {**self.patch_attrs, "seed": seed, "realization": realization}
         attrs |= {"of_surface": 1, "density": self.summits.density, "alpha": self.summits.moments.alpha}
-        attrs |= self.summits.moments._asdict() | self.exclusion_attr
+        attrs |= self.summits.moments._asdict()
         radii = {"radius": summits.radius}
         return Ensemble(self.shape, summits.height, radii, self.nominal_area, positions, attrs).sorted()

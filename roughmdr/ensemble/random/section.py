@@ -1,40 +1,30 @@
-"""source = "random": the sections of a scene, one for each shape with its parameters as keys, and what a run asks."""
+"""source = "random": what the sections of all shapes have in common, and what a run asks of them."""
 
 import math
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import (
-    BeforeValidator,
-    Field,
-    ValidationInfo,
-    WithJsonSchema,
-    create_model,
-    field_validator,
-    model_validator,
-)
+from pydantic import BeforeValidator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.lattice import LATTICES, with_sites_counted
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.population_nodes import nodes_of
-from roughmdr.ensemble.random.profile_readers import LENGTHS, TERMS, read_lengths, read_terms
 from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Length, Quantity, Section, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity
-from roughmdr.shapes import SCENE_SHAPES, SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
+from roughmdr.shapes import SHAPES
 
-_Section = TypeVar("_Section", bound=Section)
 _Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
-_Rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=-1.0, at_most=1.0))]
 
 
 class Second(Section):
@@ -54,21 +44,33 @@ class RandomAsperities(PatchSource):
     source: Literal["random"]
     count: Annotated[int, BeforeValidator(WholeNumber(1, MAX_COUNT))] | None = None
     density: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
+    pitch: Length | None = None
     height: _Height
     second: Second | None = None
     correlation: Correlation | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_lattice(cls, table: Any) -> Any:
+        return with_sites_counted(table)
 
     @model_validator(mode="after")
     def _check_parameters_and_count(self) -> "RandomAsperities":
         if self.shared_profile is None:
             SHAPES[self.shape].parameter_set(set(self.distributions))
         if self.count is None and self.density is None:
-            raise RoughmdrError("needs count, or a density from which the number in each realisation is drawn")
+            raise RoughmdrError(
+                "needs count, the pitch of a lattice, or a density from which the number in each realisation is drawn"
+            )
         if self.count is not None and self.density is not None:
             raise EntryError("density", self.density, "does not go with count; leave one of them out")
         if self.density is not None and not self.expected_count <= MAX_COUNT:
             message = f"puts {self.expected_count:.3g} asperities on the patch; at most {MAX_COUNT:g}"
             raise EntryError("density", self.density, message)
+        if self.density is not None and self.placement in LATTICES and not self.vacancies:
+            message = "needs count or pitch: a density, with a random number of asperities, fills no lattice"
+            raise EntryError("placement", self.placement, message)
+        self.check_lattice()
         return self
 
     @model_validator(mode="after")
@@ -135,6 +137,8 @@ class RandomAsperities(PatchSource):
         return self.model_copy(update={"count": None, "density": self.expected_count / self.nominal_area})
 
     def limited_to(self, count: int) -> "RandomAsperities":
+        if self.lattice is not None:
+            count = self.at_most(count)
         patch = self.patch * math.sqrt(min(1.0, count / self.expected_count))
         limited = {} if self.count is None else {"count": min(count, self.count)}
         return self.model_copy(update={"patch": patch, **limited})
@@ -234,7 +238,7 @@ class RandomAsperities(PatchSource):
         else:
             count = poisson(streams, self.expected_count)
         positions = self.positions(streams, count) if with_positions else {}
-        attrs = {"patch": self.patch, "seed": seed, "realization": realization, **self.exclusion_attr}
+        attrs = {**self.patch_attrs, "seed": seed, "realization": realization}
         return self._drawn(streams, count, positions, attrs)
 
     def _drawn(self, streams: Streams, count: int, positions: dict[str, Floats], attrs: dict[str, Any]) -> Ensemble:
@@ -248,65 +252,3 @@ def _parameters_of(section: Section | None, shape: str) -> dict[str, Any]:
     """Return the entries of a section for the parameters of a shape, by their names."""
     entries = {name: getattr(section, name, None) for name in SHAPES[shape].units}
     return {name: entry for name, entry in entries.items() if entry is not None}
-
-
-class RandomPowerSeries(RandomAsperities):
-    """Asperities with one power series as their common profile."""
-
-    shape: Literal["power_series"]
-    terms: Annotated[dict[str, float], BeforeValidator(read_terms), WithJsonSchema(TERMS)]
-
-    @cached_property
-    def shared_profile(self) -> SharedProfile:
-        """The series; ShapeError where it is not valid."""
-        return PowerSeries({float(exponent): coefficient for exponent, coefficient in self.terms.items()})
-
-
-class RandomTabulated(RandomAsperities):
-    """Asperities with one measured profile."""
-
-    shape: Literal["tabulated"]
-    r: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
-    f: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
-
-    @field_validator("f")
-    @classmethod
-    def _is_a_profile(cls, value: list[float], info: ValidationInfo) -> list[float]:
-        if "r" in info.data:
-            Tabulated(info.data["r"], value)
-        return value
-
-    @cached_property
-    def shared_profile(self) -> SharedProfile:
-        """The table; ShapeError where it is not valid."""
-        return Tabulated(self.r, self.f)
-
-
-def _published(name: str, base: type[_Section], keys: dict[str, Any]) -> type[_Section]:
-    """Return a section with further keys, put under its name into this module, where another process finds it."""
-    section = create_model(name, __base__=base, __module__=__name__, **keys)
-    globals()[name] = section
-    return section
-
-
-def _section(shape: type[Shape]) -> type[RandomAsperities]:
-    """Return the section of one shape, with a key for each of its parameters."""
-    required = set.intersection(*map(set, shape.parameter_sets))
-    readers = {name: BeforeValidator(DistributionReader(unit, positive=True)) for name, unit in shape.units.items()}
-    optional: dict[str, Any] = {
-        name: (Annotated[Distribution, reader] | None, None) for name, reader in readers.items()
-    }
-    keys = optional | {name: (Annotated[Distribution, readers[name]], ...) for name in required}
-    second = _published(f"Second{shape.__name__}", Second, optional)
-    ranks = dict.fromkeys(shape.units, (_Rank | None, None))
-    correlation = _published(f"Correlation{shape.__name__}", Correlation, ranks)
-    keys |= {"shape": (Literal[shape.name], ...), "second": (second | None, None)}
-    keys |= {"correlation": (correlation | None, None)}
-    return _published(f"Random{shape.__name__}", RandomAsperities, keys)
-
-
-if TYPE_CHECKING:
-    AnyRandomAsperities = RandomAsperities
-else:
-    _sections = [_section(shape) for shape in SCENE_SHAPES.values() if not shape.shared]
-    AnyRandomAsperities = Annotated[Union[RandomPowerSeries, RandomTabulated, *_sections], Field(discriminator="shape")]

@@ -13,6 +13,7 @@ from roughmdr.interaction.jkr.equilibrium import State, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.section import Climb, Met, Section
 from roughmdr.loading.machine import Leg, Machine
+from roughmdr.numerics.underway import each_step
 
 _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural depth or its depth below first touch
 _OVERSHOOT = 1.2  # over the way to where the demand would be passed
@@ -46,7 +47,7 @@ class Hanging:
     def follow(self, leg: Leg) -> None:
         """Follow a leg, with its demand in SI, and account for its steps."""
         climb, last = Climb(self._machine, 1.0 if leg.rises else -1.0), math.nan
-        for demand in leg.demand.tolist():
+        for demand in each_step(leg.demand.tolist()):
             if demand != last:
                 self._go(climb, climb.sign * demand / self._unit)
             last = demand

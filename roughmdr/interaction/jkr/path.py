@@ -9,6 +9,7 @@ from roughmdr.interaction.jkr.front import Front
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
 
 _ABOVE = 1e-9  # of the side of the patch: from so far above first touch the flat comes at least
@@ -34,7 +35,7 @@ def solve_path(
     account = Account(front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at)
     state = front.parted(max(float(separation[0]) / placed.length, front.top + _ABOVE))
     try:
-        for h, up in zip(separation.tolist(), rises.tolist(), strict=True):
+        for h, up in each_step(list(zip(separation.tolist(), rises.tolist(), strict=True))):
             state, pieces = front.go(state, h / placed.length)
             for piece in pieces:
                 account.pass_over(piece)

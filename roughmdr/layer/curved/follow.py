@@ -9,6 +9,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.layer.curved.equilibrium import Half, State, equilibrium, linear_response
 from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.underway import each_step
 
 
 class Place(NamedTuple):
@@ -51,7 +52,7 @@ class Body(NamedTuple):
         """Return the rings at each separation [m] of a path that comes from infinity, or from a place."""
         places: list[Place] = []
         last = self.apart() if place is None else place
-        for h in separation.tolist():
+        for h in each_step(separation.tolist()):
             last = last if h == last.h and places else self.moved(last, h)
             places.append(last)
         return places

@@ -1,0 +1,56 @@
+"""How far long computations are: each notes its steps under its thread, and a display in another thread reads them."""
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from roughmdr.numerics.arguments import Floats
+
+_T = TypeVar("_T")
+
+
+class _Computation(NamedTuple):
+    done: Callable[[], int]
+    steps: int
+
+
+_by_thread: dict[int, _Computation] = {}
+
+
+@contextmanager
+def _noted(done: Callable[[], int], steps: int) -> Iterator[None]:
+    """Note a computation of this thread, in place of the one that it is a part of."""
+    thread = threading.get_ident()
+    outer = _by_thread.get(thread)
+    _by_thread[thread] = _Computation(done, steps)
+    try:
+        yield
+    finally:
+        if outer is None:
+            _by_thread.pop(thread, None)
+        else:
+            _by_thread[thread] = outer
+
+
+def each_step(steps: Sequence[_T]) -> Iterator[_T]:
+    """Yield the steps of a loop, noting how many of them are done."""
+    number = 0
+    with _noted(lambda: number, len(steps)):
+        for number, step in enumerate(steps):  # noqa: B007 - the lambda reads the number
+            yield step
+
+
+@contextmanager
+def filling(values: Floats) -> Iterator[None]:
+    """Note that compiled code fills these values, all NaN at first, step by step."""
+    values[:] = np.nan
+    with _noted(lambda: int(np.count_nonzero(~np.isnan(values))), values.size):
+        yield
+
+
+def steps_done() -> list[tuple[int, int]]:
+    """Return how many steps of each computation in this process are done, and how many it has."""
+    return [(computation.done(), computation.steps) for computation in list(_by_thread.values())]
