@@ -85,10 +85,8 @@ class RandomAsperities(PatchSource):
             entry, lower = population.parameters[name], population.parameters[floor]
             if entry.smallest < lower.largest:
                 units = SHAPES[self.shape].units
-                lowest, limit = (
-                    format_quantity(entry.smallest, units[name]),
-                    format_quantity(lower.largest, units[floor]),
-                )
+                lowest = format_quantity(entry.smallest, units[name])
+                limit = format_quantity(lower.largest, units[floor])
                 given = lowest if entry.constant is not None else f"from {lowest}"
                 limit = limit if lower.constant is not None else f"which can be as high as {limit}"
                 key = f"second.{name}" if number > 0 and name in in_second else name
@@ -194,9 +192,7 @@ class RandomAsperities(PatchSource):
 
     @property
     def all_alike(self) -> bool:
-        members = self.populations.members
-        constant = len(members) == 1 and not self.drawn_parameters and self.equal_heights
-        return constant and self.count is not None
+        return self.equal_heights and self.node_count(2) == 1 and self.count is not None
 
     @property
     def one_parameter(self) -> bool:
@@ -216,8 +212,7 @@ class RandomAsperities(PatchSource):
 
     @property
     def heights_depend(self) -> bool:
-        populations = self.populations
-        return any(populations.correlated in each.random_parameters for each in populations.members)
+        return any(self.populations.correlated in each.random_parameters for each in self.populations.members)
 
     def nodes(self, *rules: Rule) -> Nodes:
         return nodes_of(self.populations, *rules)
