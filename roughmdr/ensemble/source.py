@@ -97,8 +97,9 @@ class Source(Section):
 
     @property
     def given_count(self) -> int | None:
-        """The number of asperities, where it is given and the same in all realisations; None of a density."""
-        return None
+        """The key ``count`` of sources that have it: the same number in all realisations; None of all others."""
+        count: int | None = getattr(self, "count", None)
+        return count
 
     @property
     def nominal_area(self) -> float | None:
@@ -136,7 +137,9 @@ class Source(Section):
     @property
     def unbounded(self) -> "Source":
         """The source as a part of a surface that goes on beyond the patch: with a density in place of a count."""
-        return self
+        if self.given_count is None or self.nominal_area is None:
+            return self
+        return self.model_copy(update={"count": None, "density": self.given_count / self.nominal_area})
 
     def limited_to(self, count: int) -> "Source":
         """Return a source like this one with about ``count`` asperities at most, on so much smaller a patch, or itself

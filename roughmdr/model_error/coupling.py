@@ -1,4 +1,4 @@
-"""The error of the force of asperities that are coupled in pairs, to second order in their distance."""
+"""The error of the force of asperities that are coupled in pairs, to first or second order in their distance."""
 
 import math
 

@@ -257,10 +257,8 @@ def test_adhesive_hills_are_coupled_and_part(map_file: Path) -> None:
     asked = ("force", "contact_count", "dissipated_energy", "model_error_curve")
     law = rm.load_separation(ensemble, separation=h, work=work, variables=asked, **PAIRS)
     loading, unloading = (float(law.model_error_curve[leg].max()) for leg in (slice(8), slice(9, None)))
-    assert 0.2 < loading == float(law.model_error)  # as boundary elements with an attraction of a range have it
-    assert 0.06 < unloading < loading
     plain = rm.load_separation(ensemble, separation=h[:8], variables=["force"], **PAIRS)
-    assert float(plain.model_error) < 0.1
+    assert float(plain.model_error) < unloading < loading == float(law.model_error)
     assert np.isfinite(law.force).all()
     assert float(law.contact_count.max()) > 3.0
     assert float(law.force.min()) < 0.0

@@ -130,20 +130,12 @@ class RandomAsperities(PatchSource):
         parameters = [each.parameters for each in self.populations.members]
         return min((each["exponent"].smallest for each in parameters if "exponent" in each), default=np.inf)
 
-    @property
-    def unbounded(self) -> "RandomAsperities":
-        return self.model_copy(update={"count": None, "density": self.expected_count / self.nominal_area})
-
     def limited_to(self, count: int) -> "RandomAsperities":
         if self.lattice is not None:
             count = self.at_most(count)
         patch = self.patch * math.sqrt(min(1.0, count / self.expected_count))
         limited = {} if self.count is None else {"count": min(count, self.count)}
         return self.model_copy(update={"patch": patch, **limited})
-
-    @property
-    def given_count(self) -> int | None:
-        return self.count
 
     @property
     def expected_count(self) -> float:
