@@ -208,7 +208,8 @@ def _read_instrument(path: Path, channel: str | None) -> RawMap:
         except ImportError:
             raise RoughmdrError(
                 f"{path.suffix or 'a format without a suffix'} is left to SurfaceTopography, which is not installed: "
-                "pip install 'roughmdr[surface]'; without it there are .nc, .npy, .npz, .txt, .csv, .tsv and .dat"
+                "pip install -e '.[surface]' in the clone of roughmdr; without it there are .nc, .npy, .npz, .txt, "
+                ".csv, .tsv and .dat"
             ) from None
         try:
             with open_topography(str(path)) as reader:
