@@ -16,7 +16,8 @@ def holds(result: Labelled, name: str) -> bool:
 def pull_off_counts(result: Labelled) -> Floats:
     """Return how many realisations of each cell have a pull-off, in a part of a result those that it holds."""
     if "pull_off_force" in result.variables:
-        return np.isfinite(result.variables["pull_off_force"].values).sum(axis=-1).astype(np.float64)
+        having: Floats = np.isfinite(result.variables["pull_off_force"].values).sum(axis=-1, dtype=np.float64)
+        return having
     return np.asarray(result.variables["pull_off_count"].values)
 
 

@@ -117,7 +117,8 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
         from distributed import Client, Security
     except ImportError:
         raise RoughmdrError(
-            f"scheduler is {address!r}: clusters need the package distributed: pip install 'roughmdr[cluster]'"
+            f"scheduler is {address!r}: clusters need the package distributed: pip install -e '.[cluster]' in the "
+            "clone of roughmdr"
         ) from None
     try:
         security = Security()  # as dask is configured

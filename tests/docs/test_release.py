@@ -1,6 +1,7 @@
 """The script for releases, in a clone: version, change log, citation, tag and wheel agree."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -75,3 +76,14 @@ def test_a_release_that_is_not_ready_is_refused(clone: Path, arguments: tuple[st
 def test_a_tree_with_changes_is_refused(clone: Path) -> None:
     (clone / "README.md").write_text("changed")
     assert "not committed" in release(clone, "7.8.9").stderr
+
+
+def test_nothing_is_installed_by_a_name_that_is_not_published() -> None:
+    """Whoever registers the name would be installed; guides and messages install from the clone."""
+    texts = [path for folder in ("roughmdr", "docs", "pipelines") for path in (ROOT / folder).rglob("*.*")]
+    named = [
+        str(path.relative_to(ROOT))
+        for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *texts]
+        if path.suffix in (".md", ".py", ".toml") and re.search(r"install\s+'?roughmdr", path.read_text("utf-8"))
+    ]
+    assert not named

@@ -267,7 +267,7 @@ def test_a_unit_and_a_size_are_not_contradicted(tmp_path: Path) -> None:
 def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", None)
     (tmp_path / "scan.spm").write_bytes(b"\\*File list\r\n")
-    with pytest.raises(rm.SceneError, match=r"scan.spm: .spm is left to SurfaceTopography.*pip install 'roughmdr\[sur"):
+    with pytest.raises(rm.SceneError, match=r"scan.spm: .spm is left to SurfaceTopography.*install -e '\.\[surface\]'"):
         generate(tmp_path / "scan.spm")
 
 

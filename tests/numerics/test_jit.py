@@ -1,15 +1,17 @@
 """Loops that are handed their kernels."""
 
 import sys
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import FunctionType, ModuleType
+from typing import Any
 
 import numba
 import pytest
 
-from roughmdr.numerics.jit import as_argument, njit, specialise
+from roughmdr.numerics.jit import as_argument, njit, once, specialise
 from roughmdr.numerics.vector_math import expm1
 
 
@@ -113,3 +115,41 @@ def test_threads_that_compile_at_once_keep_the_folder_of_the_cache(
         sys.setswitchinterval(interval)
     assert before == numba.config.CACHE_DIR  # type: ignore[attr-defined]
     assert not list(tmp_path.iterdir())
+
+
+def in_threads(make: Callable[[int], Any], count: int = 8) -> list[Any]:
+    """What threads make that begin together and take turns as often as Python lets them."""
+    gate, interval = threading.Barrier(count), sys.getswitchinterval()
+
+    def wait_and_make(number: int) -> Any:
+        gate.wait()
+        return make(number)
+
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(count) as threads:
+            return list(threads.map(wait_and_make, range(count)))
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def test_threads_may_specialise_at_once() -> None:
+    """Python's parser of syntax trees fails with a SystemError where two threads are in it."""
+
+    def specialised(number: int) -> list[object]:
+        return [specialise(_loop, _filled(f"threads_{number}_{each}", _double, 1.0)) for each in range(10)]
+
+    assert len({id(loop) for made in in_threads(specialised) for loop in made}) == 80
+
+
+def test_what_is_made_once_is_made_once_by_threads() -> None:
+    calls = []
+
+    @once
+    def make(number: int, *, twice: bool = False) -> object:
+        calls.append(number)
+        return make(number - 1, twice=twice) if number else object()
+
+    assert len(set(map(id, in_threads(lambda _: make(3))))) == 1
+    assert calls == [3, 2, 1, 0]
+    assert make(3, twice=True) is not make(3)

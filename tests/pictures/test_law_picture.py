@@ -171,6 +171,30 @@ def test_options_that_are_refused(result: xr.Dataset, options: dict[str, Any], s
         rm.plot(result, **options)
 
 
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "sets no parameter"),
+        (b"lines.linewidth = 3\n", "is no style of matplotlib: Missing colon"),
+        (b"lines.linewidth: wide\n", "Bad value"),
+        (b"lines.width: 3\n", "Bad key lines.width"),
+        (b"\x89PNG\r\n\x1a\n\xff", "cannot be read as a style"),
+        (b"text.usetex: True\ntext.latex.preamble: \\\\no_such_command\n", "cannot draw with it here"),
+    ],
+)
+def test_a_file_that_is_no_style_or_needs_what_is_not_there(
+    result: xr.Dataset, tmp_path: Path, content: bytes, says: str
+) -> None:
+    from matplotlib import rcParams
+
+    before, style, picture = dict(rcParams), tmp_path / "own.mplstyle", tmp_path / "a.png"
+    style.write_bytes(content)
+    with pytest.raises(rm.StoreError, match=says):
+        rm.plot(result, picture, variables="force", style=str(style))
+    assert dict(rcParams) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["own.mplstyle"]
+
+
 def test_a_result_without_an_area_has_nothing_per_area(result: xr.Dataset) -> None:
     with pytest.raises(rm.StoreError, match="no nominal_area"):
         rm.plot(result.drop_vars("nominal_area"), per_area=True)

@@ -31,6 +31,8 @@ from batches import (
 )
 
 from roughmdr.batch.plan import make_plan
+from roughmdr.errors import RoughmdrError
+from roughmdr.runner import cluster
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -225,6 +227,26 @@ def test_no_scheduler_there_is_said_at_once(folder: Path) -> None:
             assert f"scheduler is {address!r}: no dask scheduler answers there" in said
             assert_no_traceback(said)
             assert [path.name for path in folder.iterdir()] == ["scene.toml"]
+
+
+@pytest.mark.parametrize(
+    "says", [None, b"", b"SSH-2.0-OpenSSH_9.6\r\n", b"HTTP/1.1 400 Bad Request\r\n\r\n", b"\xff" * 9999]
+)
+def test_a_server_that_is_no_scheduler_is_told(says: bytes | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Silent ones are left after a while, others at once; None stands for one that hangs up."""
+    monkeypatch.setattr(cluster, "_GREETING_TIMEOUT", 0.3)
+    with ExitStack() as stack:
+        server = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
+
+        def serve() -> None:
+            connection = stack.enter_context(server.accept()[0])
+            connection.close() if says is None else connection.sendall(says)
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        with pytest.raises(RoughmdrError, match="no dask scheduler answers there"), ExitStack() as opened:
+            opened.enter_context(cluster.connected(f"tcp://127.0.0.1:{server.getsockname()[1]}", None))
+        thread.join()
 
 
 def test_a_run_over_a_cluster_does_not_listen(two: Dask, folder: Path) -> None:
