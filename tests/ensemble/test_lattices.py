@@ -126,4 +126,4 @@ def test_the_plan_says_what_fits(tmp_path: Any) -> None:
     del section["count"]
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene(asperities=section, batch={"realizations": 1})))
     said = CliRunner().invoke(main, ["plan", str(tmp_path / "scene.toml")]).stdout
-    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.004" in said
+    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.005 mm" in said
