@@ -78,11 +78,11 @@ def test_vacancies_are_made_only_if_asked_for() -> None:
         ({"placement": "hexagonal", "count": 3601}, "3601 asperities fill no hexagonal lattice on a patch"),
         ({"placement": "square", "count": 1009}, "1009 asperities fill no square lattice .*; 1008 or 1012 do$"),
         ({"placement": "hexagonal", "density": "5 /mm^2"}, "needs count or pitch: a density"),
-        ({"placement": "hexagonal", "pitch": "9 um", "count": 9}, "pitch = 9 um: does not go with count"),
-        ({"placement": "random", "pitch": "9 um"}, "pitch = 9 um: goes with placement = 'square' or 'hexagonal'"),
+        ({"placement": "hexagonal", "pitch": "9 um", "count": 9}, "pitch = '9 um': does not go with count"),
+        ({"placement": "random", "pitch": "9 um"}, "pitch = '9 um': goes with placement = 'square' or 'hexagonal'"),
         ({"placement": "square", "pitch": "1 nm", "patch": "1 m"}, "puts more than 30000 sites on a side"),
         ({"placement": "square", "pitch": "1 kg"}, "pitch"),
-        ({"placement": "random", "count": 5, "vacancies": True}, "vacancies = True: goes with placement = 'hexagonal'"),
+        ({"placement": "random", "count": 5, "vacancies": True}, 'vacancies = True: goes with placement = "hexagonal"'),
         ({"placement": "square"}, "needs count, the pitch of a lattice, or a density"),
     ],
 )  # fmt: skip
@@ -126,4 +126,4 @@ def test_the_plan_says_what_fits(tmp_path: Any) -> None:
     del section["count"]
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene(asperities=section, batch={"realizations": 1})))
     said = CliRunner().invoke(main, ["plan", str(tmp_path / "scene.toml")]).stdout
-    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.00459" in said
+    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.005 mm" in said
