@@ -81,6 +81,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
             "xarray",
             [
                 "storage/labelled.py",
+                "storage/clocked.py",
                 "asperity/",
                 "ensemble/",
                 "aggregate/",
