@@ -32,7 +32,8 @@ def _open(source: Any, known_format: str | None, channel: str | None, kind: str)
         except ImportError:
             raise RoughmdrError(
                 f"{kind} is left to SurfaceTopography, which is not installed: "
-                "pip install -e '.[surface]' in the clone of roughmdr; without it there are .nc, .npy, .npz, .txt, .csv, .tsv, .dat and .xyz"
+                "pip install -e '.[surface]' in the clone of roughmdr; without it there are .nc, .npy, .npz, .txt, "
+                ".csv, .tsv, .dat and .xyz"
             ) from None
         try:
             with open_topography(source, known_format) as reader:
