@@ -68,6 +68,11 @@ KINDS: dict[str, dict[str, Any]] = {
         interaction={"model": "pairwise", "boundary": "periodic", "order": 1, "error": 1e-5, "beyond": "flag"},
         path=TO_FRACTION,
     ),
+    "lattice": elastic(
+        asperities={**{k: v for k, v in FEW.items() if k != "count"}, "placement": "square", "pitch": 1.9e-5},
+        interaction={"model": "mean_field"},
+        path=CLEAR,
+    ),
     "mean field": elastic(interaction={"model": "mean_field"}, path=TO_PRESSURE, batch=EXPECTED),
     "conduction": elastic(
         conduction={**CONDUCTION, "counter_conductivity": 20.0},
