@@ -25,7 +25,7 @@ _NAMES_OF_TYPES = {str: "text", int: "whole number"}
 
 
 class Form(NamedTuple):
-    """What an array of a file must be."""
+    """Dimensions, type and unit that an array of a file must have."""
 
     dims: tuple[str, ...]
     kind: str

@@ -11,7 +11,7 @@ from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
 import roughmdr as rm
-from roughmdr.ensemble.source import LATTICE_CONSTANTS
+from roughmdr.ensemble.patch_source import LATTICE_CONSTANTS
 from roughmdr.interaction import Interaction
 from roughmdr.interaction.mean_field import coupling_of, mean_inverse_distance, shift
 

@@ -10,8 +10,8 @@ from pydantic import BeforeValidator, ValidationInfo, field_validator, model_val
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_of_score
 from roughmdr.ensemble.nodes import HEIGHT_END, Heights, Nodes, Rule, UpperTail
+from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution_families import ndtri
-from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError, Length, Quantity

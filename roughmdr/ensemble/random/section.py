@@ -12,11 +12,11 @@ from pydantic import BeforeValidator, model_validator
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.lattice import LATTICES, with_sites_counted
 from roughmdr.ensemble.nodes import Nodes, Rule
+from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.population import Population, Populations
 from roughmdr.ensemble.random.population_nodes import nodes_of
-from roughmdr.ensemble.source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
