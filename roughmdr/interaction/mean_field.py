@@ -103,9 +103,9 @@ def shift(independent: ForceAndStiffness, separation: Floats, coupling: float) -
         if (unstable := slope <= 0.0).any():
             h = float(separation[unstable].max())
             raise OutOfRange(
-                f"interaction.model = 'mean_field' has no equilibrium with the flat, or the far end of its spring, at "
-                f"{h:g} m: the contacts are stiffer than the surface, which the pressure between them raises against "
-                "the flat; they are too near to each other for a mean field"
+                f"interaction.model = 'mean_field' has no equilibrium at a separation of {h:g} m, of the flat or the "
+                "far end of its spring: the contacts are stiffer than the surface, which the pressure between them "
+                "raises against the flat; they are too near to each other for a mean field"
             )
         step = np.where(moves, np.maximum(found - force, 0.0) / slope, 0.0)
         force = force + step
