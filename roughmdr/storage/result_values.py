@@ -19,7 +19,6 @@ from roughmdr.variables import (
     REFERENCE_VARIABLES,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
-    STATISTICS,
 )
 
 _BRANCHES = ("loading", "unloading")
@@ -28,10 +27,6 @@ _CODES = ("adhesion_law", "accuracy_method")
 _KNOWN_TOGETHER = {
     "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error")],
     "avalanche_count": ["avalanche_size_max"],
-    **{
-        f"pull_off_force{end}": [f"{name}{end}" for name in PULL_OFF_NUMBERS]
-        for end in ("", *(f"_{statistic}" for statistic in STATISTICS))
-    },
     **{name: ["reference_error"] for name in REFERENCE_VARIABLES},
     **{f"{name}_mean": ["reference_error_mean"] for name in REFERENCE_VARIABLES},
 }
