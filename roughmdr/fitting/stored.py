@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.errors import RoughmdrError, StoreError, level_outside
 from roughmdr.fitting.words import is_open
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
@@ -42,14 +42,14 @@ def read_fit(path: Path) -> Labelled:
 def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
     """Return a fit that is given by its file or as a Dataset; None where it is none, StoreError where it is broken.
 
-    A UserWarning tells the caller of the caller where the numbers in a file cannot be trusted.
+    A UserWarning tells the caller of a public function where the numbers in a file cannot be trusted.
     """
     if isinstance(fit, str | os.PathLike):
         if not is_fit(Path(fit)):
             return None
         data = read_fit(Path(fit))
         if fault := data.integrity_fault():
-            warnings.warn(f"{fit}: {fault}", UserWarning, stacklevel=3)
+            warnings.warn(f"{fit}: {fault}", UserWarning, stacklevel=level_outside())
         return data
     if getattr(fit, "attrs", {}).get("kind") != FIT:
         return None
