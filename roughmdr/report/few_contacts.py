@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 FEW = 10.0
 """Effective number of contacts below which the load of a sample scatters by more than a third of itself."""
 
-_SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}
+_SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words for a sample, by source
 
 
 def sample_lines(effective: list[Floats], scene: str) -> Iterator[tuple[str, str]]:
@@ -56,6 +56,6 @@ def sample_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
 
 
 def foreseen_sample(plan: "Plan", prospect: "Prospect") -> Iterator[tuple[str, str]]:
-    """Yield that of a plan, from the cells that were foreseen."""
+    """Yield the line "sample" of a plan, from the cells that were foreseen."""
     effective = [np.array([cell.law.effective_contacts]) for cell in prospect.foreseen]
     yield from sample_lines(effective, plan.scene.toml)
