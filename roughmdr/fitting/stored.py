@@ -15,14 +15,13 @@ from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT, is_fit
 from roughmdr.storage.result_form import Form, attribute_faults, is_text, with_units
 from roughmdr.storage.result_scene import scene_faults
-from roughmdr.variables import FIT_ATTRIBUTES, MEASURED
+from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _ENDS = ("", "_standard_error", "_low", "_high")
 _CONTROLS = ("remote", "separation")
-_BRANCHES = ("loading", "unloading")
 
 
 def read_fit(path: Path) -> Labelled:
@@ -94,8 +93,8 @@ def _values(data: Labelled) -> Iterator[str]:
         array = (data.variables | data.coordinates).get(name)
         if array is not None and form.kind == "f" and name not in ends and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
-    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
-        yield f"branch must be {' or '.join(_BRANCHES)}"
+    if not np.isin(data.coordinates["branch"].values, BRANCHES).all():
+        yield f"branch must be {' or '.join(BRANCHES)}"
     for key, names in _parameters(data):
         value, error, low, high = (float(data.variables[name].values) for name in names)
         if not low <= value <= high:

@@ -7,6 +7,7 @@ import numpy as np
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_form import is_text, statistics_of
 from roughmdr.variables import (
+    BRANCHES,
     DONE,
     FAILED,
     LAW_VARIABLES,
@@ -20,7 +21,6 @@ from roughmdr.variables import (
     RUN_VARIABLES,
 )
 
-_BRANCHES = ("loading", "unloading")
 _COUNTS = ("realization_count", "pull_off_count")
 _CODES = ("adhesion_law", "accuracy_method")
 _KNOWN_TOGETHER = {
@@ -39,8 +39,8 @@ def value_faults(data: Labelled) -> Iterator[str]:
     """Find values that no run writes, in arrays that are known to have the right types and dimensions."""
     if not np.isin(data.variables["status"].values, (DONE, FAILED, NOT_RUN)).all():
         yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
-    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
-        yield f"branch must be {' or '.join(_BRANCHES)}"
+    if not np.isin(data.coordinates["branch"].values, BRANCHES).all():
+        yield f"branch must be {' or '.join(BRANCHES)}"
     for name, array in data.coordinates.items():
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
