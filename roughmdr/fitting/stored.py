@@ -13,7 +13,7 @@ from roughmdr.fitting.words import is_open
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT, is_fit
-from roughmdr.storage.result_form import Form, attribute_faults, is_text, with_units
+from roughmdr.storage.result_form import Form, attribute_faults, is_text, refuse, with_units
 from roughmdr.storage.result_scene import scene_faults
 from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED
 
@@ -32,10 +32,7 @@ def read_fit(path: Path) -> Labelled:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") != FIT:
         raise StoreError(f"{path}: holds no fit")
-    try:
-        return as_fit(data)
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: not a fit as roughmdr writes it: {error}") from None
+    return as_fit(data, path)
 
 
 def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
@@ -52,17 +49,15 @@ def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
         return data
     if getattr(fit, "attrs", {}).get("kind") != FIT:
         return None
-    try:
-        return as_fit(Labelled.of(fit))
-    except RoughmdrError as error:
-        raise StoreError(f"fit: not as roughmdr.fit returns it: {error}") from None
+    return as_fit(Labelled.of(fit))
 
 
-def as_fit(data: Labelled) -> Labelled:
-    """Return arrays as a fit, with the declared units where they have none; RoughmdrError if they are none."""
-    for check in (_attributes, _arrays, _values):
-        for fault in check(data):
-            raise RoughmdrError(fault)
+def as_fit(data: Labelled, file: Path | None = None) -> Labelled:
+    """Return arrays, of a file or not, as a fit, with the declared units where they have none; StoreError if they are
+    none.
+    """
+    faults = (fault for check in (_attributes, _arrays, _values) for fault in check(data))
+    refuse(faults, "fit", "fit", file)
     return with_units(data, _forms(data) | _optional_forms(data))
 
 
