@@ -18,8 +18,9 @@ _FOR_JUMPS = 0.75
 def between_points(law: Law, part: StablePart, quantity: Quantity) -> Floats:
     """Return how far a law may be off the line between neighbouring points, bent and by jumps: [2, point - 1].
 
-    Over the pressure both curves jump; what counts is the value less the slope times the pressure, the slope from the
-    next points but one, as steps of the pressure may be tiny. Over steps that a load jumps the whole line may be off.
+    Over the pressure, value and pressure jump together: what counts is the value less the slope times the pressure. The
+    slope is taken over three steps, since one step of the pressure may be tiny. Where a load jumps over steps, the line
+    may be off by its whole rise.
     """
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
     steps = np.arange(law.separation.size - 1)[:, None] + np.arange(-REACH, REACH + 2)
