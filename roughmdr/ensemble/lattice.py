@@ -13,10 +13,10 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity
 
-_ROW_DISTANCE = {"square": 1.0, "hexagonal": math.sqrt(0.75)}  # over the pitch
+_ROW_DISTANCE = {"square": 1.0, "hexagonal": math.sqrt(0.75)}  # distance of rows, in pitches
 _PERIOD = {"square": 1, "hexagonal": 2}  # rows after which the lattice repeats
-_MOST_OBLONG = 2.0  # ratio of the sides of a patch
-_SUGGESTED_WITHIN = 1000  # of the number of asperities: where others that fit are looked for
+_MOST_OBLONG = 2.0  # largest ratio of the sides of a patch
+_SUGGESTED_WITHIN = 1000  # largest change of a number of asperities to one that fits, in a message
 _MOST_ON_A_SIDE = 30_000  # sites: as many as the asperities that a patch may hold
 LATTICES = tuple(_ROW_DISTANCE)
 

@@ -14,14 +14,14 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 
 _REACH = 3.0  # standard errors within which other intervals are sought
-_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # of it, at which they are
-_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
+_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # places where they are sought, in reaches
+_FLAT = 1e-6  # slope over the largest one, below which it tells no standard error
 _AT_REST = 1e-4  # standard errors to the minimum of the smooth part, where the search by slopes has reached it
 _INSIDE = 1e-6  # standard errors from an edge, on the near side of it
 _ROUGHLY = 1e-4  # standard errors to which an edge is found where only its direction is asked for
 _APART = 0.05  # standard errors between places at which an edge is looked for, which tell its direction
 _MAX_EDGES = 3  # edges at which the nearest point may lie
-_LEAST_JUMP = 10.0  # of the sum of squares, over the variance of a deviation: smaller ones are no edge
+_LEAST_JUMP = 10.0  # least change of the sum of squares at an edge, over the variance of a deviation
 
 Cost = Callable[[Floats], float]
 """Returns the sum of squares at a point u, over the variance of a deviation."""

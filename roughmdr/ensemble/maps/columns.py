@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import unit_factor
 
 _FEWEST = 9  # points of the smallest map
-_MOST_COLUMNS = 8  # of points with further numbers; a map is wider
+_MOST_COLUMNS = 8  # most numbers in a row that is a point, x, y, z and others; a map is wider
 _LEAST_SHARE = 0.5
 """Share of the points of a grid that a file must hold: instruments leave out those that they could not measure."""
 _OFF_GRID = 0.2
