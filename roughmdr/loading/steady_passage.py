@@ -15,8 +15,8 @@ from roughmdr.loading.machine import Machine
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ROUNDS, _MAX_HALVINGS = 100, 60  # Newton steps to a demand; halvings of a step that leads to no equilibrium
-_RTOL = 1e-13  # of the distance to the first touch: a shorter step is the last
-_FIRST = 2.0**-6  # of the depth scale: how far below first touch the flat is tried first
+_RTOL = 1e-13  # step over the distance to the first touch, below which it is the last
+_FIRST = 2.0**-6  # first guess below first touch, over the depth scale
 _LONGEST = 2.0  # longest step down over the distance to the first touch
 
 ForceAndStiffness = Callable[[float], tuple[float, float]]
