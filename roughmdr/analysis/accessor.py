@@ -118,9 +118,8 @@ class Analysis:
         xarray.Dataset
             Linear between the two steps around the value (pressure and contact fraction from force, contact area and
             nominal_area where the result does not hold them); NaN where it is never reached. Beside each ``NAME`` its
-            ``NAME_interpolation_error``, which holds in 97 % of cases: from how the curve bends and jumps at the steps
-            around; of curves that only jump, such as contact_count, or of fewer than four steps, the difference to the
-            farther of the two steps.
+            ``NAME_interpolation_error``, which holds in 97 % of cases: from the bends and jumps of the steps around; of
+            curves that only jump, such as contact_count, or of fewer than four steps, the difference to the farther.
 
         Raises
         ------
